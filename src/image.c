@@ -1,0 +1,65 @@
+#include "image.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "image_file.h"
+
+const char *image_refuse_size(int64_t width, int64_t height)
+{
+    if (width < 1 || height < 1)
+        return "the image has no samples";
+    if (width > IMAGE_MAX_SIDE || height > IMAGE_MAX_SIDE || width * height > IMAGE_MAX_PIXELS)
+        return "the image is too large: the limits are 65536 samples a side and 2^28 in all";
+    return NULL;
+}
+
+const char *image_alloc(image *out, int64_t width, int64_t height)
+{
+    const char *why = image_refuse_size(width, height);
+    if (why)
+        return why;
+    float *v = malloc((size_t)(width * height) * sizeof *v);
+    if (!v)
+        return "there is not enough memory for the image";
+    *out = (image){(int)width, (int)height, v};
+    return NULL;
+}
+
+static bool read_any(FILE *file, const char *channel, image *out, char *why)
+{
+    static const unsigned char png[8] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
+    static const unsigned char exr[4] = {0x76, 0x2f, 0x31, 0x01};
+    unsigned char first[8] = {0};
+    errno = 0;
+    size_t n = fread(first, 1, sizeof first, file);
+    if (ferror(file)) {
+        snprintf(why, IMAGE_WHY, "%s", strerror(errno));
+        return false;
+    }
+    if (n >= sizeof exr && memcmp(first, exr, sizeof exr) == 0)
+        return image_read_exr(file, channel, out, why);
+    if (n < sizeof png || memcmp(first, png, sizeof png) != 0) {
+        snprintf(why, IMAGE_WHY, n ? "its first bytes are those of neither a PNG nor an OpenEXR file"
+                                   : "the file is empty");
+        return false;
+    }
+    if (channel) {
+        snprintf(why, IMAGE_WHY, "there is no channel '%s': a PNG file has no named channels", channel);
+        return false;
+    }
+    return image_read_png(file, out, why);
+}
+
+bool image_read(const char *path, const char *channel, image *out, errors *e)
+{
+    *out = (image){0};
+    FILE *file = fopen(path, "rb");
+    if (!file)
+        return errors_add(e, "%s", strerror(errno));
+    char why[IMAGE_WHY] = "";
+    bool ok = read_any(file, channel, out, why);
+    fclose(file);
+    return ok || errors_add(e, "%s", why);
+}
