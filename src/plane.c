@@ -1,0 +1,150 @@
+/* Plane and rectangle: Q(u,w) = O + u U + w W, also skewed or scaled. */
+#include "surface.h"
+
+#include <stdlib.h>
+
+typedef struct plane {
+    surface base;
+    real O[3], U[3], W[3];
+    real N[3];         /* U x W */
+    real Du[3], Dw[3]; /* the dual basis: Du.U = 1, Du.W = 0; so u = Du.(p - O) */
+} plane;
+
+/* t of the crossing with the plane. A ray along the plane gives an infinite or undefined t, for which
+ * every comparison below is false. */
+static inline real plane_t(const plane *f, real rx, real ry, real rz, real sx, real sy, real sz)
+{
+    real d = (f->O[0] - rx) * f->N[0] + (f->O[1] - ry) * f->N[1] + (f->O[2] - rz) * f->N[2];
+    return d / (sx * f->N[0] + sy * f->N[1] + sz * f->N[2]);
+}
+
+static inline real plane_coord(const plane *f, const real *D, real px, real py, real pz)
+{
+    return (px - f->O[0]) * D[0] + (py - f->O[1]) * D[1] + (pz - f->O[2]) * D[2];
+}
+
+/* Whether r + s t is within the rectangle. */
+static inline int plane_inside(const plane *f, const rays *x, int i, real t)
+{
+    real px = x->r.x[i] + x->s.x[i] * t, py = x->r.y[i] + x->s.y[i] * t, pz = x->r.z[i] + x->s.z[i] * t;
+    real u = plane_coord(f, f->Du, px, py, pz), w = plane_coord(f, f->Dw, px, py, pz);
+    return (u >= 0) & (u <= 1) & (w >= 0) & (w <= 1);
+}
+
+/* t of the hit, by a ray with t in (0, end), and `end` without one. */
+static inline real plane_cut(const plane *f, const rays *x, int i, int bounded, real end)
+{
+    real t = plane_t(f, x->r.x[i], x->r.y[i], x->r.z[i], x->s.x[i], x->s.y[i], x->s.z[i]);
+    int in = bounded ? plane_inside(f, x, i, t) : 1;
+    return in & (t > 0) & (t < end) ? t : end;
+}
+
+static inline void hit(const surface *base, int bounded, int n, const rays *x, int32_t id, hits *h)
+{
+    const plane f = *(const plane *)base;
+    for (int i = 0; i < n; i++) {
+        real t = plane_cut(&f, x, i, bounded, h->t[i]);
+        h->id[i] = t < h->t[i] ? id : h->id[i];
+        h->t[i] = t;
+    }
+}
+
+STAGE static void plane_hit(const surface *base, int n, const rays *x, int32_t id, hits *h) { hit(base, 0, n, x, id, h); }
+
+STAGE static void rectangle_hit(const surface *base, int n, const rays *x, int32_t id, hits *h)
+{
+    hit(base, 1, n, x, id, h);
+}
+
+STAGE static void plane_locate(const surface *base, int n, const rays *x, const real *t, int32_t *part, real *u,
+                               real *w)
+{
+    const plane f = *(const plane *)base;
+    for (int i = 0; i < n; i++) {
+        part[i] = 0;
+        real px = x->r.x[i] + x->s.x[i] * t[i], py = x->r.y[i] + x->s.y[i] * t[i], pz = x->r.z[i] + x->s.z[i] * t[i];
+        u[i] = plane_coord(&f, f.Du, px, py, pz);
+        w[i] = plane_coord(&f, f.Dw, px, py, pz);
+    }
+}
+
+STAGE static void plane_eval(const surface *base, int n, const int32_t *part, const real *u, const real *w, int order,
+                             partials *q)
+{
+    const plane f = *(const plane *)base;
+    (void)part;
+    for (int i = 0; i < n; i++) {
+        q->Q.x[i] = f.O[0] + u[i] * f.U[0] + w[i] * f.W[0];
+        q->Q.y[i] = f.O[1] + u[i] * f.U[1] + w[i] * f.W[1];
+        q->Q.z[i] = f.O[2] + u[i] * f.U[2] + w[i] * f.W[2];
+    }
+    vec3s_fill(&q->Qu, n, f.U[0], f.U[1], f.U[2]);
+    vec3s_fill(&q->Qw, n, f.W[0], f.W[1], f.W[2]);
+    if (order == 2) {
+        vec3s_fill(&q->Quu, n, 0, 0, 0);
+        vec3s_fill(&q->Quw, n, 0, 0, 0);
+        vec3s_fill(&q->Qww, n, 0, 0, 0);
+    }
+}
+
+static inline void occlude(const surface *base, int bounded, int n, const rays *x, real *lit)
+{
+    const plane f = *(const plane *)base;
+    for (int i = 0; i < n; i++)
+        lit[i] = plane_cut(&f, x, i, bounded, 1) < 1 ? 0 : lit[i];
+}
+
+STAGE static void plane_occlude(const surface *base, int n, const rays *x, real *lit) { occlude(base, 0, n, x, lit); }
+
+STAGE static void rectangle_occlude(const surface *base, int n, const rays *x, real *lit) { occlude(base, 1, n, x, lit); }
+
+static void plane_extent(const surface *base, double u[2], double w[2])
+{
+    (void)base;
+    u[0] = w[0] = -HUGE_VAL;
+    u[1] = w[1] = HUGE_VAL;
+}
+
+static void rectangle_extent(const surface *base, double u[2], double w[2])
+{
+    (void)base;
+    u[0] = w[0] = 0;
+    u[1] = w[1] = 1;
+}
+
+static const surface_methods plane_methods = {
+    "plane", plane_hit, plane_locate, plane_eval, plane_occlude, NULL, plane_extent,
+};
+
+static const surface_methods rectangle_methods = {
+    "rectangle", rectangle_hit, plane_locate, plane_eval, rectangle_occlude, NULL, rectangle_extent,
+};
+
+static void store(real to[3], vec3 v)
+{
+    to[0] = (real)v.x;
+    to[1] = (real)v.y;
+    to[2] = (real)v.z;
+}
+
+surface *plane_new(vec3 origin, vec3 U, vec3 W, bool bounded)
+{
+    vec3 N = vec3_cross(U, W);
+    double n2 = vec3_dot(N, N), e2 = vec3_dot(U, U) * vec3_dot(W, W);
+    /* sin^2 of the angle between them: below this, float has no digit of N left */
+    if (!(n2 > 1e-12 * e2) || !(e2 < HUGE_VAL))
+        return NULL;
+    plane *f = calloc(1, sizeof *f);
+    if (!f)
+        return NULL;
+    f->base.is = bounded ? &rectangle_methods : &plane_methods;
+    store(f->O, origin);
+    store(f->U, U);
+    store(f->W, W);
+    store(f->N, vec3_unit(N));
+    store(f->Du, vec3_scale(vec3_cross(W, N), 1 / n2));
+    store(f->Dw, vec3_scale(vec3_cross(N, U), 1 / n2));
+    return &f->base;
+}
+
+void surface_free(surface *f) { free(f); }

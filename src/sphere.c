@@ -1,0 +1,140 @@
+/* Sphere: Q(u,w) = C + R (sin w cos u, cos w, sin w sin u). */
+#include "kmath.h"
+#include "surface.h"
+
+#include <stdlib.h>
+
+typedef struct sphere {
+    surface base;
+    real C[3], R;
+} sphere;
+
+/* Both roots of |r + s t - C|^2 = R^2, t0 <= t1; 0 where there is none.
+ * The discriminant is taken from the foot of the perpendicular from C to the ray, |s|^2 R^2 - |s|^2 |foot|^2, which
+ * keeps the digits that b^2 - a c loses for a small sphere far away [Haines et al., Ray Tracing Gems, ch. 7]. */
+static inline int sphere_roots(const sphere *f, real rx, real ry, real rz, real sx, real sy, real sz, real *t0, real *t1)
+{
+    real ox = rx - f->C[0], oy = ry - f->C[1], oz = rz - f->C[2];
+    real a = sx * sx + sy * sy + sz * sz, tc = -(ox * sx + oy * sy + oz * sz) / a;
+    real fx = ox + tc * sx, fy = oy + tc * sy, fz = oz + tc * sz;
+    real d = f->R * f->R - (fx * fx + fy * fy + fz * fz);
+    real h = real_sqrt(real_max(d, 0) / a);
+    *t0 = tc - h;
+    *t1 = tc + h;
+    return d >= 0;
+}
+
+STAGE static void sphere_hit(const surface *base, int n, const rays *x, int32_t id, hits *h)
+{
+    const sphere f = *(const sphere *)base;
+    for (int i = 0; i < n; i++) {
+        real t0, t1;
+        int met = sphere_roots(&f, x->r.x[i], x->r.y[i], x->r.z[i], x->s.x[i], x->s.y[i], x->s.z[i], &t0, &t1);
+        real t = t0 > 0 ? t0 : t1;
+        int take = met & (t > 0) & (t < h->t[i]);
+        h->t[i] = take ? t : h->t[i];
+        h->id[i] = take ? id : h->id[i];
+    }
+}
+
+STAGE static void sphere_locate(const surface *base, int n, const rays *x, const real *t, int32_t *part, real *u,
+                                real *w)
+{
+    const sphere f = *(const sphere *)base;
+    for (int i = 0; i < n; i++) {
+        part[i] = 0;
+        double px = (double)(x->r.x[i] + x->s.x[i] * t[i] - f.C[0]);
+        double py = (double)(x->r.y[i] + x->s.y[i] * t[i] - f.C[1]);
+        double pz = (double)(x->r.z[i] + x->s.z[i] * t[i] - f.C[2]);
+        u[i] = (real)km_atan2(pz, px);
+        w[i] = (real)km_atan2(sqrt(px * px + pz * pz), py);
+    }
+}
+
+STAGE static void sphere_eval(const surface *base, int n, const int32_t *part, const real *u, const real *w, int order,
+                              partials *q)
+{
+    const sphere f = *(const sphere *)base;
+    (void)part;
+    for (int i = 0; i < n; i++) {
+        real cu = (real)km_cos((double)u[i]), su = (real)km_sin((double)u[i]);
+        real cw = (real)km_cos((double)w[i]), sw = (real)km_sin((double)w[i]);
+        /* At a pole Qu is 0 and with it n. Its direction is kept by a circle of latitude that does not quite close;
+         * bs_regular still sees that there is no second direction. */
+        real rim = f.R * real_max(sw, R(1e-12)), r = f.R * sw, y = f.R * cw;
+        q->Q.x[i] = f.C[0] + r * cu;
+        q->Q.y[i] = f.C[1] + y;
+        q->Q.z[i] = f.C[2] + r * su;
+        q->Qu.x[i] = -rim * su;
+        q->Qu.y[i] = 0;
+        q->Qu.z[i] = rim * cu;
+        q->Qw.x[i] = y * cu;
+        q->Qw.y[i] = -r;
+        q->Qw.z[i] = y * su;
+    }
+    if (order < 2)
+        return;
+    for (int i = 0; i < n; i++) {
+        real cu = (real)km_cos((double)u[i]), su = (real)km_sin((double)u[i]);
+        real r = f.R * (real)km_sin((double)w[i]), y = f.R * (real)km_cos((double)w[i]);
+        q->Quu.x[i] = -r * cu;
+        q->Quu.y[i] = 0;
+        q->Quu.z[i] = -r * su;
+        q->Quw.x[i] = -y * su;
+        q->Quw.y[i] = 0;
+        q->Quw.z[i] = y * cu;
+        q->Qww.x[i] = -r * cu;
+        q->Qww.y[i] = -y;
+        q->Qww.z[i] = -r * su;
+    }
+}
+
+STAGE static void sphere_occlude(const surface *base, int n, const rays *x, real *lit)
+{
+    const sphere f = *(const sphere *)base;
+    for (int i = 0; i < n; i++) {
+        real t0, t1;
+        int met = sphere_roots(&f, x->r.x[i], x->r.y[i], x->r.z[i], x->s.x[i], x->s.y[i], x->s.z[i], &t0, &t1);
+        lit[i] = met & (((t0 > 0) & (t0 < 1)) | ((t1 > 0) & (t1 < 1))) ? 0 : lit[i];
+    }
+}
+
+/* From a point of the sphere one root is 0; the other is -2 (r - C).s/|s|^2. */
+STAGE static void sphere_occlude_own(const surface *base, int n, const rays *x, const int32_t *part, real *lit)
+{
+    const sphere f = *(const sphere *)base;
+    (void)part;
+    for (int i = 0; i < n; i++) {
+        real ox = x->r.x[i] - f.C[0], oy = x->r.y[i] - f.C[1], oz = x->r.z[i] - f.C[2];
+        real sx = x->s.x[i], sy = x->s.y[i], sz = x->s.z[i];
+        real t = -2 * (ox * sx + oy * sy + oz * sz) / (sx * sx + sy * sy + sz * sz);
+        lit[i] = (t > 0) & (t < 1) ? 0 : lit[i];
+    }
+}
+
+static void sphere_extent(const surface *base, double u[2], double w[2])
+{
+    const double pi = 3.14159265358979323846;
+    (void)base;
+    u[0] = -pi;
+    u[1] = pi;
+    w[0] = 0;
+    w[1] = pi;
+}
+
+static const surface_methods sphere_methods = {
+    "sphere", sphere_hit, sphere_locate, sphere_eval, sphere_occlude, sphere_occlude_own, sphere_extent,
+};
+
+surface *sphere_new(vec3 centre, double radius)
+{
+    sphere *f = radius > 0 && radius < HUGE_VAL ? calloc(1, sizeof *f) : NULL;
+    if (!f)
+        return NULL;
+    f->base.is = &sphere_methods;
+    f->C[0] = (real)centre.x;
+    f->C[1] = (real)centre.y;
+    f->C[2] = (real)centre.z;
+    f->R = (real)radius;
+    return &f->base;
+}

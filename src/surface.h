@@ -1,0 +1,60 @@
+/* Smooth parametric surfaces Q(u,w). A surface knows nothing of scenes, bumps, lights or shadows: it finds where
+ * rays meet it, and tells its shape there.
+ *
+ * A surface is a table of functions over a wave and the constants they need. Only those constructors below make one;
+ * surface_free ends it. All lengths are in scene units, coordinates left-handed with y up; n = Qu x Qw points outward.
+ * Seen from outside, u goes to the right where w goes down, like the pixels of an image.
+ */
+#ifndef KAGE_SURFACE_H
+#define KAGE_SURFACE_H
+
+#include <stdbool.h>
+
+#include "vec3.h"
+#include "wave.h"
+
+typedef struct surface surface;
+
+/* The methods of one kind of surface. Each is a stage: n lanes, no allocation, reentrant. */
+typedef struct surface_methods {
+    const char *kind; /* as in the scene file */
+
+    /* The nearest hit with 0 < t < h->t: where there is one, set h->t, and h->id = id. */
+    void (*hit)(const surface *f, int n, const rays *x, int32_t id, hits *h);
+
+    /* Where on the surface the hits r + s t are: the part (the face of a box, 0 elsewhere), u and w. */
+    void (*locate)(const surface *f, int n, const rays *x, const real *t, int32_t *part, real *u, real *w);
+
+    /* Q and its partials at (u,w): the first always, Quu, Quw and Qww where order is 2. */
+    void (*eval)(const surface *f, int n, const int32_t *part, const real *u, const real *w, int order, partials *q);
+
+    /* Put lit[i] = 0 where the surface lies across r + s t for a t in (0,1): a segment to a light. */
+    void (*occlude)(const surface *f, int n, const rays *x, real *lit);
+
+    /* The same for segments that start on the surface itself, on its part[i]: this start does not count. NULL: no ray
+     * that leaves the surface meets it again. */
+    void (*occlude_own)(const surface *f, int n, const rays *x, const int32_t *part, real *lit);
+
+    /* The range of (u,w). Ends are infinite where the surface has none. */
+    void (*extent)(const surface *f, double u[2], double w[2]);
+} surface_methods;
+
+struct surface {
+    const surface_methods *is;
+};
+
+/* Q = origin + u U + w W; over all (u,w), or over 0..1 where `bounded`. NULL where U and W are parallel, zero or not
+ * finite (then only: or out of memory). */
+surface *plane_new(vec3 origin, vec3 U, vec3 W, bool bounded);
+
+/* The box with two opposite corners, sides along the axes. part is the face, 2 axis + (1 on the high side). On each
+ * face (u,w) go over 0..1 along the two other axes, in the order that turns n outward. NULL where a side is 0. */
+surface *box_new(vec3 from, vec3 to);
+
+/* Q = centre + radius (sin w cos u, cos w, sin w sin u); u the longitude in -pi..pi, w the angle from the upper pole in
+ * 0..pi, in radians. NULL where radius <= 0. */
+surface *sphere_new(vec3 centre, double radius);
+
+void surface_free(surface *f);
+
+#endif
