@@ -1,0 +1,45 @@
+/* Functions of u and w, given as text: parsed once, then evaluated with their exact first and second
+ * partial derivatives, a batch of points at a time.
+ *
+ * The language (docs/scene.md): + - * / ^ and parentheses, the numbers, u, w, pi, and
+ * sin cos tan asin acos atan atan2 sinh cosh tanh exp log sqrt abs min max floor mod pow clamp select
+ * noise. Numbers are double in either build of kage: a perturbation is small against the scene, and one
+ * set of elementary functions (kmath.h) then serves both.
+ */
+#ifndef KAGE_EXPR_H
+#define KAGE_EXPR_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+enum { EXPR_BATCH = 64 };
+
+/* The value and the partials of an expression at up to EXPR_BATCH points. */
+typedef struct expr_jets {
+    double v[EXPR_BATCH], u[EXPR_BATCH], w[EXPR_BATCH], uu[EXPR_BATCH], uw[EXPR_BATCH], ww[EXPR_BATCH];
+} expr_jets;
+
+typedef struct expr expr;
+
+/* Where and why a text is no expression. */
+typedef struct expr_error {
+    size_t offset; /* byte in the text */
+    char message[160]; /* what is wrong, what was expected; without place or newline */
+} expr_error;
+
+/* The expression that `text` states; owned by the caller, expr_free. NULL on error, told in *error. */
+expr *expr_parse(const char *text, expr_error *error);
+
+/* Evaluate at n <= EXPR_BATCH points (u[i], w[i]). order 0 writes out->v, order 1 also u and w, order 2
+ * also uu, uw and ww; what is not asked for is left as it was. Reentrant; allocates nothing. Outside an
+ * operation's domain (log of a negative number, ...) the result is NaN or infinite, as in C. */
+void expr_eval(const expr *e, int n, const double *u, const double *w, int order, expr_jets *out);
+
+/* Bounds of the value over u0 <= u <= u1, w0 <= w <= w1 (infinite ends allowed), by interval arithmetic:
+ * lo <= e(u,w) <= hi wherever e is defined. The bounds hold always; they are not the tightest. Either may
+ * be infinite. */
+void expr_range(const expr *e, double u0, double u1, double w0, double w1, double *lo, double *hi);
+
+void expr_free(expr *e);
+
+#endif

@@ -1,0 +1,54 @@
+/* The perturbation P(u,w) of a surface: a height along its unit normal, in scene units. It knows nothing of surfaces,
+ * scenes or light.
+ */
+#ifndef KAGE_PERTURB_H
+#define KAGE_PERTURB_H
+
+#include <stdbool.h>
+
+#include "expr.h"
+#include "image.h"
+#include "wave.h"
+
+typedef struct perturb perturb;
+
+typedef struct perturb_methods {
+    const char *kind; /* as in the scene file: "map" or "function" */
+
+    /* P at (u,w); order 1: also Pu and Pw; order 2: also Puu, Puw and Pww. A stage: n lanes, no allocation, reentrant. */
+    void (*eval)(const perturb *p, int n, const real *u, const real *w, int order, heights *h);
+
+    void (*free)(perturb *p);
+} perturb_methods;
+
+struct perturb {
+    const perturb_methods *is;
+    real Pmin, Pmax; /* bounds of P, for the slab; infinite where none is known */
+};
+
+/* How a map goes on when (u,w) leaves it. */
+typedef enum map_wrap { MAP_REPEAT, MAP_CLAMP, MAP_MIRROR } map_wrap;
+
+/* How a map lies on (u,w), and what makes its samples a height. */
+typedef struct map_layout {
+    double size[2];   /* of one copy of the map in u and in w; not 0 */
+    double offset[2]; /* (u,w) of its corner */
+    map_wrap wrap;
+    bool corners;     /* n samples span n - 1 cells, the first and the last on the edge, as in POV-Ray's height_field;
+                         otherwise n cells with a sample in the middle of each, as in an image map */
+    double scale;     /* scene units for one unit of the samples; negative turns the relief inside out */
+    double zero;      /* the sample whose height is 0 */
+} map_layout;
+
+/* P from samples as the paper has it (section 4.1): partials by central differences at the samples; height and
+ * partials interpolated bilinearly. u goes along the rows from left to right, w down the columns. `samples` is only
+ * read here. NULL: out of memory, or fewer than 2 x 2 samples. */
+perturb *perturb_map(const image *samples, const map_layout *layout);
+
+/* P = scale f(u,w), with exact partials. Owns f, also on failure. The bounds hold for u and w in the extent given
+ * (infinite ends allowed). NULL: out of memory. */
+perturb *perturb_function(expr *f, double scale, const double u[2], const double w[2]);
+
+void perturb_free(perturb *p);
+
+#endif
