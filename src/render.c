@@ -1,0 +1,191 @@
+#include "render.h"
+
+#include <stdlib.h>
+
+#if defined(_OPENMP)
+#include <omp.h>
+#endif
+
+enum { TILE = 16, TILE_ROWS = LANES / TILE, TIMED_TILES = 8 };
+
+workspace *workspace_new(int lights)
+{
+    workspace *v = calloc(1, sizeof *v);
+    if (!v)
+        return NULL;
+    v->visibility = malloc((size_t)(lights ? lights : 1) * sizeof *v->visibility);
+    if (!v->visibility) {
+        free(v);
+        return NULL;
+    }
+    return v;
+}
+
+void workspace_free(workspace *v)
+{
+    if (v)
+        free(v->visibility);
+    free(v);
+}
+
+/* A tile of the picture, and the sample (i,j) of aa x aa in each of its pixels. */
+typedef struct tile {
+    int x0, y0, width, height;
+} tile;
+
+/* s = forward + x right + y up, x and y in -1..1 from the left and from the bottom. */
+STAGE static void camera_rays(const camera *c, int n, const real *restrict x, const real *restrict y, rays *restrict out)
+{
+    const real fx = (real)c->forward.x, fy = (real)c->forward.y, fz = (real)c->forward.z;
+    const real rx = (real)c->right.x, ry = (real)c->right.y, rz = (real)c->right.z;
+    const real ux = (real)c->up.x, uy = (real)c->up.y, uz = (real)c->up.z;
+    const real ox = (real)c->from.x, oy = (real)c->from.y, oz = (real)c->from.z;
+    for (int i = 0; i < n; i++) {
+        out->r.x[i] = ox;
+        out->r.y[i] = oy;
+        out->r.z[i] = oz;
+        out->s.x[i] = fx + x[i] * rx + y[i] * ux;
+        out->s.y[i] = fy + x[i] * ry + y[i] * uy;
+        out->s.z[i] = fz + x[i] * rz + y[i] * uz;
+    }
+}
+
+/* The pixel's coordinate p (0..size, fractions within a pixel) on the picture from -1 to 1. */
+static real screen(double p, int size) { return (real)(2 * p / size - 1); }
+
+void render_ray(const camera *c, int width, int height, double x, double y, workspace *v, int lane)
+{
+    rays one;
+    real sx = screen(x, width), sy = -screen(y, height);
+    camera_rays(c, 1, &sx, &sy, &one);
+    v->x.r.x[lane] = one.r.x[0], v->x.r.y[lane] = one.r.y[0], v->x.r.z[lane] = one.r.z[0];
+    v->x.s.x[lane] = one.s.x[0], v->x.s.y[lane] = one.s.y[0], v->x.s.z[lane] = one.s.z[0];
+}
+
+static void tile_rays(const scene *s, const tile *b, int aa, int i, int j, workspace *v)
+{
+    real x[LANES], y[LANES], column[TILE];
+    for (int c = 0; c < b->width; c++)
+        column[c] = screen(b->x0 + c + (i + 0.5) / aa, s->width);
+    for (int k = 0; k < b->height; k++) {
+        real row = -screen(b->y0 + k + (j + 0.5) / aa, s->height);
+        for (int c = 0; c < b->width; c++) {
+            x[k * b->width + c] = column[c];
+            y[k * b->width + c] = row;
+        }
+    }
+    camera_rays(&s->camera, b->width * b->height, x, y, &v->x);
+}
+
+/* Put the values of a tile's lanes on a plane, or add them to what is there. With a constant width the rows are a few
+ * vectors; most tiles have it. */
+static inline void lay_rows(float *restrict to, size_t stride, int width, int height, const real *restrict v, float weight,
+                            bool add)
+{
+    for (int k = 0; k < height; k++)
+        for (int c = 0; c < width; c++) {
+            float x = (float)v[k * width + c] * weight, *p = &to[(size_t)k * stride + (size_t)c];
+            *p = add ? *p + x : x;
+        }
+}
+
+STAGE static void lay_first(float *restrict to, size_t stride, int width, int height, const real *restrict v, float weight)
+{
+    if (width == TILE)
+        lay_rows(to, stride, TILE, height, v, weight, false);
+    else
+        lay_rows(to, stride, width, height, v, weight, false);
+}
+
+STAGE static void lay_more(float *restrict to, size_t stride, int width, int height, const real *restrict v, float weight)
+{
+    lay_rows(to, stride, width, height, v, weight, true);
+}
+
+static void lay(film *f, int plane, const tile *b, const real *v, float weight, bool add)
+{
+    const size_t stride = (size_t)(f->part.x1 - f->part.x0);
+    float *to = f->plane[plane] + (size_t)(b->y0 - f->part.y0) * stride + (size_t)(b->x0 - f->part.x0);
+    (add ? lay_more : lay_first)(to, stride, b->width, b->height, v, weight);
+}
+
+static void lay_layers(film *f, const tile *b, const workspace *v)
+{
+    const samples *o = &v->out;
+    const real *const plane[] = {o->depth, o->position.x, o->position.y, o->position.z, o->normal.x, o->normal.y,
+                                 o->normal.z, o->u, o->w, o->height, o->tau};
+    for (int k = FILM_Z; k <= FILM_TAU; k++)
+        lay(f, k, b, plane[k - FILM_Z], 1, false);
+    real order[LANES];
+    for (int i = 0; i < b->width * b->height; i++)
+        order[i] = (real)o->order[i];
+    lay(f, FILM_ORDER, b, order, 1, false);
+}
+
+static void render_tile(const tracer *k, int aa, const tile *b, film *f, workspace *v)
+{
+    const float weight = 1.0f / (float)(aa * aa);
+    for (int j = 0; j < aa; j++)
+        for (int i = 0; i < aa; i++) {
+            const bool add = i + j > 0;
+            tile_rays(k->scene, b, aa, i, j, v);
+            stats_stage(&v->stats, STAGE_CAMERA);
+            trace(k, b->width * b->height, v);
+            lay(f, FILM_R, b, v->out.rgb.x, weight, add);
+            lay(f, FILM_G, b, v->out.rgb.y, weight, add);
+            lay(f, FILM_B, b, v->out.rgb.z, weight, add);
+            if (k->layers) {
+                for (int l = 0; l < k->scene->lights; l++)
+                    lay(f, FILM_LIGHTS + l, b, v->visibility[l], weight, add);
+                if (i == aa / 2 && j == aa / 2)
+                    lay_layers(f, b, v);
+            }
+            stats_stage(&v->stats, STAGE_FILM);
+        }
+}
+
+bool render(const tracer *k, const render_options *o, film *f, stats *sum, errors *e)
+{
+    const window part = f->part;
+    const int columns = (part.x1 - part.x0 + TILE - 1) / TILE, rows = (part.y1 - part.y0 + TILE_ROWS - 1) / TILE_ROWS;
+    const long all = (long)columns * rows;
+    long done = 0;
+    bool good = true;
+    *sum = (stats){0};
+#if defined(_OPENMP)
+    const int threads = o->threads ? o->threads : omp_get_num_procs();
+#endif
+#pragma omp parallel num_threads(threads)
+    {
+        workspace *v = workspace_new(k->scene->lights);
+        if (!v) {
+#pragma omp critical(kage_render)
+            good = false;
+        }
+#pragma omp for schedule(dynamic, 4)
+        for (long n = 0; n < all; n++) {
+            if (!v)
+                continue;
+            tile b = {part.x0 + (int)(n % columns) * TILE, part.y0 + (int)(n / columns) * TILE_ROWS, TILE, TILE_ROWS};
+            b.width = b.x0 + TILE > part.x1 ? part.x1 - b.x0 : TILE;
+            b.height = b.y0 + TILE_ROWS > part.y1 ? part.y1 - b.y0 : TILE_ROWS;
+            v->stats.timing = o->timing && n % TIMED_TILES == 0;
+            if (v->stats.timing)
+                v->stats.clock = stats_clock();
+            render_tile(k, o->aa, &b, f, v);
+            if (o->progress && n % 16 == 15) {
+#pragma omp critical(kage_render)
+                {
+                    done += 16;
+                    o->progress(o->user, done, all);
+                }
+            }
+        }
+        if (v) {
+#pragma omp critical(kage_render)
+            stats_add(sum, &v->stats);
+        }
+        workspace_free(v);
+    }
+    return good || errors_add(e, "out of memory for the threads' waves");
+}

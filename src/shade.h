@@ -1,0 +1,15 @@
+/* Stages: light on a group, as POV-Ray's finish has it. */
+#ifndef KAGE_SHADE_H
+#define KAGE_SHADE_H
+
+#include "group.h"
+#include "scene.h"
+
+/* g->rgb = ambient light. */
+void shade_ambient(group *g, const material *m);
+
+/* g->rgb += what this light sends from p1 = r + s t_hit to the eye, with n', where g->lit. A light on the far side of
+ * the smooth surface gives nothing, whichever way n' leans. */
+void shade_light(group *g, const material *m, const light *l);
+
+#endif

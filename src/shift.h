@@ -1,0 +1,16 @@
+/* Stage: how far the origin of the shadow rays is shifted along the viewing ray, by every method. */
+#ifndef KAGE_SHIFT_H
+#define KAGE_SHIFT_H
+
+#include "group.h"
+#include "method.h"
+#include "perturb.h"
+
+/* n and n' of a group from the partials of Q, and of P where `bump` is not NULL: g->n_smooth, g->n_bump. */
+void shift_normals(group *g, const perturb *bump);
+
+/* g->tau and g->order, from all that is in g before them. Where the surface has no two directions (bs_regular) the
+ * order is none. Returns the number of heights that were looked up on the way. */
+long shift_group(group *g, const perturb *bump, method m, bool guard);
+
+#endif

@@ -1,0 +1,48 @@
+/* The algorithm: one wave of rays from the eye to the light. */
+#ifndef KAGE_TRACE_H
+#define KAGE_TRACE_H
+
+#include "group.h"
+#include "scene.h"
+#include "stats.h"
+
+/* What the waves of a picture have in common. */
+typedef struct tracer {
+    const scene *scene;
+    method shadow;
+    bool guard;
+    bool layers; /* also the layers beside the picture */
+} tracer;
+
+/* What a wave finds out for each of its lanes. The layers are those of film.h. */
+typedef struct samples {
+    vec3s rgb;
+    real depth[LANES]; /* t of the hit, infinite where there is none; all that follows is 0 there, order -1 */
+    vec3s position, normal;
+    real u[LANES], w[LANES], height[LANES], tau[LANES];
+    int32_t order[LANES];
+} samples;
+
+/* The memory that one thread traces with. */
+typedef struct workspace {
+    rays x; /* the wave */
+    hits h;
+    group g;
+    samples out;
+    real (*visibility)[LANES]; /* for each light of the scene */
+    stats stats;
+} workspace;
+
+/* Trace the rays v->x of n lanes into v->out and, where asked for, v->visibility. */
+void trace(const tracer *k, int n, workspace *v);
+
+/* The first part: find where the rays v->x of n lanes meet the smooth surfaces, and take the first group of lanes out.
+ * Returns the object that they have met, -1: none. */
+int32_t trace_nearest(const tracer *k, int n, workspace *v);
+
+/* The second part, for one group: the group v->g, whose lanes have met the object `id`, from its x
+ * and t to its rgb. visibility: as above, by lanes of the group. The parts are
+ * for those who look at the steps (kage pixel, kage check). */
+void trace_group(const tracer *k, int id, workspace *v);
+
+#endif

@@ -1,0 +1,21 @@
+/* Stages that carry lanes between a wave and its groups. */
+#ifndef KAGE_WAVE_STAGES_H
+#define KAGE_WAVE_STAGES_H
+
+#include "trace.h"
+
+/* No hits yet. */
+void wave_start(int n, hits *h);
+
+/* The samples of rays that meet nothing; `lights` of their visibilities. */
+void wave_background(int n, vec3 color, int lights, workspace *v);
+
+/* Take the lanes of one object out of the hits and put them into the group, side by side and in order. Returns the
+ * object's id, -1 where no lane is left. */
+int32_t wave_next_group(int n, const rays *x, hits *h, group *g);
+
+/* Put what a group has found out back at its places in the wave. */
+void wave_scatter(const group *g, bool layers, bool bumped, samples *out);
+void wave_scatter_visibility(const group *g, real *visibility);
+
+#endif
