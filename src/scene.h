@@ -1,0 +1,78 @@
+/* A scene, as the tracer needs it. Read from a file by scene_read.c; owns all it points to. */
+#ifndef KAGE_SCENE_H
+#define KAGE_SCENE_H
+
+#include "errors.h"
+#include "method.h"
+#include "perturb.h"
+#include "surface.h"
+
+/* A pinhole: the ray of a pixel is from + t (forward + x right + y up), x and y over the image, so s is no unit vector
+ * and t is the depth along forward. */
+typedef struct camera {
+    vec3 from;
+    vec3 forward;   /* unit */
+    vec3 right, up; /* to the edges of the image: half the picture's width and height at unit depth */
+} camera;
+
+/* A camera at `from` that looks at `at`; fov is the horizontal angle of the picture in degrees. False where the
+ * directions have no sense: at = from, or up along the view. */
+bool camera_look(camera *c, vec3 from, vec3 at, vec3 up, double fov, int width, int height);
+
+typedef struct light {
+    char *name;
+    vec3 at;
+    vec3 color; /* linear */
+} light;
+
+/* POV-Ray's finish: ambient and diffuse light on the colour, and two kinds of highlight in the light's colour. */
+typedef struct material {
+    char *name;
+    vec3 color; /* linear */
+    double ambient, diffuse;
+    double phong, phong_size;
+    double specular, roughness;
+} material;
+
+/* What `kage check` says of a map; width 0: none. */
+typedef struct map_note {
+    char *file;
+    int width, height;
+    double low, high; /* of the samples, before scale and zero */
+} map_note;
+
+typedef struct object {
+    char *name;
+    surface *shape;
+    perturb *bump; /* NULL: smooth */
+    int material;
+    map_note map;
+} object;
+
+typedef struct scene {
+    char *path;   /* of the file */
+    char *source; /* its text; with the maps and the --set changes all that the picture is made from */
+    int width, height;
+    vec3 background;
+    camera camera;
+    method shadow;
+    bool guard;
+    int aa;
+    light *light;
+    int lights;
+    material *material;
+    int materials;
+    object *object;
+    int objects;
+} scene;
+
+/* The number of threads, lights and so on that a scene can have at most. */
+enum { SCENE_MAX_SIDE = 32768, SCENE_MAX_ITEMS = 4096, SCENE_MAX_AA = 16 };
+
+/* Read the scene in the file at `path`, with `sets` changes of the form PATH=VALUE made to it first. NULL, and every
+ * error that can be told at once in *e, as `file:line:col: ...`, the line and a caret. */
+scene *scene_read(const char *path, int sets, char *const *set, errors *e);
+
+void scene_free(scene *s);
+
+#endif
