@@ -1,0 +1,55 @@
+/* The program's commands and what they share. Only these files talk: results go to stdout, errors and progress to
+ * stderr. Each command returns the exit status: 0, 1 where an output can't be written, 2 for bad input.
+ */
+#ifndef KAGE_COMMAND_H
+#define KAGE_COMMAND_H
+
+#include "film.h"
+#include "scene.h"
+
+enum { EXIT_OUTPUT = 1, EXIT_INPUT = 2, MAX_OUTPUTS = 16, MAX_SETS = 256 };
+
+/* What may stand on the command line, read. Zero: not given. */
+typedef struct arguments {
+    const char *command;
+    const char *operand[2]; /* what is no option */
+    int operands;
+    const char *output[MAX_OUTPUTS];
+    int outputs;
+    char *set[MAX_SETS]; /* --set's, and those options that are changes of the scene; owned */
+    int sets;
+    window crop; /* x1 == 0: none */
+    int threads, bits;
+    bool stats, quiet;
+} arguments;
+
+/* Read the options of a command; tells what is wrong and returns false. arguments_free in either case. */
+bool arguments_read(arguments *a, int argc, char **argv);
+void arguments_free(arguments *a);
+
+int command_render(const arguments *a);
+int command_check(const arguments *a);
+int command_pixel(const arguments *a);
+
+/* The scene of a command line, or NULL with the errors told. */
+scene *command_scene(const arguments *a);
+
+/* Print a list of errors. Returns `status`. */
+int command_fail(errors *e, int status);
+
+/* One line on stderr for a mistake on the command line. Always false. */
+bool usage_error(const char *fmt, ...) KAGE_PRINTF(1, 2);
+
+/* A bar on the terminal behind stderr: what is done, the rate, the time left. Nothing where that is no terminal. */
+typedef struct progress {
+    bool on;
+    double start, shown;
+    long pixels;
+    const char *name;
+} progress;
+
+void progress_start(progress *p, bool quiet, const char *name, long pixels);
+void progress_show(void *p, long done, long all);
+void progress_end(progress *p);
+
+#endif

@@ -1,0 +1,144 @@
+/* kage check: what is in a scene, and how steep its bumps are where the camera sees them. */
+#include "command.h"
+#include "lane.h"
+#include "render.h"
+#include "wave_stages.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+enum { SAMPLES = 200 }; /* SAMPLES x SAMPLES rays over the picture */
+
+/* Above this slope (95th percentile) the orders 0, 1 and 2 put more than about 1 % of a cast shadow's pixels wrong: the
+ * table of docs/method.md, "How far the orders go". */
+#define SLOPE_BOUND 0.35
+
+/* What the rays have found on one object. */
+typedef struct seen {
+    float *slope;
+    int n;
+    long back1, back2; /* samples where the orders 1 and 2 fell back */
+} seen;
+
+static int ascending(const void *a, const void *b)
+{
+    float x = *(const float *)a, y = *(const float *)b;
+    return (x > y) - (x < y);
+}
+
+/* tan of the angle between the smooth and the perturbed normal: the slope of the bump in scene units. */
+static float slope(const group *g, int i)
+{
+    bs_vec3 n = lane_unit(lane_get(&g->n_smooth, i)), np = lane_get(&g->n_bump, i), c = bs_cross(n, np);
+    return (float)(real_sqrt(bs_dot(c, c)) / bs_dot(n, np));
+}
+
+static void look(const scene *s, int order, workspace *v, seen *all)
+{
+    tracer k = {s, {METHOD_ORDER, order}, true, false};
+    for (int row = 0; row < SAMPLES; row++) {
+        for (int i = 0; i < SAMPLES; i++)
+            render_ray(&s->camera, SAMPLES, SAMPLES, i + 0.5, row + 0.5, v, i);
+        for (int32_t id = trace_nearest(&k, SAMPLES, v); id >= 0; id = wave_next_group(SAMPLES, &v->x, &v->h, &v->g)) {
+            const group *g = &v->g;
+            seen *o = &all[id];
+            if (!s->object[id].bump)
+                continue;
+            trace_group(&k, id, v);
+            for (int i = 0; i < g->n; i++) {
+                if (order == 2) {
+                    o->slope[o->n++] = slope(g, i);
+                    o->back2 += g->order[i] != 2;
+                } else
+                    o->back1 += g->order[i] != 1;
+            }
+        }
+    }
+}
+
+static int print_bump(const object *o, const seen *x)
+{
+    const perturb *p = o->bump;
+    int warnings = 0;
+    if (o->map.file)
+        printf("    map       %s: %d x %d samples from %.7g to %.7g\n", o->map.file, o->map.width, o->map.height, o->map.low,
+               o->map.high);
+    printf("    P         from %.6g to %.6g scene units%s\n", (double)p->Pmin, (double)p->Pmax, o->map.file ? "" : " (bounds)");
+    if (!(p->Pmax - p->Pmin < REAL_FAR)) {
+        printf("    warning: P has no bounds here, so the guard has no slab and march:N falls back to order 0; expected a\n"
+               "             function that is bounded over the whole surface\n");
+        warnings++;
+    }
+    if (!x->n) {
+        printf("    slope     unknown: the camera does not see it\n");
+        return warnings;
+    }
+    qsort(x->slope, (size_t)x->n, sizeof *x->slope, ascending);
+    double median = (double)x->slope[x->n / 2], p95 = (double)x->slope[(int)(0.95 * x->n)], top = (double)x->slope[x->n - 1];
+    double back1 = 100.0 * (double)x->back1 / x->n, back2 = 100.0 * (double)x->back2 / x->n;
+    printf("    slope     median %.3f, 95 %% below %.3f, steepest %.3f (where the camera sees it)\n", median, p95, top);
+    printf("    fall back order 1 in %.2f %%, order 2 in %.2f %% of what is seen\n", back1, back2);
+    if (p95 > SLOPE_BOUND) {
+        printf("    warning: slopes above %.2f are more than the orders 0, 1 and 2 can bear: expect 1 %% and more of a\n"
+               "             shadow's pixels wrong; march:4 bears them\n",
+               SLOPE_BOUND);
+        warnings++;
+    }
+    if (back1 > 1 || back2 > 1) {
+        printf("    warning: order %s falls back often: the view is flat against the bumps; order 0 or march:4 serve\n",
+               back1 > 1 && back2 > 1 ? "1 and order 2" : back1 > 1 ? "1" : "2");
+        warnings++;
+    }
+    return warnings;
+}
+
+static void print_scene(const scene *s, const seen *all)
+{
+    char name[METHOD_NAME_SIZE];
+    int warnings = 0;
+    method_name(s->shadow, name);
+    printf("%s: %d x %d pixels, %d x %d samples each, shadow %s%s\n", s->path, s->width, s->height, s->aa, s->aa, name,
+           s->guard ? "" : ", no guard");
+    for (int i = 0; i < s->lights; i++)
+        printf("light %s at %g, %g, %g\n", s->light[i].name, s->light[i].at.x, s->light[i].at.y, s->light[i].at.z);
+    for (int i = 0; i < s->objects; i++) {
+        const object *o = &s->object[i];
+        printf("object %s: %s, material %s%s%s\n", o->name, o->shape->is->kind, s->material[o->material].name,
+               o->bump ? ", bump by " : "", o->bump ? o->bump->is->kind : "");
+        if (o->bump)
+            warnings += print_bump(o, &all[i]);
+    }
+    printf("%d warning%s\n", warnings, warnings == 1 ? "" : "s");
+}
+
+static int check(const scene *s)
+{
+    workspace *v = workspace_new(s->lights);
+    seen *all = calloc((size_t)(s->objects ? s->objects : 1), sizeof *all);
+    bool good = v && all;
+    for (int i = 0; good && i < s->objects; i++)
+        if (s->object[i].bump)
+            good = (all[i].slope = malloc(sizeof(float) * SAMPLES * SAMPLES)) != NULL;
+    if (good) {
+        look(s, 1, v, all);
+        look(s, 2, v, all);
+        print_scene(s, all);
+    } else
+        usage_error("out of memory");
+    for (int i = 0; all && i < s->objects; i++)
+        free(all[i].slope);
+    free(all);
+    workspace_free(v);
+    return good ? 0 : EXIT_OUTPUT;
+}
+
+int command_check(const arguments *a)
+{
+    scene *s = command_scene(a);
+    if (!s)
+        return EXIT_INPUT;
+    int status = check(s);
+    scene_free(s);
+    return status;
+}

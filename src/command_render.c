@@ -1,0 +1,147 @@
+#include "command.h"
+#include "render.h"
+#include "version.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char *base_name(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
+/* The scene's file name with .png, for the current folder. */
+static char *default_output(const char *path)
+{
+    const char *base = base_name(path), *dot = strrchr(base, '.');
+    int n = dot && dot > base ? (int)(dot - base) : (int)strlen(base);
+    char *name = malloc((size_t)n + 5);
+    if (name)
+        snprintf(name, (size_t)n + 5, "%.*s.png", n, base);
+    return name;
+}
+
+/* The changes made to the scene, a line each. */
+static char *joined_sets(const arguments *a)
+{
+    size_t size = 1;
+    for (int k = 0; k < a->sets; k++)
+        size += strlen(a->set[k]) + 1;
+    char *text = calloc(1, size);
+    for (int k = 0; text && k < a->sets; k++)
+        strcat(strcat(text, k ? "\n" : ""), a->set[k]);
+    return text;
+}
+
+/* All that the picture is made from, but for the maps: so that it can be made again from itself. No clock, no path, no
+ * number of threads: the same picture has the same bytes. */
+static bool write_output(const char *path, const scene *s, const arguments *a, const film *f, const char *sets, errors *e)
+{
+    char crop[64], shadow[METHOD_NAME_SIZE];
+    const int width = f->part.x1 - f->part.x0, height = f->part.y1 - f->part.y0;
+    method_name(s->shadow, shadow);
+    snprintf(crop, sizeof crop, "%d,%d,%d,%d", f->part.x0, f->part.y0, f->part.x1, f->part.y1);
+    const image_text text[] = {
+        {"Software", "kage " KAGE_VERSION " " REAL_NAME}, {"kage:file", base_name(s->path)}, {"kage:scene", s->source},
+        {"kage:set", sets},     {"kage:crop", crop}, {"kage:shadow", shadow}, {"kage:guard", s->guard ? "yes" : "no"},
+    };
+    const int texts = sizeof text / sizeof *text;
+    if (strcmp(path + strlen(path) - 4, ".png") == 0)
+        return image_write_png(path, width, height, a->bits, f->plane[FILM_R], f->plane[FILM_G], f->plane[FILM_B], texts,
+                               text, e);
+    image_channel *channel = malloc((size_t)f->planes * sizeof *channel);
+    if (!channel)
+        return errors_add(e, "%s: out of memory", path);
+    for (int k = 0; k < f->planes; k++)
+        channel[k] = (image_channel){f->name[k], f->plane[k]};
+    bool good = image_write_exr(path, width, height, f->planes, channel, texts, text, e);
+    free(channel);
+    return good;
+}
+
+static void print_stats(const stats *t, const scene *s, double seconds, double output, int count)
+{
+    static const char *const codes[ORDER_CODES] = {"none", "0", "1", "2", "2+", "iter", "march"};
+    double sum = 0, n = count;
+    for (int k = 0; k < STAGES; k++)
+        sum += t->seconds[k];
+    printf("render    %9.2f ms  %8.2f ns a sample  %7.2f Mrays/s (camera and shadow)\n", seconds * 1e3, seconds * 1e9 / n,
+           (double)(t->rays + t->shadow_rays) / seconds / 1e6);
+    for (int k = 0; k < STAGES; k++) /* timed in some tiles; here as its share of the whole */
+        printf("  %-8s%9.2f ms  %8.2f ns a sample  %5.1f %%\n", stage_names[k], seconds * 1e3 * t->seconds[k] / sum,
+               seconds * 1e9 / n * t->seconds[k] / sum, 100 * t->seconds[k] / sum);
+    printf("output    %9.2f ms\n", output * 1e3);
+    printf("camera rays %ld, shadow rays %ld, height look-ups %ld\n", t->rays, t->shadow_rays, t->heights);
+    char name[METHOD_NAME_SIZE];
+    method_name(s->shadow, name);
+    printf("bumped samples %ld by method %s", t->bumped, name);
+    if (t->bumped) {
+        printf(", fell back %ld (%.3f %%); by order", t->fell_back, 100.0 * (double)t->fell_back / (double)t->bumped);
+        for (int k = 0; k < ORDER_CODES; k++)
+            if (t->orders[k])
+                printf("  %s: %ld", codes[k], t->orders[k]);
+    }
+    printf("\n");
+}
+
+static int render_outputs(const scene *s, const arguments *a, const char *const *output, int outputs)
+{
+    errors e = {0};
+    window part = a->crop.x1 ? a->crop : (window){0, 0, s->width, s->height};
+    if (part.x1 > s->width || part.y1 > s->height) {
+        usage_error("--crop %d,%d,%d,%d: the picture is %d x %d pixels", part.x0, part.y0, part.x1, part.y1, s->width,
+                    s->height);
+        return EXIT_INPUT;
+    }
+    bool layers = false;
+    for (int k = 0; k < outputs; k++)
+        layers |= strcmp(output[k] + strlen(output[k]) - 4, ".exr") == 0;
+    film *f = film_new(s, part, layers, &e);
+    if (!f)
+        return command_fail(&e, EXIT_OUTPUT);
+
+    stats t;
+    progress p;
+    tracer k = {s, s->shadow, s->guard, layers};
+    const int count = (part.x1 - part.x0) * (part.y1 - part.y0) * s->aa * s->aa;
+    progress_start(&p, a->quiet, base_name(s->path), (long)(part.x1 - part.x0) * (part.y1 - part.y0));
+    render_options o = {s->aa, a->threads, a->stats, p.on ? progress_show : NULL, &p};
+    double start = stats_clock();
+    bool good = render(&k, &o, f, &t, &e);
+    double rendered = stats_clock();
+    progress_end(&p);
+    char *sets = joined_sets(a);
+    for (int i = 0; good && i < outputs; i++)
+        good = sets ? write_output(output[i], s, a, f, sets, &e) : errors_add(&e, "out of memory");
+    double written = stats_clock();
+    free(sets);
+    film_free(f);
+    if (!good)
+        return command_fail(&e, EXIT_OUTPUT);
+    if (p.on) {
+        fprintf(stderr, "%s: %.2f s", base_name(s->path), rendered - start);
+        for (int i = 0; i < outputs; i++)
+            fprintf(stderr, "%s %s", i ? "," : ";", output[i]);
+        fprintf(stderr, "\n");
+    }
+    if (a->stats)
+        print_stats(&t, s, rendered - start, written - rendered, count);
+    return 0;
+}
+
+int command_render(const arguments *a)
+{
+    scene *s = command_scene(a);
+    if (!s)
+        return EXIT_INPUT;
+    char *fallback = a->outputs ? NULL : default_output(s->path);
+    const char *one[] = {fallback};
+    int status = EXIT_OUTPUT;
+    if (a->outputs || fallback)
+        status = render_outputs(s, a, a->outputs ? a->output : one, a->outputs ? a->outputs : 1);
+    free(fallback);
+    scene_free(s);
+    return status;
+}

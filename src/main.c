@@ -1,0 +1,95 @@
+#include "command.h"
+#include "version.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "real.h"
+
+static const char help[] =
+    "kage renders shadows of other objects on bump-mapped surfaces (Sumi and Noma's method).\n"
+    "\n"
+    "  kage render SCENE [options]      make the picture of a scene\n"
+    "  kage check SCENE [options]       say what is in a scene, and how steep its bumps are\n"
+    "  kage pixel SCENE X,Y [options]   every value on the way of one pixel, method by method\n"
+    "  kage methods                     list the methods\n"
+    "  kage --help, kage --version\n"
+    "\n"
+    "Options of all commands:\n"
+    "  --set PATH=VALUE     change a value of the scene: --set objects.ground.bump.scale=0.1\n"
+    "  --size WxH           size of the picture in pixels\n"
+    "\n"
+    "Options of render:\n"
+    "  -o FILE              where to: .png (sRGB) or .exr (linear, with all layers); may be given again.\n"
+    "                       Without it: the scene's name with .png, here\n"
+    "  --shadow METHOD      where shadow rays start: none, 0, 1, 2, 2+, iter:K, march:N\n"
+    "  --no-guard           the paper's bare formulas, also where they leave the slab between Pmin and Pmax\n"
+    "  --aa N               N x N samples a pixel\n"
+    "  --crop X0,Y0,X1,Y1   only this part of the picture, in pixels from the top left, X1 and Y1 exclusive\n"
+    "  --bits 8|16          of a PNG (8)\n"
+    "  --threads N          (as many as there are processors)\n"
+    "  --stats              time and count each stage\n"
+    "  --quiet              no progress bar, no closing line\n"
+    "\n"
+    "Scene files are described in docs/scene.md, the method in docs/method.md.\n"
+    "Exit status: 0; 1 where a picture can't be written; 2 for bad input.\n";
+
+int command_fail(errors *e, int status)
+{
+    if (e->text)
+        fputs(e->text, stderr);
+    else
+        fputs("kage: out of memory\n", stderr);
+    if (status == EXIT_INPUT && e->count > 1)
+        fprintf(stderr, "%d errors\n", e->count);
+    errors_free(e);
+    return status;
+}
+
+scene *command_scene(const arguments *a)
+{
+    errors e = {0};
+    scene *s = scene_read(a->operand[0], a->sets, a->set, &e);
+    if (!s)
+        command_fail(&e, EXIT_INPUT);
+    return s;
+}
+
+static int methods(void)
+{
+    for (int k = 0; k < method_help_count; k++)
+        printf("%-8s  %s\n", method_helps[k].name, method_helps[k].text);
+    return 0;
+}
+
+int main(int argc, char **argv)
+{
+    static const struct {
+        const char *name;
+        int (*run)(const arguments *a);
+    } commands[] = {{"render", command_render}, {"check", command_check}, {"pixel", command_pixel}};
+    if (argc < 2) {
+        fputs(help, stderr);
+        return EXIT_INPUT;
+    }
+    for (int k = 1; k < argc; k++)
+        if (strcmp(argv[k], "--help") == 0 || strcmp(argv[k], "-h") == 0) {
+            fputs(help, stdout);
+            return 0;
+        }
+    if (strcmp(argv[1], "--version") == 0) {
+        printf("kage %s (%s)\n", KAGE_VERSION, REAL_NAME);
+        return 0;
+    }
+    if (strcmp(argv[1], "methods") == 0)
+        return methods();
+    for (size_t k = 0; k < sizeof commands / sizeof *commands; k++)
+        if (strcmp(argv[1], commands[k].name) == 0) {
+            arguments a;
+            int status = arguments_read(&a, argc, argv) ? commands[k].run(&a) : EXIT_INPUT;
+            arguments_free(&a);
+            return status;
+        }
+    usage_error("no command '%s', expected render, check, pixel or methods; see kage --help", argv[1]);
+    return EXIT_INPUT;
+}
