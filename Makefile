@@ -60,7 +60,7 @@ $(BUILD)/%.o: src/%.c $(BUILD)/flags
 	$(CC) $(CFLAGS) -c -o $@ $<
 
 $(BUILD)/%.o: tests/%.c $(BUILD)/flags
-	$(CC) $(CFLAGS) -Isrc -DKAGE_TESTS_DIR='"tests"' -c -o $@ $<
+	$(CC) $(CFLAGS) -Isrc -Itests -DKAGE_TESTS_DIR='"tests"' -c -o $@ $<
 
 $(BUILD)/test_%: $(BUILD)/test_%.o $(LIBRARY:%=$(BUILD)/%.o)
 	$(CC) $(LDFLAGS) -o $@ $^ -lcmocka $(LIBS)

@@ -176,7 +176,7 @@ typedef struct bs_shift {
 /* The shift by order 0, 1, 2 or 3 (2+). `guard` != 0 (ours, the default of kage): a result outside the slab, or with
  * a ray that does not go down through the tangent plane (s.n' >= 0 from outside, that is B <= 0), falls back one order,
  * 3 and 2 to 1, 1 to 0; order 0 is always inside. Without the guard the formulas stand bare; only where order 2 has
- * no real root does it fall back then. `curvature` is used by order 3 alone. Call it with a constant order and guard:
+ * no real root near that of order 1 (B <= 0, B^2 < 4 A P) does it fall back to order 1 then. `curvature` is used by order 3 alone. Call it with a constant order and guard:
  * what is not needed is compiled away. */
 static inline bs_shift bs_shift_of(int order, int guard, bs_view v, bs_real curvature, bs_bump p, bs_slab slab)
 {
@@ -193,8 +193,8 @@ static inline bs_shift bs_shift_of(int order, int guard, bs_view v, bs_real curv
     if (order >= 2) {
         bs_real A = order == 3 ? bs_quadratic_plus(v, p, curvature) : bs_quadratic(v, p);
         bs_real tau = bs_tau2(v, A, B, p.P);
-        /* tau == tau: there is a root */
-        int good = guard ? (down > 0) & (tau >= slab.front) & (tau <= slab.back) : tau == tau;
+        /* tau == tau: there is a root; down > 0: it is the one that order 1 goes over into */
+        int good = (down > 0) & (guard ? (tau >= slab.front) & (tau <= slab.back) : tau == tau);
         s.tau = good ? tau : s.tau;
         s.order = good ? order : s.order;
     }

@@ -1,0 +1,3 @@
+#define BS_DOUBLE
+#define BUMPSHADOW_NAME "bumpshadow.h in double"
+#include "bumpshadow_cases.h"

@@ -1,0 +1,2 @@
+#define BUMPSHADOW_NAME "bumpshadow.h in float"
+#include "bumpshadow_cases.h"
