@@ -212,7 +212,8 @@ static inline bs_shift bs_shift_of(int order, int guard, bs_view v, bs_real curv
  *         bs_real tau = bs_march_tau(slab, i, N);
  *         m = bs_march_step(m, tau, bs_gap(v, curvature, tau, height(u0 + v.a * tau, w0 + v.b * tau)), v);
  *     }
- *     // m.found: m.tau is the shift. Otherwise (a slab without end, or more bent than its bounds) take order 0.
+ *     // m.found: m.tau is the shift. Otherwise take order 0: the slab has no end, or the smooth surface bends
+ *     // away from it, or P is flat at Pmin, and there order 0 is exact.
  */
 typedef struct bs_march {
     bs_real tau, gap; /* the last place above the surface; once found, the shift */

@@ -1,0 +1,270 @@
+/* Heights: maps as in section 4.1 of the paper (central differences at the samples, bilinear between), how they lie on (u,w),
+ * and functions with their bounds.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+
+#include <cmocka.h>
+
+#include "perturb.h"
+
+#ifdef KAGE_DOUBLE
+#define TOLERANCE 1e-12
+#else
+#define TOLERANCE 2e-5
+#endif
+
+enum { W = 7, H = 5 };
+
+static float samples[W * H];
+
+static image *data(void)
+{
+    static image m = {W, H, samples};
+    uint32_t state = 12345;
+    for (int i = 0; i < W * H; i++) {
+        state = state * 1664525u + 1013904223u;
+        samples[i] = (float)(state >> 8) / 16777216.0f;
+    }
+    return &m;
+}
+
+/* All six values at one place. */
+static void look(const perturb *p, double u, double w, double out[6])
+{
+    static heights h;
+    real U[1] = {(real)u}, V[1] = {(real)w};
+    p->is->eval(p, 1, U, V, 2, &h);
+    const real v[6] = {h.P[0], h.Pu[0], h.Pw[0], h.Puu[0], h.Puw[0], h.Pww[0]};
+    for (int k = 0; k < 6; k++)
+        out[k] = (double)v[k];
+}
+
+static void near(double got, double want, double size)
+{
+    if (!(fabs(got - want) <= TOLERANCE * size)) {
+        print_error("%.12g, expected %.12g within %g\n", got, want, TOLERANCE * size);
+        fail();
+    }
+}
+
+/* An independent reading of the paper: the height of sample (i,j) under a wrap, and the differences there. */
+static int index_of(int i, int n, map_wrap wrap, bool corners)
+{
+    if (wrap == MAP_CLAMP)
+        return i < 0 ? 0 : i >= n ? n - 1 : i;
+    if (wrap == MAP_REPEAT) {
+        int period = corners ? n - 1 : n;
+        while (i < 0)
+            i += period;
+        return i % period;
+    }
+    for (;;) { /* reflect until it is inside */
+        if (i < 0)
+            i = corners ? -i : -1 - i;
+        else if (i >= n)
+            i = corners ? 2 * (n - 1) - i : 2 * n - 1 - i;
+        else
+            return i;
+    }
+}
+
+static double height(const map_layout *l, int i, int j)
+{
+    double v = (double)samples[index_of(j, H, l->wrap, l->corners) * W + index_of(i, W, l->wrap, l->corners)];
+    return l->scale * (v - l->zero);
+}
+
+static void differences(const map_layout *l, int i, int j, double d[6])
+{
+    double du = l->size[0] / (W - l->corners), dw = l->size[1] / (H - l->corners);
+    d[0] = height(l, i, j);
+    d[1] = (height(l, i + 1, j) - height(l, i - 1, j)) / (2 * du);
+    d[2] = (height(l, i, j + 1) - height(l, i, j - 1)) / (2 * dw);
+    d[3] = (height(l, i + 1, j) - 2 * d[0] + height(l, i - 1, j)) / (du * du);
+    d[4] = (height(l, i + 1, j + 1) - height(l, i + 1, j - 1) - height(l, i - 1, j + 1) + height(l, i - 1, j - 1)) /
+           (4 * du * dw);
+    d[5] = (height(l, i, j + 1) - 2 * d[0] + height(l, i, j - 1)) / (dw * dw);
+}
+
+static const map_layout layouts[] = {
+    {{2, 3}, {0, 0}, MAP_REPEAT, false, 0.1, 0.5},      {{2, 3}, {0.3, -0.2}, MAP_CLAMP, false, 0.1, 0.5},
+    {{0.7, 0.9}, {-1, 2}, MAP_MIRROR, false, -0.3, 0},  {{2, 3}, {0.5, 0.25}, MAP_REPEAT, true, 0.1, 0.25},
+    {{2, 3}, {0, 0}, MAP_CLAMP, true, 0.1, 0.5},        {{5, 1}, {0, 0}, MAP_MIRROR, true, 2, 1},
+};
+enum { LAYOUTS = sizeof layouts / sizeof *layouts };
+
+/* The scale of each value: the height's, over the sample distance to the power of the derivative. */
+static void sizes(const map_layout *l, double s[6])
+{
+    double du = l->size[0] / W, dw = l->size[1] / H, k = fabs(l->scale);
+    const double v[6] = {k, k / du, k / dw, k / du / du, k / du / dw, k / dw / dw};
+    for (int i = 0; i < 6; i++)
+        s[i] = 4 * v[i];
+}
+
+static void at_the_samples(void **state)
+{
+    (void)state;
+    for (int n = 0; n < LAYOUTS; n++) {
+        const map_layout *l = &layouts[n];
+        perturb *p = perturb_map(data(), l);
+        double got[6], want[6], size[6];
+        sizes(l, size);
+        for (int j = -2; j < H + 2; j++)
+            for (int i = -2; i < W + 2; i++) {
+                if (l->wrap == MAP_CLAMP && (i < 0 || j < 0 || i >= W || j >= H))
+                    continue;
+                double half = l->corners ? 0 : 0.5;
+                look(p, l->offset[0] + (i + half) * l->size[0] / (W - l->corners),
+                     l->offset[1] + (j + half) * l->size[1] / (H - l->corners), got);
+                differences(l, i, j, want);
+                for (int k = 0; k < 6; k++)
+                    near(got[k], want[k], size[k] * 8); /* the place itself is rounded: slopes of the interpolation */
+            }
+        perturb_free(p);
+    }
+}
+
+static void bilinear_between(void **state)
+{
+    (void)state;
+    for (int n = 0; n < LAYOUTS; n++) {
+        const map_layout *l = &layouts[n];
+        perturb *p = perturb_map(data(), l);
+        double got[6], c[4][6], size[6];
+        sizes(l, size);
+        for (int k = 0; k < 500; k++) {
+            /* a place by cell and fraction */
+            int i = k % (W - 1), j = k / 7 % (H - 1);
+            double a = (k * 37 % 100 + 0.5) / 100, b = (k * 61 % 100 + 0.5) / 100, half = l->corners ? 0 : 0.5;
+            look(p, l->offset[0] + (i + a + half) * l->size[0] / (W - l->corners),
+                 l->offset[1] + (j + b + half) * l->size[1] / (H - l->corners), got);
+            for (int m = 0; m < 4; m++)
+                differences(l, i + m % 2, j + m / 2, c[m]);
+            for (int m = 0; m < 6; m++)
+                near(got[m], (c[0][m] * (1 - a) + c[1][m] * a) * (1 - b) + (c[2][m] * (1 - a) + c[3][m] * a) * b, size[m] * 8);
+        }
+        perturb_free(p);
+    }
+}
+
+/* Far out, at NaN and at infinity something is looked up, within the map's bounds. */
+static void anywhere(void **state)
+{
+    (void)state;
+    const double far[] = {1e4, -1e4, 1e9, -1e9, 1e30, -1e30, (double)INFINITY, (double)NAN};
+    for (int n = 0; n < LAYOUTS; n++) {
+        perturb *p = perturb_map(data(), &layouts[n]);
+        for (size_t i = 0; i < 8; i++)
+            for (size_t j = 0; j < 8; j++) {
+                double v[6];
+                look(p, far[i], far[j], v);
+                assert_true(v[0] >= (double)p->Pmin - 1e-6 && v[0] <= (double)p->Pmax + 1e-6);
+            }
+        perturb_free(p);
+    }
+}
+
+static void map_bounds(void **state)
+{
+    (void)state;
+    for (int n = 0; n < LAYOUTS; n++) {
+        const map_layout *l = &layouts[n];
+        perturb *p = perturb_map(data(), l);
+        double lo = HUGE_VAL, hi = -HUGE_VAL;
+        for (int i = 0; i < W * H; i++) {
+            int column = i % W, row = i / W;
+            if (l->corners && l->wrap == MAP_REPEAT && (column == W - 1 || row == H - 1))
+                continue; /* stands for the first one */
+            double z = l->scale * ((double)samples[i] - l->zero);
+            lo = fmin(lo, z);
+            hi = fmax(hi, z);
+        }
+        near((double)p->Pmin, lo, 1);
+        near((double)p->Pmax, hi, 1);
+        perturb_free(p);
+    }
+}
+
+/* Lower orders give the same bytes, and leave the rest alone. */
+static void orders(void **state)
+{
+    (void)state;
+    static heights all, some;
+    real u[LANES], w[LANES];
+    const double extent[2] = {-HUGE_VAL, HUGE_VAL};
+    expr_error e;
+    perturb *ps[2] = {perturb_map(data(), &layouts[0]),
+                      perturb_function(expr_parse("sin(3*u)*cos(w) + u*w", &e), -0.3, extent, extent)};
+    for (int i = 0; i < LANES; i++) {
+        u[i] = (real)(i * 0.037 - 3);
+        w[i] = (real)(i * 0.021 - 1);
+    }
+    for (int k = 0; k < 2; k++) {
+        ps[k]->is->eval(ps[k], LANES, u, w, 2, &all);
+        for (int order = 0; order < 3; order++) {
+            for (int i = 0; i < LANES; i++)
+                some.Pu[i] = some.Pw[i] = some.Puu[i] = some.Puw[i] = some.Pww[i] = 77;
+            ps[k]->is->eval(ps[k], LANES, u, w, order, &some);
+            for (int i = 0; i < LANES; i++) {
+                assert_true(some.P[i] == all.P[i]);
+                assert_true(order >= 1 ? some.Pu[i] == all.Pu[i] && some.Pw[i] == all.Pw[i]
+                                       : some.Pu[i] == 77 && some.Pw[i] == 77);
+                assert_true(order == 2 ? some.Puu[i] == all.Puu[i] && some.Puw[i] == all.Puw[i] && some.Pww[i] == all.Pww[i]
+                                       : some.Puu[i] == 77 && some.Puw[i] == 77 && some.Pww[i] == 77);
+            }
+        }
+        perturb_free(ps[k]);
+    }
+}
+
+static void functions(void **state)
+{
+    (void)state;
+    const double u[2] = {-1, 1}, w[2] = {0, 2}, all[2] = {-HUGE_VAL, HUGE_VAL};
+    expr_error e;
+    perturb *p = perturb_function(expr_parse("u^2 - w*u", &e), -0.5, u, w);
+    double v[6];
+    look(p, 0.5, 0.25, v);
+    const double want[6] = {-0.5 * (0.25 - 0.125), -0.5 * (1 - 0.25), 0.25, -1, 0.5, 0};
+    for (int k = 0; k < 6; k++)
+        near(v[k], want[k], 1);
+    /* the true range of u^2 - w u here is -1 .. 3; times -0.5 */
+    assert_true((double)p->Pmin <= -1.5 && (double)p->Pmin > -1.6);
+    assert_true((double)p->Pmax >= 0.5 && (double)p->Pmax < 0.6);
+    perturb_free(p);
+
+    p = perturb_function(expr_parse("u", &e), 1, all, all);
+    assert_true(isinf(p->Pmin) && isinf(p->Pmax));
+    perturb_free(p);
+    p = perturb_function(expr_parse("u", &e), 0, all, all);
+    assert_true(p->Pmin == 0 && p->Pmax == 0);
+    perturb_free(p);
+    p = perturb_function(expr_parse("sin(u)*cos(w)", &e), 0.2, all, all);
+    near((double)p->Pmin, -0.2, 1);
+    near((double)p->Pmax, 0.2, 1);
+    perturb_free(p);
+}
+
+static void too_small(void **state)
+{
+    (void)state;
+    image one = {1, 5, samples}, two = {5, 1, samples};
+    assert_null(perturb_map(&one, &layouts[0]));
+    assert_null(perturb_map(&two, &layouts[0]));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(at_the_samples), cmocka_unit_test(bilinear_between), cmocka_unit_test(anywhere),
+        cmocka_unit_test(map_bounds),     cmocka_unit_test(orders),           cmocka_unit_test(functions),
+        cmocka_unit_test(too_small),
+    };
+    return cmocka_run_group_tests_name("heights", tests, NULL, NULL);
+}

@@ -1,0 +1,377 @@
+/* Surfaces: hits lie on Q(u,w), partials are the derivatives of Q, n points outward, shadows agree with hits, and rays without
+ * sense do no harm.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "lane.h"
+#include "surface.h"
+
+/* Digits of a place a few units from the origin. */
+#ifdef KAGE_DOUBLE
+#define EPS 2.2e-16
+#else
+#define EPS 1.2e-7
+#endif
+
+static double random_in(double lo, double hi)
+{
+    static uint64_t state = 88172645463325252u;
+    state ^= state << 13;
+    state ^= state >> 7;
+    state ^= state << 17;
+    return lo + (hi - lo) * (double)(state >> 11) / 9007199254740992.0;
+}
+
+enum { KINDS = 4 };
+
+static surface *make(int kind)
+{
+    switch (kind) {
+    case 0:
+        return plane_new((vec3){0.1, -0.3, 0.2}, (vec3){0.2, 0.1, 1.4}, (vec3){1.1, -0.2, 0.3}, false);
+    case 1:
+        return plane_new((vec3){-1, 0.1, -1}, (vec3){0.2, 0.1, 2.4}, (vec3){2.1, -0.2, 0.3}, true);
+    case 2:
+        return box_new((vec3){0.7, -0.8, 1.1}, (vec3){-0.9, 0.5, -0.6});
+    default:
+        return sphere_new((vec3){0.3, -0.2, 0.1}, 1.2);
+    }
+}
+
+/* A ray from about 4 units off towards the surface's middle. */
+static void random_ray(rays *x, int i)
+{
+    double a = random_in(0, 6.283), z = random_in(-1, 1), l = 4 * sqrt(1 - z * z), k = random_in(0.2, 3);
+    double r[3] = {l * cos(a), 4 * z, l * sin(a)}, to[3] = {random_in(-1, 1), random_in(-1, 1), random_in(-1, 1)};
+    x->r.x[i] = (real)r[0], x->r.y[i] = (real)r[1], x->r.z[i] = (real)r[2];
+    x->s.x[i] = (real)(k * (to[0] - r[0])), x->s.y[i] = (real)(k * (to[1] - r[1])), x->s.z[i] = (real)(k * (to[2] - r[2]));
+}
+
+static void no_hits(hits *h, int n)
+{
+    for (int i = 0; i < n; i++) {
+        h->t[i] = REAL_FAR;
+        h->id[i] = -1;
+    }
+}
+
+static double distance(bs_vec3 a, bs_vec3 b)
+{
+    bs_vec3 d = {a.x - b.x, a.y - b.y, a.z - b.z};
+    return sqrt((double)bs_dot(d, d));
+}
+
+static void hits_are_on_the_surface(void **state)
+{
+    (void)state;
+    for (int kind = 0; kind < KINDS; kind++) {
+        surface *f = make(kind);
+        int met = 0;
+        for (int round = 0; round < 40; round++) {
+            static rays x;
+            static hits h;
+            static partials q;
+            int32_t part[LANES];
+            real u[LANES], w[LANES];
+            for (int i = 0; i < LANES; i++)
+                random_ray(&x, i);
+            no_hits(&h, LANES);
+            f->is->hit(f, LANES, &x, 3, &h);
+            f->is->locate(f, LANES, &x, h.t, part, u, w);
+            f->is->eval(f, LANES, part, u, w, 2, &q);
+            for (int i = 0; i < LANES; i++) {
+                if (h.id[i] < 0)
+                    continue;
+                met++;
+                assert_int_equal(h.id[i], 3);
+                assert_true(h.t[i] > 0 && h.t[i] < REAL_FAR);
+                double far = 1 + distance(lane_at(&x, i, 0), lane_at(&x, i, h.t[i]));
+                double off = distance(lane_get(&q.Q, i), lane_at(&x, i, h.t[i]));
+                if (!(off <= 24 * EPS * far)) {
+                    print_error("%s: Q(u,w) is %g off r + s t\n", f->is->kind, off);
+                    fail();
+                }
+                /* on boxes and spheres, seen from outside, the first hit's n faces the viewer */
+                bs_vec3 n = bs_normal(lane_get(&q.Qu, i), lane_get(&q.Qw, i));
+                if (kind >= 2)
+                    assert_true(bs_dot(n, lane_get(&x.s, i)) < R(1e-4));
+            }
+        }
+        assert_true(met > 500);
+        surface_free(f);
+    }
+}
+
+static void partials_are_derivatives(void **state)
+{
+    (void)state;
+    const double h = sqrt(EPS) * 0.3; /* balances the curve's error, h^2, and the rounding, EPS/h */
+    for (int kind = 0; kind < KINDS; kind++) {
+        surface *f = make(kind);
+        for (int round = 0; round < 200; round++) {
+            static partials q[5];
+            real u[1], w[1];
+            int32_t part[1] = {round % 6};
+            double u0 = random_in(0.3, 0.7), w0 = random_in(0.4, 0.6), du[5] = {0, h, -h, 0, 0}, dw[5] = {0, 0, 0, h, -h};
+            double du_[5], dw_[5];
+            if (kind == 3)
+                w0 = random_in(0.2, 2.9), u0 = random_in(-3, 3);
+            for (int k = 0; k < 5; k++) {
+                u[0] = (real)(u0 + du[k]);
+                w[0] = (real)(w0 + dw[k]);
+                du_[k] = (double)u[0];
+                dw_[k] = (double)w[0];
+                f->is->eval(f, 1, part, u, w, 2, &q[k]);
+            }
+            const struct {
+                vec3s *a, *b, *want;
+                double step;
+            } tests[] = {
+                {&q[1].Q, &q[2].Q, &q[0].Qu, du_[1] - du_[2]},    {&q[3].Q, &q[4].Q, &q[0].Qw, dw_[3] - dw_[4]},
+                {&q[1].Qu, &q[2].Qu, &q[0].Quu, du_[1] - du_[2]}, {&q[3].Qu, &q[4].Qu, &q[0].Quw, dw_[3] - dw_[4]},
+                {&q[1].Qw, &q[2].Qw, &q[0].Quw, du_[1] - du_[2]}, {&q[3].Qw, &q[4].Qw, &q[0].Qww, dw_[3] - dw_[4]},
+            };
+            for (int k = 0; k < 6; k++) {
+                bs_vec3 a = lane_get(tests[k].a, 0), b = lane_get(tests[k].b, 0), c = lane_get(tests[k].want, 0);
+                bs_vec3 d = {(real)((double)(a.x - b.x) / tests[k].step), (real)((double)(a.y - b.y) / tests[k].step),
+                             (real)((double)(a.z - b.z) / tests[k].step)};
+                if (!(distance(d, c) < 20 * sqrt(EPS))) {
+                    print_error("%s: derivative %d is off by %g\n", f->is->kind, k, distance(d, c));
+                    fail();
+                }
+            }
+        }
+        surface_free(f);
+    }
+}
+
+/* Every face of the box has its own (u,w) over 0..1 and n outward; the six cover it. */
+static void box_faces(void **state)
+{
+    (void)state;
+    surface *f = make(2);
+    static partials q;
+    int32_t part[6] = {0, 1, 2, 3, 4, 5};
+    real u[6], w[6];
+    for (int i = 0; i < 6; i++)
+        u[i] = w[i] = R(0.5);
+    f->is->eval(f, 6, part, u, w, 1, &q);
+    const double middle[3] = {-0.1, -0.15, 0.25}, half[3] = {0.8, 0.65, 0.85};
+    for (int i = 0; i < 6; i++) {
+        bs_vec3 Q = lane_get(&q.Q, i), n = bs_normal(lane_get(&q.Qu, i), lane_get(&q.Qw, i));
+        double want[3] = {middle[0], middle[1], middle[2]}, out[3] = {0, 0, 0};
+        want[i / 2] += (i % 2 ? 1 : -1) * half[i / 2];
+        out[i / 2] = i % 2 ? 1 : -1;
+        bs_vec3 place = {(real)want[0], (real)want[1], (real)want[2]}, to = {(real)out[0], (real)out[1], (real)out[2]};
+        assert_true(distance(Q, place) < 1e-6);
+        assert_true(distance(lane_unit(n), to) < 1e-6);
+    }
+    surface_free(f);
+}
+
+/* occlude says 0 just where a hit lies in (0,1). */
+static void shadows_agree_with_hits(void **state)
+{
+    (void)state;
+    for (int kind = 0; kind < KINDS; kind++) {
+        surface *f = make(kind);
+        int dark = 0;
+        for (int round = 0; round < 20; round++) {
+            static rays x;
+            static hits h;
+            real lit[LANES];
+            for (int i = 0; i < LANES; i++) {
+                random_ray(&x, i);
+                lit[i] = 1;
+            }
+            no_hits(&h, LANES);
+            f->is->hit(f, LANES, &x, 0, &h);
+            f->is->occlude(f, LANES, &x, lit);
+            for (int i = 0; i < LANES; i++) {
+                assert_true(lit[i] == (h.id[i] >= 0 && h.t[i] < 1 ? R(0) : R(1)));
+                dark += lit[i] == 0;
+            }
+            /* what is dark already stays so */
+            for (int i = 0; i < LANES; i++)
+                lit[i] = 0;
+            f->is->occlude(f, LANES, &x, lit);
+            for (int i = 0; i < LANES; i++)
+                assert_true(lit[i] == 0);
+        }
+        assert_true(dark > 100);
+        surface_free(f);
+    }
+}
+
+/* From the surface itself: rays outward are free, rays inward are blocked by the far side, however slanted, unless they end
+ * before it; with no epsilon that a grazing ray could fall under. */
+static void own_shadow(void **state)
+{
+    (void)state;
+    for (int kind = 2; kind < 4; kind++) {
+        surface *f = make(kind);
+        for (int round = 0; round < 40; round++) {
+            static rays x, out;
+            static hits h;
+            static partials q;
+            int32_t part[LANES];
+            real u[LANES], w[LANES], lit[LANES], cosine[LANES];
+            int n = 0;
+            for (int i = 0; i < LANES; i++)
+                random_ray(&x, i);
+            no_hits(&h, LANES);
+            f->is->hit(f, LANES, &x, 0, &h);
+            for (int i = 0; i < LANES; i++)
+                if (h.id[i] >= 0) {
+                    bs_vec3 r = lane_at(&x, i, 0), s = lane_get(&x.s, i);
+                    lane_set(&x.r, n, r);
+                    lane_set(&x.s, n, s);
+                    h.t[n++] = h.t[i];
+                }
+            f->is->locate(f, n, &x, h.t, part, u, w);
+            f->is->eval(f, n, part, u, w, 1, &q);
+            for (int i = 0; i < n; i++) {
+                bs_vec3 d = {(real)random_in(-9, 9), (real)random_in(-9, 9), (real)random_in(-9, 9)};
+                bs_vec3 nn = lane_unit(bs_normal(lane_get(&q.Qu, i), lane_get(&q.Qw, i)));
+                if (round % 4 == 0) { /* grazing: 1e-3 to either side of the tangent plane */
+                    real c = bs_dot(d, nn) - (i % 2 ? R(1e-3) : R(-1e-3));
+                    d.x -= c * nn.x, d.y -= c * nn.y, d.z -= c * nn.z;
+                }
+                cosine[i] = bs_dot(d, nn);
+                lane_set(&out.r, i, lane_at(&x, i, h.t[i]));
+                lane_set(&out.s, i, d);
+                lit[i] = 1;
+            }
+            f->is->occlude_own(f, n, &out, part, lit);
+            for (int i = 0; i < n; i++) {
+                double length = (double)real_sqrt(bs_dot(lane_get(&out.s, i), lane_get(&out.s, i)));
+                if (cosine[i] > R(1e-4))
+                    assert_true(lit[i] == 1);
+                else if ((double)cosine[i] < -1e-4 && length > 4) /* longer than the surface is wide */
+                    assert_true(lit[i] == 0);
+            }
+        }
+        surface_free(f);
+    }
+    surface *f = make(0);
+    assert_null(f->is->occlude_own);
+    surface_free(f);
+}
+
+/* Rays from within see the inner side. */
+static void from_inside(void **state)
+{
+    (void)state;
+    for (int kind = 2; kind < 4; kind++) {
+        surface *f = make(kind);
+        static rays x;
+        static hits h;
+        for (int i = 0; i < LANES; i++) {
+            random_ray(&x, i);
+            x.r.x[i] = R(0.1), x.r.y[i] = R(-0.1), x.r.z[i] = R(0.2);
+        }
+        no_hits(&h, LANES);
+        f->is->hit(f, LANES, &x, 0, &h);
+        for (int i = 0; i < LANES; i++)
+            assert_true(h.id[i] == 0 && h.t[i] > 0);
+        surface_free(f);
+    }
+}
+
+/* Rays along faces and edges, through corners and poles, of length 0, NaN or infinite: a hit or none, but never a t that is
+ * not finite and positive, nor a lane beside it that is touched. */
+static void odd_rays(void **state)
+{
+    (void)state;
+    const double nan = (double)NAN, inf = (double)INFINITY;
+    const double odd[][6] = {
+        {0, 0, 0, 0, 0, 0},         {nan, 0, 0, 1, 0, 0},        {0, 0, 0, nan, nan, nan},  {0, 5, 0, 0, -inf, 0},
+        {inf, 0, 0, -1, 0, 0},      {0.7, -0.8, -3, 0, 0, 1},    {0.7, 5, 1.1, 0, -1, 0},   {-0.9, -0.8, -0.6, 1, 1, 1},
+        {-3, 0.5, 0, 1, 0, 0},      {0.7, 0.5, 5, 0, 0, -1},     {0.3, 5, 0.1, 0, -1, 0},   {0.3, -5, 0.1, 0, 1, 0},
+        {1.5, -5, 0.1, 0, 1, 0},    {1.5, 0, 0.1, 0, 0, 1},      {0.1, -0.3, 0.2, 1, 0, 0}, {1e30, 1e30, 1e30, -1, -1, -1},
+        {0, 0, 0, 1e30, 1e30, 1e30}, {0, 0, 0, 1e-30, 1e-30, 0}, {0.1, 5, 0.2, 0, -1e-20, 0},
+    };
+    enum { ODD = sizeof odd / sizeof *odd };
+    for (int kind = 0; kind < KINDS; kind++) {
+        surface *f = make(kind);
+        static rays x;
+        static hits h;
+        static partials q;
+        int32_t part[LANES];
+        real u[LANES], w[LANES], lit[LANES];
+        for (int i = 0; i < ODD; i++) {
+            x.r.x[i] = (real)odd[i][0], x.r.y[i] = (real)odd[i][1], x.r.z[i] = (real)odd[i][2];
+            x.s.x[i] = (real)odd[i][3], x.s.y[i] = (real)odd[i][4], x.s.z[i] = (real)odd[i][5];
+            lit[i] = 1;
+        }
+        no_hits(&h, ODD + 1);
+        f->is->hit(f, ODD, &x, 0, &h);
+        f->is->occlude(f, ODD, &x, lit);
+        f->is->locate(f, ODD, &x, h.t, part, u, w);
+        f->is->eval(f, ODD, part, u, w, 2, &q);
+        assert_int_equal(h.id[ODD], -1);
+        for (int i = 0; i < ODD; i++) {
+            assert_true(h.id[i] == -1 || h.id[i] == 0);
+            assert_true(h.t[i] > 0 && h.t[i] <= REAL_FAR);
+            assert_true(lit[i] == 0 || lit[i] == 1);
+            assert_true(part[i] >= 0 && part[i] < 6);
+        }
+        surface_free(f);
+    }
+}
+
+/* A small ball far away keeps its round shadow: the discriminant does not cancel. */
+static void small_and_far(void **state)
+{
+    (void)state;
+    surface *f = sphere_new((vec3){1000, 0, 0}, 0.01);
+    static rays x;
+    static hits h;
+    const double at[5] = {0, 0.005, 0.0099, 0.0101, 0.02};
+    for (int i = 0; i < 5; i++) {
+        x.r.x[i] = 0, x.r.y[i] = (real)at[i], x.r.z[i] = 0;
+        x.s.x[i] = 1, x.s.y[i] = 0, x.s.z[i] = 0;
+    }
+    no_hits(&h, 5);
+    f->is->hit(f, 5, &x, 0, &h);
+    for (int i = 0; i < 5; i++)
+        assert_int_equal(h.id[i], i < 3 ? 0 : -1);
+    surface_free(f);
+}
+
+static void constructors_refuse_nonsense(void **state)
+{
+    (void)state;
+    const vec3 o = {0, 0, 0}, x = {1, 0, 0}, nan = {(double)NAN, 0, 0}, inf = {(double)INFINITY, 0, 0};
+    assert_null(plane_new(o, x, x, false));
+    assert_null(plane_new(o, x, o, false));
+    assert_null(plane_new(o, x, nan, true));
+    assert_null(plane_new(o, inf, (vec3){0, 1, 0}, true));
+    assert_null(box_new(o, (vec3){1, 0, 1}));
+    assert_null(sphere_new(o, 0));
+    assert_null(sphere_new(o, -1));
+    assert_null(sphere_new(o, (double)NAN));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(hits_are_on_the_surface),
+        cmocka_unit_test(partials_are_derivatives),
+        cmocka_unit_test(box_faces),
+        cmocka_unit_test(shadows_agree_with_hits),
+        cmocka_unit_test(own_shadow),
+        cmocka_unit_test(from_inside),
+        cmocka_unit_test(odd_rays),
+        cmocka_unit_test(small_and_far),
+        cmocka_unit_test(constructors_refuse_nonsense),
+    };
+    return cmocka_run_group_tests_name("surfaces", tests, NULL, NULL);
+}
