@@ -1,0 +1,232 @@
+/* Bounds by interval arithmetic: the program of expr_eval.c, run once on intervals instead of on points.
+ *
+ * An operation's bounds are computed in the usual rounding and then widened by more than its error, so
+ * they hold for the exact value and for the evaluated one. Zero stays zero, so that 0 <= u^2 is kept. A point
+ * at which some operand is NaN or a pole counts as outside the expression's domain.
+ */
+#include "expr_program.h"
+#include "kmath.h"
+
+typedef struct interval {
+    double lo, hi;
+} interval;
+
+static const interval everything = {-KM_INF, KM_INF};
+
+static double least(double x, double y) { return x < y ? x : y; }
+static double most(double x, double y) { return x > y ? x : y; }
+static interval hull(interval a, interval b) { return (interval){least(a.lo, b.lo), most(a.hi, b.hi)}; }
+static interval negative(interval a) { return (interval){-a.hi, -a.lo}; }
+static bool contains(interval a, double x) { return a.lo <= x && x <= a.hi; }
+
+/* The part of a in lo..hi; everything where there is none, for then no point is in the domain. */
+static interval clip(interval a, double lo, double hi)
+{
+    interval c = {most(a.lo, lo), least(a.hi, hi)};
+    return c.lo <= c.hi ? c : (interval){lo, hi};
+}
+
+/* The errors: half an ulp for one operation of the hardware; 2 ulp for those of kmath.h, 8 for a power that
+ * is multiplied out. */
+#define ONE_ROUNDING 2.3e-16
+#define SOME_ROUNDINGS 4e-15
+
+/* How much to move an end. 0 is exact; 1e-305 counts only where numbers are too small to round relatively. */
+static double margin(double x, double relative) { return x == 0 ? 0 : relative * fabs(x) + 1e-305; }
+
+static interval widen(interval a, double relative)
+{
+    return (interval){a.lo - margin(a.lo, relative), a.hi + margin(a.hi, relative)};
+}
+
+static interval magnitude(interval a)
+{
+    double l = fabs(a.lo), h = fabs(a.hi);
+    return (interval){contains(a, 0) ? 0 : least(l, h), most(l, h)};
+}
+
+/* x y at two ends: 0 times infinity is 0, since infinity only bounds what is finite; and a product
+ * that underflows is not 0. */
+static interval end_product(double x, double y)
+{
+    double p = x == 0 || y == 0 ? 0 : x * y;
+    const double tiny = 1e-305;
+    if (p == 0 && x != 0 && y != 0)
+        return (x > 0) == (y > 0) ? (interval){0, tiny} : (interval){-tiny, 0};
+    return (interval){p, p};
+}
+
+static interval multiply(interval a, interval b)
+{
+    interval z = hull(hull(end_product(a.lo, b.lo), end_product(a.lo, b.hi)),
+                      hull(end_product(a.hi, b.lo), end_product(a.hi, b.hi)));
+    return widen(z, ONE_ROUNDING);
+}
+
+static interval reciprocal(interval b)
+{
+    if ((b.lo < 0 && b.hi > 0) || (b.lo == 0 && b.hi == 0))
+        return everything;
+    interval z = {b.hi == 0 ? -KM_INF : 1 / b.hi, b.lo == 0 ? KM_INF : 1 / b.lo};
+    return widen(z, ONE_ROUNDING);
+}
+
+/* Is there an integer in lo..hi, or so near that rounding decides? */
+static bool holds_integer(double lo, double hi) { return floor(hi + 1e-9) >= ceil(lo - 1e-9); }
+
+/* cos(x - 2 pi phase) for x in a, of which lo and hi are the values at the ends. */
+static interval wave(interval a, double phase, double lo, double hi)
+{
+    const double turn = 6.28318530717958647693, reliable = 1e5;
+    if (!(a.lo > -reliable && a.hi < reliable && a.hi - a.lo < turn))
+        return (interval){-1, 1};
+    double t0 = a.lo / turn - phase, t1 = a.hi / turn - phase;
+    interval z = widen((interval){least(lo, hi), most(lo, hi)}, SOME_ROUNDINGS);
+    return (interval){holds_integer(t0 - 0.5, t1 - 0.5) ? -1 : most(z.lo, -1),
+                      holds_integer(t0, t1) ? 1 : least(z.hi, 1)};
+}
+
+static interval tangent(interval a)
+{
+    const double half_turn = 3.14159265358979323846, reliable = 1e5;
+    if (!(a.lo > -reliable && a.hi < reliable) || holds_integer(a.lo / half_turn - 0.5, a.hi / half_turn - 0.5))
+        return everything;
+    return widen((interval){km_tan(a.lo), km_tan(a.hi)}, SOME_ROUNDINGS);
+}
+
+/* a^b for a >= 0, which is monotonic in a and in b: the extremes are at corners. */
+static interval positive_power(interval a, interval b)
+{
+    interval p = {km_pow(a.lo, b.lo), km_pow(a.lo, b.hi)}, q = {km_pow(a.hi, b.lo), km_pow(a.hi, b.hi)};
+    interval z = {least(least(p.lo, p.hi), least(q.lo, q.hi)), most(most(p.lo, p.hi), most(q.lo, q.hi))};
+    z = widen(z, SOME_ROUNDINGS);
+    return (interval){most(z.lo, 0), most(z.hi, 1e-305)}; /* which also holds what underflows */
+}
+
+static interval power(interval a, interval b)
+{
+    if (a.lo >= 0)
+        return positive_power(a, b);
+    if (b.lo < b.hi) { /* a negative base has powers at integers b only: |a|^b with either sign */
+        interval m = positive_power(magnitude(a), b);
+        return (interval){-m.hi, m.hi};
+    }
+    if (km_floor(b.lo) != b.lo)
+        return positive_power(clip(a, 0, KM_INF), b);
+    if (km_floor(0.5 * b.lo) == 0.5 * b.lo)
+        return positive_power(magnitude(a), b);
+    interval left = negative(positive_power(clip(negative(a), 0, KM_INF), b));
+    return a.hi < 0 ? left : hull(left, positive_power(clip(a, 0, KM_INF), b));
+}
+
+/* The angle of (x,y): on a rectangle apart from the cut along x <= 0, extreme at corners. */
+static interval angle(interval y, interval x)
+{
+    const double pi = 3.14159265358979323846;
+    if (x.lo <= 0 && contains(y, 0))
+        return widen((interval){-pi, pi}, ONE_ROUNDING);
+    double a = km_atan2(y.lo, x.lo), b = km_atan2(y.lo, x.hi), c = km_atan2(y.hi, x.lo), d = km_atan2(y.hi, x.hi);
+    return widen((interval){least(least(a, b), least(c, d)), most(most(a, b), most(c, d))}, SOME_ROUNDINGS);
+}
+
+/* At most as far from 0 as a and as b, on the side of a. */
+static interval modulo(interval a, interval b)
+{
+    interval m = magnitude(a), n = magnitude(b);
+    if (m.hi < n.lo)
+        return a;
+    return (interval){a.lo < 0 ? most(a.lo, -n.hi) : 0, a.hi > 0 ? least(a.hi, n.hi) : 0};
+}
+
+/* A function that grows with its argument, from its values at the ends. */
+static interval rising(double lo, double hi) { return widen((interval){lo, hi}, SOME_ROUNDINGS); }
+
+static interval range_of(const expr_code *p, const interval *slot)
+{
+    const interval k = {p->k, p->k};
+    const interval a = slot[p->arg[0]], b = slot[p->arg[1]], c = slot[p->arg[2]], d = slot[p->arg[3]];
+    interval z;
+    switch ((enum expr_op)p->op) {
+    case OP_CONST:
+        return k;
+    case OP_ADDK:
+        return widen((interval){a.lo + p->k, a.hi + p->k}, ONE_ROUNDING);
+    case OP_ADD:
+        return widen((interval){a.lo + b.lo, a.hi + b.hi}, ONE_ROUNDING);
+    case OP_SUB:
+        return widen((interval){a.lo - b.hi, a.hi - b.lo}, ONE_ROUNDING);
+    case OP_MULK:
+        return multiply(a, k);
+    case OP_MUL:
+        return p->arg[0] == p->arg[1] ? multiply(magnitude(a), magnitude(a)) : multiply(a, b);
+    case OP_DIV:
+        return multiply(a, reciprocal(b));
+    case OP_MOD:
+        return modulo(a, b);
+    case OP_POWI:
+        return power(a, k);
+    case OP_POW:
+        return power(a, b);
+    case OP_SIN:
+        return wave(a, 0.25, km_sin(a.lo), km_sin(a.hi));
+    case OP_COS:
+        return wave(a, 0, km_cos(a.lo), km_cos(a.hi));
+    case OP_TAN:
+        return tangent(a);
+    case OP_ASIN:
+        z = clip(a, -1, 1);
+        return rising(km_asin(z.lo), km_asin(z.hi));
+    case OP_ACOS:
+        z = clip(a, -1, 1);
+        return rising(km_acos(z.hi), km_acos(z.lo));
+    case OP_ATAN:
+        return rising(km_atan(a.lo), km_atan(a.hi));
+    case OP_ATAN2:
+        return angle(a, b);
+    case OP_SINH:
+        return rising(km_sinh(a.lo), km_sinh(a.hi));
+    case OP_COSH:
+        z = magnitude(a);
+        return rising(km_cosh(z.lo), km_cosh(z.hi));
+    case OP_TANH:
+        return rising(km_tanh(a.lo), km_tanh(a.hi));
+    case OP_EXP:
+        z = rising(km_exp(a.lo), km_exp(a.hi));
+        return (interval){most(z.lo, 0), most(z.hi, 1e-305)};
+    case OP_LOG:
+        z = clip(a, 0, KM_INF);
+        return rising(km_log(z.lo), km_log(z.hi));
+    case OP_SQRT:
+        z = clip(a, 0, KM_INF);
+        return rising(sqrt(z.lo), sqrt(z.hi));
+    case OP_ABS:
+        return magnitude(a);
+    case OP_FLOOR:
+        return (interval){floor(a.lo), floor(a.hi)};
+    case OP_NOISE:
+        return (interval){-1, 1};
+    case OP_MIN:
+        return (interval){least(a.lo, b.lo), least(a.hi, b.hi)};
+    case OP_MAX:
+        return (interval){most(a.lo, b.lo), most(a.hi, b.hi)};
+    case OP_SELECT:
+        return a.hi < 0 ? b : a.lo >= 0 ? c : hull(b, c);
+    case OP_SELECT4:
+        z = contains(a, 0) ? c : a.hi < 0 ? b : d;
+        z = a.lo < 0 ? hull(z, b) : z;
+        return a.hi > 0 ? hull(z, d) : z;
+    }
+    return everything;
+}
+
+void expr_range(const expr *e, double u0, double u1, double w0, double w1, double *lo, double *hi)
+{
+    interval slot[EXPR_SLOTS] = {{u0, u1}, {w0, w1}};
+    for (int i = 0; i < e->count; i++) {
+        interval z = range_of(&e->code[i], slot);
+        /* NaN: the ends are infinities that cancel, or the operation is defined nowhere. */
+        slot[e->code[i].z] = (interval){z.lo == z.lo ? z.lo : -KM_INF, z.hi == z.hi ? z.hi : KM_INF};
+    }
+    *lo = slot[e->result].lo;
+    *hi = slot[e->result].hi;
+}
