@@ -27,7 +27,8 @@ typedef float real;
 /* No real number of the scene: the t of a ray that has met nothing. */
 #define REAL_FAR ((real)1e30)
 
-/* Put before the definition of a stage, a function that is one plain loop over lanes: it is compiled
+/* Put before the definition of a stage, a static function that is one plain loop over lanes (static, as clang 14 exports
+ * clones under another name): it is compiled
  * once for any x86-64 and once for AVX2, and the loader takes the one that fits the processor. Both give
  * the same bytes, because nothing is contracted (-ffp-contract=off) and every operation used is exact
  * by IEEE 754 (+ - * / sqrt, comparisons, conversions); no stage calls libm for anything else.

@@ -3,14 +3,10 @@
 #include "kmath.h"
 #include "lane.h"
 
-STAGE void shade_ambient(group *restrict g, const material *m)
+void shade_ambient(group *g, const material *m)
 {
-    real r = (real)(m->ambient * m->color.x), gr = (real)(m->ambient * m->color.y), b = (real)(m->ambient * m->color.z);
-    for (int i = 0; i < g->n; i++) {
-        g->rgb.x[i] = r;
-        g->rgb.y[i] = gr;
-        g->rgb.z[i] = b;
-    }
+    vec3s_fill(&g->rgb, g->n, (real)(m->ambient * m->color.x), (real)(m->ambient * m->color.y),
+               (real)(m->ambient * m->color.z));
 }
 
 /* The place of a light against a lane: L, the unit vector to it, and n' on the viewer's side. Returns g->lit, or 0 where

@@ -2,18 +2,17 @@
 
 #include <string.h>
 
-STAGE void wave_start(int n, hits *h)
-{
-    for (int i = 0; i < n; i++) {
-        h->t[i] = REAL_FAR;
-        h->id[i] = -1;
-    }
-}
-
 STAGE static void fill(int n, real *v, real x)
 {
     for (int i = 0; i < n; i++)
         v[i] = x;
+}
+
+void wave_start(int n, hits *h)
+{
+    fill(n, h->t, REAL_FAR);
+    for (int i = 0; i < n; i++)
+        h->id[i] = -1;
 }
 
 void wave_background(int n, vec3 color, int lights, workspace *v)
