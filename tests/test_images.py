@@ -1,0 +1,150 @@
+"""Pictures as a whole: what the method must give exactly, and the same bytes on every processor.
+
+The unit tests (tests/test_shift.c and its neighbours) look at the formulas; here the whole way from the scene file to the
+layers of the EXR is looked at.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import platform
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import OpenEXR
+import pytest
+
+TOP = Path(__file__).resolve().parent.parent
+KAGE = Path(os.environ.get("KAGE", TOP / "build" / "float" / "kage"))
+
+SCENE = """
+camera: {{from: [0, 3.9, -5.2], at: [0.25, 0.1, 0.05], fov: 36}}
+image: {{size: [320, 240]}}
+lights:
+  lamp: {{at: [-4.5, 5.2, -2.2]}}
+  sun: {{at: [3, 9, -4], color: [0.5, 0.5, 0.6]}}
+materials:
+  clay: {{color: [0.8, 0.7, 0.6]}}
+objects:
+  ground: {{{ground}, material: clay{bump}}}
+  cube:
+    box: {{from: [-0.6, 0.55, -0.6], to: [0.6, 1.75, 0.6]}}
+    material: clay
+  ball: {{sphere: {{center: [1.1, 0.9, -0.4], radius: 0.35}}, material: clay}}
+"""
+FLAT = "plane: {origin: [0, 0, 0], u: [0, 0, 1], w: [1, 0, 0]}"  # so (u, w) is (z, x), and n is y
+ALL = ["0", "1", "2", "2+", "iter:1", "iter:3", "march:1", "march:5"]
+
+
+def render(tmp_path: Path, scene: str, *options: str) -> dict[str, np.ndarray]:
+    """The layers of a scene given as text."""
+    path, out = tmp_path / "scene.yaml", tmp_path / "out.exr"
+    path.write_text(scene)
+    subprocess.run([KAGE, "render", path, "-o", out, *options], check=True, capture_output=True, timeout=120)
+    with OpenEXR.File(str(out), separate_channels=True) as f:
+        return {name: np.array(c.pixels) for name, c in f.channels().items()}
+
+
+def ground(layers: dict[str, np.ndarray]) -> np.ndarray:
+    """Where the picture shows the ground: its place, not above 0.2, and not the cube, which begins at 0.55."""
+    return np.isfinite(layers["Z"]) & (layers["P.Y"] < 0.2)
+
+
+def shadows_differ(a: dict[str, np.ndarray], b: dict[str, np.ndarray]) -> tuple[int, int]:
+    """Pixels of ground in both with another visibility of a light; and the size of the shadow."""
+    both = ground(a) & ground(b)
+    differ = sum(int((both & (a[f"visibility.{k}"] != b[f"visibility.{k}"])).sum()) for k in ("lamp", "sun"))
+    return differ, int((both & (a["visibility.lamp"] == 0)).sum())
+
+
+@pytest.mark.parametrize("method", ALL)
+@pytest.mark.parametrize("height", [0.08, -0.06])
+def test_constant_bump_is_the_offset_plane(tmp_path: Path, method: str, height: float) -> None:
+    """P = h on a plane: every method gives the shadow on the plane moved by h."""
+    bumped = render(tmp_path, SCENE.format(ground=FLAT, bump=f', bump: {{function: "{height}"}}'), "--shadow", method)
+    moved = render(tmp_path, SCENE.format(ground=FLAT.replace("[0, 0, 0]", f"[0, {height}, 0]"), bump=""))
+    differ, shadow = shadows_differ(bumped, moved)
+    assert shadow > 3000
+    assert differ <= 3  # rounding right at the shadow's edge
+    none = render(tmp_path, SCENE.format(ground=FLAT, bump=f', bump: {{function: "{height}"}}'), "--shadow", "none")
+    assert shadows_differ(none, moved)[0] > 100  # while the smooth plane's is elsewhere
+
+
+@pytest.mark.parametrize("method, exact", [("1", True), ("2", True), ("2+", True), ("0", False)])
+def test_linear_bump_is_the_tilted_plane(tmp_path: Path, method: str, exact: bool) -> None:
+    """P linear: from order 1 on the shadow is that on the tilted plane, and n' is its normal."""
+    bump = ', bump: {function: "0.02 + 0.05*u - 0.04*w"}'
+    tilted = "plane: {origin: [0, 0.02, 0], u: [0, 0.05, 1], w: [1, -0.04, 0]}"
+    bumped = render(tmp_path, SCENE.format(ground=FLAT, bump=bump), "--shadow", method)
+    truth = render(tmp_path, SCENE.format(ground=tilted, bump=""))
+    differ, shadow = shadows_differ(bumped, truth)
+    assert shadow > 3000
+    assert differ <= 3 if exact else differ > 20
+    both = ground(bumped) & ground(truth)
+    for axis in "XYZ":
+        assert np.abs(bumped[f"N.{axis}"] - truth[f"N.{axis}"])[both].max() < 1e-6
+
+
+def test_no_bump_at_all(tmp_path: Path) -> None:
+    """P = 0: every method, guarded or bare, gives the same bytes, layers included but for the order's."""
+    scene = SCENE.format(ground=FLAT, bump=', bump: {function: "0*u"}')
+    want = render(tmp_path, scene, "--shadow", "none")
+    for method in ALL:
+        for guard in ([], ["--no-guard"]):
+            got = render(tmp_path, scene, "--shadow", method, *guard)
+            for name in want:
+                if name != "order":
+                    assert got[name].tobytes() == want[name].tobytes() or (
+                        name == "tau" and not got[name].any()
+                    ), (method, guard, name)
+
+
+FUNCTION = ', bump: {function: "0.05*sin(7*u)*cos(5*w) + 0.02*noise(3*u, 3*w) + 0.01*exp(-u^2)*tanh(w)"}'
+
+
+def hashes(kage: Path, tmp_path: Path) -> dict[str, str]:
+    """A digest of the pictures and all layers of scenes that use every stage."""
+    (tmp_path / "function.yaml").write_text(SCENE.format(ground=FLAT, bump=FUNCTION))
+    result = {}
+    for scene in [*sorted((TOP / "scenes").glob("*.yaml")), tmp_path / "function.yaml"]:
+        for method in ["0", "2+", "march:4", "iter:3"]:
+            out = [tmp_path / f"{scene.stem}.exr", tmp_path / f"{scene.stem}.png"]
+            subprocess.run(
+                [kage, "render", scene, "--shadow", method, "--size", "201x149", "-o", out[0], "-o", out[1]],
+                check=True,
+                capture_output=True,
+                timeout=300,
+            )
+            for path in out:
+                result[f"{scene.stem} {method} {path.suffix}"] = hashlib.sha256(path.read_bytes()).hexdigest()
+    return result
+
+
+def levels() -> list[str]:
+    """The x86-64 levels that this processor runs, without the clones: each builds the whole program for itself."""
+    found = ["x86-64"]
+    flags = Path("/proc/cpuinfo").read_text() if Path("/proc/cpuinfo").exists() else ""
+    if " avx2 " in flags and " fma " in flags:
+        found.append("x86-64-v3")
+    if " avx512vl " in flags:
+        found.append("x86-64-v4")
+    return found
+
+
+@pytest.mark.skipif(platform.machine() != "x86_64", reason="levels of x86-64 only")
+def test_same_bytes_on_every_level(tmp_path: Path) -> None:
+    """The clones choose by processor; programs built for one level alone must give the same bytes."""
+    want = hashes(KAGE, tmp_path)
+    for level in levels():
+        build = TOP / "build" / "levels" / level
+        flags = f"OPTIMISE=-O3 -fno-math-errno -fno-trapping-math -ffp-contract=off -march={level}"
+        subprocess.run(
+            ["make", "-s", "-j2", f"BUILD={build}", "CLONES=no", flags, f"{build}/kage"],
+            cwd=TOP,
+            check=True,
+            capture_output=True,
+            timeout=600,
+        )
+        assert hashes(build / "kage", tmp_path) == want, level
