@@ -1,4 +1,4 @@
-# kage: make render | test | bench | reference | install | clean | help
+# kage: make render | test | install | clean | help
 #
 #   REAL=float|double     the number type of the tracer (double: for verification)
 #   CC=gcc|clang          the compiler
@@ -10,6 +10,7 @@ REAL     ?= float
 SANITIZE ?=
 CLONES   ?= yes
 BUILD    ?= build/$(REAL)
+PREFIX   ?= /usr/local
 
 PKGS      = libpng libfyaml OpenEXR
 WARNINGS  = -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wdouble-promotion -Wmissing-prototypes \
@@ -41,11 +42,55 @@ SOURCES   = $(patsubst src/%.c,%,$(wildcard src/*.c))
 LIBRARY   = $(filter-out $(PROGRAM),$(SOURCES))
 UNITS     = $(patsubst tests/%.c,%,$(wildcard tests/test_*.c))
 
-.PHONY: all render test install clean help bootstrap tests
-all: bootstrap $(BUILD)/kage
+FIGURES   = figure4 figure5 figure6 figure7 figure8 terrain terrain-none
+PICTURES  = $(FIGURES:%=out/%.png)
 
+.PHONY: all render test unit-tests program-tests check-variants install clean help bootstrap FORCE
+all: bootstrap
+	@$(MAKE) --no-print-directory $(BUILD)/kage
+
+help:
+	@echo 'make            build the tracer, $(BUILD)/kage'
+	@echo 'make render     the pictures of the paper, into out/'
+	@echo 'make test       all tests'
+	@echo 'make install    to PREFIX ($(PREFIX)), under DESTDIR: the program, and bumpshadow.h'
+	@echo 'make clean      remove build/ and out/'
+	@echo 'Settings: REAL=float|double CC=gcc|clang CLONES=no SANITIZE=address,undefined BOOTSTRAP=no'
+
+# What is missing is installed (scripts/bootstrap); where nothing is, this costs a quarter of a second.
 bootstrap:
 	@CC='$(CC)' scripts/bootstrap build
+
+# ---- pictures ----
+
+render: all
+	@CC='$(CC)' scripts/bootstrap python
+	@$(MAKE) --no-print-directory $(PICTURES) out/figures.png
+	@echo 'The pictures are in out/, all side by side in out/figures.png:'
+	@ls $(PICTURES) $(PICTURES:.png=.exr) out/figures.png
+
+# A picture is a scene and a method; its EXR is written along with it.
+out/figure4.png: SCENE = cube --shadow none
+out/figure5.png: SCENE = cube --shadow 0
+out/figure6.png: SCENE = cube --shadow 1
+out/figure7.png: SCENE = cube --shadow 2
+out/figure8.png: SCENE = sphere --shadow 0
+out/terrain.png: SCENE = terrain --shadow 0
+out/terrain-none.png: SCENE = terrain --shadow none
+
+$(PICTURES): $(BUILD)/kage $(wildcard scenes/*.yaml scenes/data/*)
+	@mkdir -p out
+	$(BUILD)/kage render scenes/$(firstword $(SCENE)).yaml $(wordlist 2,9,$(SCENE)) --aa 3 -o $@ -o $(@:.png=.exr)
+
+out/figures.png: $(PICTURES) scripts/contact_sheet.py
+	scripts/venv python scripts/contact_sheet.py -o $@ --columns 4 \
+	    --title "Shadows on bump-mapped surfaces: Sumi and Noma's figures 4 to 8" \
+	    out/figure4.png="Figure 4: bump mapping only" out/figure5.png="Figure 5: order 0" \
+	    out/figure6.png="Figure 6: order 1" out/figure7.png="Figure 7: order 2" \
+	    out/figure8.png="Figure 8: on a sphere, order 0" out/terrain-none.png="Observed data: bump mapping only" \
+	    out/terrain.png="Observed data: order 0"
+
+# ---- the program ----
 
 $(BUILD)/kage: $(PROGRAM:%=$(BUILD)/%.o) $(LIBRARY:%=$(BUILD)/%.o)
 	$(CC) $(LDFLAGS) -o $@ $^ $(LIBS)
@@ -54,7 +99,6 @@ $(BUILD)/kage: $(PROGRAM:%=$(BUILD)/%.o) $(LIBRARY:%=$(BUILD)/%.o)
 $(BUILD)/flags: FORCE
 	@mkdir -p $(BUILD)
 	@echo '$(CC) $(CFLAGS) $(LDFLAGS)' | cmp -s - $@ || echo '$(CC) $(CFLAGS) $(LDFLAGS)' > $@
-FORCE:
 
 $(BUILD)/%.o: src/%.c $(BUILD)/flags
 	$(CC) $(CFLAGS) -c -o $@ $<
@@ -64,5 +108,29 @@ $(BUILD)/%.o: tests/%.c $(BUILD)/flags
 
 $(BUILD)/test_%: $(BUILD)/test_%.o $(LIBRARY:%=$(BUILD)/%.o)
 	$(CC) $(LDFLAGS) -o $@ $^ -lcmocka $(LIBS)
+
+# ---- tests ----
+
+# The units in C, in float and in double; then the program and the scripts, in Python.
+test: all
+	@CC='$(CC)' scripts/bootstrap test python
+	@$(MAKE) --no-print-directory unit-tests REAL=float
+	@$(MAKE) --no-print-directory unit-tests REAL=double
+	@$(MAKE) --no-print-directory program-tests
+
+unit-tests: $(UNITS:%=$(BUILD)/%)
+	@for t in $(UNITS); do $(BUILD)/$$t || exit 1; done
+
+program-tests: $(BUILD)/kage
+	@$(MAKE) --no-print-directory REAL=double build/double/kage
+	scripts/venv python -m pytest -q tests
+
+install: all
+	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/include
+	install -m 755 $(BUILD)/kage $(DESTDIR)$(PREFIX)/bin/kage
+	install -m 644 src/bumpshadow.h $(DESTDIR)$(PREFIX)/include/bumpshadow.h
+
+clean:
+	rm -rf build out
 
 -include $(wildcard $(BUILD)/*.d)
