@@ -111,7 +111,7 @@ STAGE static void box_occlude_own(const surface *base, int n, const rays *x, con
         real away = high ? along : -along;
         real out = real_min(real_min(box_exit(x->r.x[i], sx, f.lo[0], f.hi[0]), box_exit(x->r.y[i], sy, f.lo[1], f.hi[1])),
                             box_exit(x->r.z[i], sz, f.lo[2], f.hi[2]));
-        lit[i] = (away < 0) & (out < 1) ? 0 : lit[i];
+        lit[i] = ((away < 0) & (out < 1)) ? 0 : lit[i];
     }
 }
 

@@ -36,7 +36,7 @@ static inline real plane_cut(const plane *f, const rays *x, int i, int bounded, 
 {
     real t = plane_t(f, x->r.x[i], x->r.y[i], x->r.z[i], x->s.x[i], x->s.y[i], x->s.z[i]);
     int in = bounded ? plane_inside(f, x, i, t) : 1;
-    return in & (t > 0) & (t < end) ? t : end;
+    return (in & (t > 0) & (t < end)) ? t : end;
 }
 
 static inline void hit(const surface *base, int bounded, int n, const rays *x, int32_t id, hits *h)

@@ -61,8 +61,8 @@ STAGE static void blinn(const group *restrict g, const light *l, double *restric
     const bs_vec3 at = position(l);
     for (int i = 0; i < g->n; i++) {
         bs_vec3 L, n, s = lane_unit(lane_get(&g->x.s, i));
-        real length = real_sqrt(real_max(2 - 2 * bs_dot(s, L), R(1e-20)));
         lit[i] = facing(g, i, at, &L, &n);
+        real length = real_sqrt(real_max(2 - 2 * bs_dot(s, L), R(1e-20)));
         c[i] = (double)real_max((bs_dot(n, L) - bs_dot(s, n)) / length, 0);
     }
 }

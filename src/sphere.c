@@ -95,7 +95,7 @@ STAGE static void sphere_occlude(const surface *base, int n, const rays *x, real
     for (int i = 0; i < n; i++) {
         real t0, t1;
         int met = sphere_roots(&f, x->r.x[i], x->r.y[i], x->r.z[i], x->s.x[i], x->s.y[i], x->s.z[i], &t0, &t1);
-        lit[i] = met & (((t0 > 0) & (t0 < 1)) | ((t1 > 0) & (t1 < 1))) ? 0 : lit[i];
+        lit[i] = (met & (((t0 > 0) & (t0 < 1)) | ((t1 > 0) & (t1 < 1)))) ? 0 : lit[i];
     }
 }
 
@@ -108,7 +108,7 @@ STAGE static void sphere_occlude_own(const surface *base, int n, const rays *x, 
         real ox = x->r.x[i] - f.C[0], oy = x->r.y[i] - f.C[1], oz = x->r.z[i] - f.C[2];
         real sx = x->s.x[i], sy = x->s.y[i], sz = x->s.z[i];
         real t = -2 * (ox * sx + oy * sy + oz * sz) / (sx * sx + sy * sy + sz * sz);
-        lit[i] = (t > 0) & (t < 1) ? 0 : lit[i];
+        lit[i] = ((t > 0) & (t < 1)) ? 0 : lit[i];
     }
 }
 
