@@ -23,20 +23,12 @@ typedef struct map {
 /* The place of a coordinate among n samples: i + fraction, 0 <= i < n, the fraction in 0..1, whatever x is. */
 static inline int map_cell(real x, int n, int repeat, real *fraction)
 {
-    real N = (real)n, y = repeat ? x - real_floor(x / N) * N : x;
+    real N = (real)n, iN = 1 / N, y = repeat ? x - real_floor(x * iN) * N : x;
     y = real_min(real_max(y, 0), N); /* far out, and for NaN, the line above gives anything */
     int i = (int)y;                  /* y >= 0, so this is the floor */
     i = i < n ? i : n - 1;
     *fraction = y - (real)i;
     return i;
-}
-
-/* The k-th value in the cell whose first corner is v. */
-static inline real map_lerp(const real *v, size_t row, int k, real a, real b)
-{
-    real lo = v[k] + (v[VALUES + k] - v[k]) * a;
-    real hi = v[row + (size_t)k] + (v[row + VALUES + (size_t)k] - v[row + (size_t)k]) * a;
-    return lo + (hi - lo) * b;
 }
 
 /* Call it with a constant `repeat`: a choice in the loop would keep it from being vectorised. */
@@ -70,26 +62,46 @@ STAGE static void map_look_up_one(const map *m, int n, const int32_t *restrict a
     const real *v = m->table[P_PU_PW];
     const size_t row = (size_t)(m->columns + 1) * VALUES;
 #pragma omp simd
-    for (int i = 0; i < n; i++)
-        out[i] = map_lerp(v + (size_t)at[i] * VALUES, row, 0, a[i], b[i]);
+    for (int i = 0; i < n; i++) {
+        const real *p = v + (size_t)at[i] * VALUES, *q = p + row;
+        real left = p[0] + (q[0] - p[0]) * b[i], right = p[VALUES] + (q[VALUES] - p[VALUES]) * b[i];
+        out[i] = left + (right - left) * a[i];
+    }
 }
 
-/* All three of a table: the values of a corner in one vector, then turned into an array each. Twelve gathers cost about
- * twice as much. */
-STAGE static void map_look_up_three(const map *m, int table, int n, const int32_t *restrict at, const real *restrict a,
-                                    const real *restrict b, real *restrict x, real *restrict y, real *restrict z)
+/* All three of a table: the two left corners and the two right ones as one vector each way. Twelve gathers would cost
+ * about twice as much. The fourth value is padding, but must not look dead to the compiler: it would take the vector to
+ * pieces. So this is a stage of its own, and the next one picks the arrays out. */
+STAGE static void map_interpolate(const map *m, int table, int n, const int32_t *restrict at, const real *restrict a,
+                                  const real *restrict b, real (*restrict out)[VALUES])
 {
     const real *v = m->table[table];
     const size_t row = (size_t)(m->columns + 1) * VALUES;
-    real out[LANES][VALUES];
-    for (int i = 0; i < n; i++)
-        for (int k = 0; k < VALUES; k++)
-            out[i][k] = map_lerp(v + (size_t)at[i] * VALUES, row, k, a[i], b[i]);
     for (int i = 0; i < n; i++) {
-        x[i] = out[i][0];
-        y[i] = out[i][1];
-        z[i] = out[i][2];
+        const real *p = v + (size_t)at[i] * VALUES, *q = p + row;
+        real side[2 * VALUES];
+        for (int k = 0; k < 2 * VALUES; k++)
+            side[k] = p[k] + (q[k] - p[k]) * b[i];
+        for (int k = 0; k < VALUES; k++)
+            out[i][k] = side[k] + (side[VALUES + k] - side[k]) * a[i];
     }
+}
+
+STAGE static void map_turn(int n, const real (*restrict from)[VALUES], real *restrict x, real *restrict y, real *restrict z)
+{
+    for (int i = 0; i < n; i++) {
+        x[i] = from[i][0];
+        y[i] = from[i][1];
+        z[i] = from[i][2];
+    }
+}
+
+static void map_look_up_three(const map *m, int table, int n, const int32_t *at, const real *a, const real *b, real *x, real *y,
+                              real *z)
+{
+    real out[LANES][VALUES];
+    map_interpolate(m, table, n, at, a, b, out);
+    map_turn(n, (const real (*)[VALUES])out, x, y, z);
 }
 
 static void map_eval(const perturb *base, int n, const real *u, const real *w, int order, heights *h)

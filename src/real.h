@@ -29,7 +29,7 @@ typedef float real;
 
 /* Put before the definition of a stage, a static function that is one plain loop over lanes (static, as clang 14 exports
  * clones under another name): it is compiled
- * once for any x86-64 and once for AVX2, and the loader takes the one that fits the processor. Both give
+ * once for any x86-64, once for AVX2 and once for AVX-512 (gcc), and the loader takes the one that fits. All give
  * the same bytes, because nothing is contracted (-ffp-contract=off) and every operation used is exact
  * by IEEE 754 (+ - * / sqrt, comparisons, conversions); no stage calls libm for anything else.
  * Processors other than x86-64 build the same source without clones. */
@@ -37,7 +37,7 @@ typedef float real;
 #if defined(__clang__)
 #define STAGE __attribute__((target_clones("default", "avx2")))
 #else
-#define STAGE __attribute__((target_clones("default", "arch=x86-64-v3")))
+#define STAGE __attribute__((target_clones("default", "arch=x86-64-v3", "arch=x86-64-v4")))
 #endif
 #else
 #define STAGE

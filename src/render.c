@@ -33,21 +33,22 @@ typedef struct tile {
     int x0, y0, width, height;
 } tile;
 
-/* s = forward + x right + y up, x and y in -1..1 from the left and from the bottom. */
-STAGE static void camera_rays(const camera *c, int n, const real *restrict x, const real *restrict y, rays *restrict out)
+/* r: all rays begin at the eye. s = forward + x right + y up, x and y in -1..1 from the left and from the bottom. */
+STAGE static void camera_rays(const camera *c, int n, const real *restrict x, const real *restrict y, vec3s *restrict s)
 {
     const real fx = (real)c->forward.x, fy = (real)c->forward.y, fz = (real)c->forward.z;
     const real rx = (real)c->right.x, ry = (real)c->right.y, rz = (real)c->right.z;
     const real ux = (real)c->up.x, uy = (real)c->up.y, uz = (real)c->up.z;
-    const real ox = (real)c->from.x, oy = (real)c->from.y, oz = (real)c->from.z;
     for (int i = 0; i < n; i++) {
-        out->r.x[i] = ox;
-        out->r.y[i] = oy;
-        out->r.z[i] = oz;
-        out->s.x[i] = fx + x[i] * rx + y[i] * ux;
-        out->s.y[i] = fy + x[i] * ry + y[i] * uy;
-        out->s.z[i] = fz + x[i] * rz + y[i] * uz;
+        s->x[i] = fx + x[i] * rx + y[i] * ux;
+        s->y[i] = fy + x[i] * ry + y[i] * uy;
+        s->z[i] = fz + x[i] * rz + y[i] * uz;
     }
+}
+
+static void camera_eye(const camera *c, int n, vec3s *r)
+{
+    vec3s_fill(r, n, (real)c->from.x, (real)c->from.y, (real)c->from.z);
 }
 
 /* The pixel's coordinate p (0..size, fractions within a pixel) on the picture from -1 to 1. */
@@ -55,11 +56,11 @@ static real screen(double p, int size) { return (real)(2 * p / size - 1); }
 
 void render_ray(const camera *c, int width, int height, double x, double y, workspace *v, int lane)
 {
-    rays one;
+    vec3s one;
     real sx = screen(x, width), sy = -screen(y, height);
+    camera_eye(c, LANES, &v->x.r);
     camera_rays(c, 1, &sx, &sy, &one);
-    v->x.r.x[lane] = one.r.x[0], v->x.r.y[lane] = one.r.y[0], v->x.r.z[lane] = one.r.z[0];
-    v->x.s.x[lane] = one.s.x[0], v->x.s.y[lane] = one.s.y[0], v->x.s.z[lane] = one.s.z[0];
+    v->x.s.x[lane] = one.x[0], v->x.s.y[lane] = one.y[0], v->x.s.z[lane] = one.z[0];
 }
 
 static void tile_rays(const scene *s, const tile *b, int aa, int i, int j, workspace *v)
@@ -74,7 +75,7 @@ static void tile_rays(const scene *s, const tile *b, int aa, int i, int j, works
             y[k * b->width + c] = row;
         }
     }
-    camera_rays(&s->camera, b->width * b->height, x, y, &v->x);
+    camera_rays(&s->camera, b->width * b->height, x, y, &v->x.s);
 }
 
 /* Put the values of a tile's lanes on a plane, or add them to what is there. With a constant width the rows are a few
@@ -122,9 +123,24 @@ static void lay_layers(film *f, const tile *b, const workspace *v)
     lay(f, FILM_ORDER, b, order, 1, false);
 }
 
+/* The lines of the picture that a tile will write are far apart and in no cache; ask for them before they are needed. */
+static void fetch(const film *f, const tile *b)
+{
+#if defined(__GNUC__)
+    const size_t stride = (size_t)(f->part.x1 - f->part.x0);
+    const size_t at = (size_t)(b->y0 - f->part.y0) * stride + (size_t)(b->x0 - f->part.x0);
+    for (int p = FILM_R; p <= FILM_B; p++)
+        for (int k = 0; k < b->height; k++)
+            __builtin_prefetch(&f->plane[p][at + (size_t)k * stride], 1);
+#else
+    (void)f, (void)b;
+#endif
+}
+
 static void render_tile(const tracer *k, int aa, const tile *b, film *f, workspace *v)
 {
     const float weight = 1.0f / (float)(aa * aa);
+    fetch(f, b);
     for (int j = 0; j < aa; j++)
         for (int i = 0; i < aa; i++) {
             const bool add = i + j > 0;
@@ -158,7 +174,9 @@ bool render(const tracer *k, const render_options *o, film *f, stats *sum, error
 #pragma omp parallel num_threads(threads)
     {
         workspace *v = workspace_new(k->scene->lights);
-        if (!v) {
+        if (v)
+            camera_eye(&k->scene->camera, LANES, &v->x.r); /* no stage writes there, so once is enough */
+        else {
 #pragma omp critical(kage_render)
             good = false;
         }

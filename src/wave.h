@@ -10,7 +10,7 @@
 
 #include "real.h"
 
-enum { LANES = 256 }; /* a tile of 16 x 16 pixels */
+enum { LANES = 128 }; /* a tile of 16 x 8 pixels; all that one wave touches stays in a first-level cache */
 
 typedef struct vec3s {
     real x[LANES], y[LANES], z[LANES];
