@@ -143,12 +143,15 @@ static inline bs_real bs_quadratic_plus(bs_view v, bs_bump p, bs_real curvature)
     return bs_quadratic(v, p) + p.Puw * v.a * v.b + (bs_real)0.5 * curvature;
 }
 
-/* The root that goes over into order 1 as A -> 0, without cancellation; NaN where there is none:
+/* B^2 - 4 A P: negative where the ray does not meet the quadric. */
+static inline bs_real bs_discriminant(bs_real A, bs_real B, bs_real P) { return B * B - 4 * A * P; }
+
+/* The root that goes over into order 1 as A -> 0, without cancellation:
  *     tau = -2 P/(B + sqrt(B^2 - 4 A P))
  * with the sign of the square root turned where the ray comes from behind. */
-static inline bs_real bs_tau2(bs_view v, bs_real A, bs_real B, bs_real P)
+static inline bs_real bs_tau2(bs_view v, bs_real B, bs_real discriminant, bs_real P)
 {
-    bs_real root = BS_SQRT(B * B - 4 * A * P);
+    bs_real root = BS_SQRT(discriminant);
     return -2 * P / (B + (v.sn < 0 ? root : -root));
 }
 
@@ -192,9 +195,10 @@ static inline bs_shift bs_shift_of(int order, int guard, bs_view v, bs_real curv
     }
     if (order >= 2) {
         bs_real A = order == 3 ? bs_quadratic_plus(v, p, curvature) : bs_quadratic(v, p);
-        bs_real tau = bs_tau2(v, A, B, p.P);
-        /* tau == tau: there is a root; down > 0: it is the one that order 1 goes over into */
-        int good = (down > 0) & (guard ? (tau >= slab.front) & (tau <= slab.back) : tau == tau);
+        bs_real discriminant = bs_discriminant(A, B, p.P), tau = bs_tau2(v, B, discriminant, p.P);
+        /* there is a root, and it is the one that order 1 goes over into */
+        int good = (discriminant >= 0) & (down > 0);
+        good = guard ? good & (tau >= slab.front) & (tau <= slab.back) : good;
         s.tau = good ? tau : s.tau;
         s.order = good ? order : s.order;
     }

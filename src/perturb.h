@@ -42,7 +42,8 @@ typedef struct map_layout {
 
 /* P from samples as the paper has it (section 4.1): partials by central differences at the samples; height and
  * partials interpolated bilinearly. u goes along the rows from left to right, w down the columns. `samples` is only
- * read here. NULL: out of memory, or fewer than 2 x 2 samples. */
+ * read here. NULL: out of memory, fewer than 2 x 2 samples, or more
+ * than 2^29 (a mirrored map counts four times). */
 perturb *perturb_map(const image *samples, const map_layout *layout);
 
 /* P = scale f(u,w), with exact partials. Owns f, also on failure. The bounds hold for u and w in the extent given

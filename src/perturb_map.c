@@ -60,11 +60,12 @@ STAGE static void map_look_up_one(const map *m, int n, const int32_t *restrict a
                                   const real *restrict b, real *restrict out)
 {
     const real *v = m->table[P_PU_PW];
-    const size_t row = (size_t)(m->columns + 1) * VALUES;
+    const int row = (m->columns + 1) * VALUES;
 #pragma omp simd
     for (int i = 0; i < n; i++) {
-        const real *p = v + (size_t)at[i] * VALUES, *q = p + row;
-        real left = p[0] + (q[0] - p[0]) * b[i], right = p[VALUES] + (q[VALUES] - p[VALUES]) * b[i];
+        int p = at[i] * VALUES, q = p + row;
+        real left = v[p] + (v[q] - v[p]) * b[i];
+        real right = v[p + VALUES] + (v[q + VALUES] - v[p + VALUES]) * b[i];
         out[i] = left + (right - left) * a[i];
     }
 }
@@ -193,6 +194,10 @@ perturb *perturb_map(const image *samples, const map_layout *l)
     m->base.is = &map_methods;
     m->columns = map_period(samples->width, l);
     m->rows = map_period(samples->height, l);
+    if ((m->columns + 1L) * (m->rows + 1L) > INT32_MAX / VALUES) { /* stages count places in 32 bits */
+        free(m);
+        return NULL;
+    }
     for (int k = 0; k < TABLES; k++) {
         m->table[k] = malloc(sizeof(real) * VALUES * (size_t)(m->columns + 1) * (size_t)(m->rows + 1));
         if (!m->table[k]) {

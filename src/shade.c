@@ -15,12 +15,13 @@ static inline real facing(const group *g, int i, bs_vec3 at, bs_vec3 *L, bs_vec3
 {
     bs_vec3 p = lane_at(&g->x, i, g->t[i]), d = {at.x - p.x, at.y - p.y, at.z - p.z};
     bs_vec3 smooth = lane_get(&g->n_smooth, i), bump = lane_get(&g->n_bump, i);
+    real lit = g->lit[i]; /* read in any case: a reading that depends is a branch */
     real side = bs_dot(smooth, lane_get(&g->x.s, i)) < 0 ? R(1) : R(-1);
     *L = lane_unit(d);
     n->x = side * bump.x;
     n->y = side * bump.y;
     n->z = side * bump.z;
-    return side * bs_dot(smooth, d) > 0 ? g->lit[i] : 0;
+    return side * bs_dot(smooth, d) > 0 ? lit : 0;
 }
 
 static inline bs_vec3 position(const light *l)
