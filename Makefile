@@ -42,7 +42,7 @@ SOURCES   = $(patsubst src/%.c,%,$(wildcard src/*.c))
 LIBRARY   = $(filter-out $(PROGRAM),$(SOURCES))
 UNITS     = $(patsubst tests/%.c,%,$(wildcard tests/test_*.c))
 
-FIGURES   = figure4 figure5 figure6 figure7 figure8 terrain terrain-none
+FIGURES   = figure4 figure5 figure6 figure7 figure8-none figure8 terrain-none terrain
 PICTURES  = $(FIGURES:%=out/%.png)
 
 .PHONY: all render test unit-tests program-tests check-variants install clean help bootstrap FORCE
@@ -74,6 +74,7 @@ out/figure4.png: SCENE = cube --shadow none
 out/figure5.png: SCENE = cube --shadow 0
 out/figure6.png: SCENE = cube --shadow 1
 out/figure7.png: SCENE = cube --shadow 2
+out/figure8-none.png: SCENE = sphere --shadow none
 out/figure8.png: SCENE = sphere --shadow 0
 out/terrain.png: SCENE = terrain --shadow 0
 out/terrain-none.png: SCENE = terrain --shadow none
@@ -87,7 +88,8 @@ out/figures.png: $(PICTURES) scripts/contact_sheet.py
 	    --title "Shadows on bump-mapped surfaces: Sumi and Noma's figures 4 to 8" \
 	    out/figure4.png="Figure 4: bump mapping only" out/figure5.png="Figure 5: order 0" \
 	    out/figure6.png="Figure 6: order 1" out/figure7.png="Figure 7: order 2" \
-	    out/figure8.png="Figure 8: on a sphere, order 0" out/terrain-none.png="Observed data: bump mapping only" \
+	    out/figure8-none.png="On a sphere: bump mapping only" out/figure8.png="Figure 8: on a sphere, order 0" \
+	    out/terrain-none.png="Observed data: bump mapping only" \
 	    out/terrain.png="Observed data: order 0"
 
 # ---- the program ----

@@ -9,15 +9,15 @@
 global_settings { assumed_gamma 1 } // light and colours are linear, as in kage
 
 camera {
-    location <0, 3.9, -5.2>
+    location <0.2, 4.3, -5.6>
     right x * image_width / image_height // square pixels, before look_at
-    angle 36                             // horizontal, as kage's fov
-    look_at <0.25, 0.1, 0.05>
+    angle 37                             // horizontal, as kage's fov
+    look_at <0.65, 0.42, 0.15>
 }
 
 background { rgb <0.03, 0.04, 0.06> }
 
-light_source { <-4.5, 5.2, -2.2> rgb <1.1, 1.08, 1> }
+light_source { <-4.4, 5.8, -2.6> rgb <1.1, 1.08, 1> }
 
 // ground. The map's columns run along u = z, its rows, from the first, along w = x, 12 units each, as in the YAML.
 // POV-Ray lays an image on 0..1 of x and y, the first row at y = 1, and means it to be seen from -z. So
