@@ -151,7 +151,9 @@ bool arguments_read(arguments *a, int argc, char **argv)
                 return usage_error("%s lacks its value; see kage --help", arg);
             if (!option(a, arg, equals ? equals + 1 : argv[++k]))
                 return false;
-        } else if (find(flags, arg) && !equals) {
+        } else if (find(flags, arg)) {
+            if (equals)
+                return usage_error("%s takes no value; see kage --help", arg);
             if (!flag(a, arg))
                 return false;
         } else

@@ -37,10 +37,11 @@ static float slope(const group *g, int i)
 static void look(const scene *s, int order, workspace *v, seen *all)
 {
     tracer k = {s, {METHOD_ORDER, order}, true, false};
-    for (int row = 0; row < SAMPLES; row++) {
-        for (int i = 0; i < SAMPLES; i++)
-            render_ray(&s->camera, SAMPLES, SAMPLES, i + 0.5, row + 0.5, v, i);
-        for (int32_t id = trace_nearest(&k, SAMPLES, v); id >= 0; id = wave_next_group(SAMPLES, &v->x, &v->h, &v->g)) {
+    for (int first = 0; first < SAMPLES * SAMPLES; first += LANES) {
+        const int n = SAMPLES * SAMPLES - first < LANES ? SAMPLES * SAMPLES - first : LANES;
+        for (int i = 0; i < n; i++)
+            render_ray(&s->camera, SAMPLES, SAMPLES, (first + i) % SAMPLES + 0.5, (double)((first + i) / SAMPLES) + 0.5, v, i);
+        for (int32_t id = trace_nearest(&k, n, v); id >= 0; id = wave_next_group(n, &v->x, &v->h, &v->g)) {
             const group *g = &v->g;
             seen *o = &all[id];
             if (!s->object[id].bump)
@@ -86,8 +87,8 @@ static int print_bump(const object *o, const seen *x)
         warnings++;
     }
     if (back1 > 1 || back2 > 1) {
-        printf("    warning: order %s falls back often: the view is flat against the bumps; order 0 or march:4 serve\n",
-               back1 > 1 && back2 > 1 ? "1 and order 2" : back1 > 1 ? "1" : "2");
+        printf("    warning: %s back often: the view is flat against the bumps; order 0 or march:4 serve\n",
+               back1 > 1 && back2 > 1 ? "orders 1 and 2 fall" : back1 > 1 ? "order 1 falls" : "order 2 falls");
         warnings++;
     }
     return warnings;

@@ -2,6 +2,7 @@
 #include "render.h"
 #include "version.h"
 
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -61,7 +62,7 @@ static bool write_output(const char *path, const scene *s, const arguments *a, c
     return good;
 }
 
-static void print_stats(const stats *t, const scene *s, double seconds, double output, int count)
+static void print_stats(const stats *t, const scene *s, double seconds, double output, double count)
 {
     static const char *const codes[ORDER_CODES] = {"none", "0", "1", "2", "2+", "iter", "march"};
     double sum = 0, n = count;
@@ -86,6 +87,39 @@ static void print_stats(const stats *t, const scene *s, double seconds, double o
     printf("\n");
 }
 
+/* Ctrl-C while files are written takes effect between two of them: each is whole or not there. */
+static volatile sig_atomic_t stopped;
+
+static void stop(int signal) { stopped = signal; }
+
+static void hold_signals(const int held[2], struct sigaction before[2])
+{
+    struct sigaction hold = {.sa_handler = stop, .sa_flags = SA_RESTART};
+    sigemptyset(&hold.sa_mask);
+    for (int k = 0; k < 2; k++) {
+        sigaction(held[k], NULL, &before[k]);
+        if (before[k].sa_handler != SIG_IGN)
+            sigaction(held[k], &hold, NULL);
+    }
+}
+
+static bool write_outputs(const scene *s, const arguments *a, const char *const *output, int outputs, const film *f, errors *e)
+{
+    static const int held[2] = {SIGINT, SIGTERM};
+    struct sigaction before[2];
+    char *sets = joined_sets(a);
+    bool good = sets || errors_add(e, "out of memory");
+    hold_signals(held, before);
+    for (int i = 0; good && !stopped && i < outputs; i++)
+        good = write_output(output[i], s, a, f, sets, e);
+    for (int k = 0; k < 2; k++)
+        sigaction(held[k], &before[k], NULL);
+    free(sets);
+    if (stopped)
+        raise(stopped);
+    return good;
+}
+
 static int render_outputs(const scene *s, const arguments *a, const char *const *output, int outputs)
 {
     errors e = {0};
@@ -105,18 +139,15 @@ static int render_outputs(const scene *s, const arguments *a, const char *const 
     stats t;
     progress p;
     tracer k = {s, s->shadow, s->guard, layers};
-    const int count = (part.x1 - part.x0) * (part.y1 - part.y0) * s->aa * s->aa;
+    const double count = (double)(part.x1 - part.x0) * (part.y1 - part.y0) * s->aa * s->aa;
     progress_start(&p, a->quiet, base_name(s->path), (long)(part.x1 - part.x0) * (part.y1 - part.y0));
     render_options o = {s->aa, a->threads, a->stats, p.on ? progress_show : NULL, &p};
     double start = stats_clock();
     bool good = render(&k, &o, f, &t, &e);
     double rendered = stats_clock();
     progress_end(&p);
-    char *sets = joined_sets(a);
-    for (int i = 0; good && i < outputs; i++)
-        good = sets ? write_output(output[i], s, a, f, sets, &e) : errors_add(&e, "out of memory");
+    good = good && write_outputs(s, a, output, outputs, f, &e);
     double written = stats_clock();
-    free(sets);
     film_free(f);
     if (!good)
         return command_fail(&e, EXIT_OUTPUT);

@@ -7,11 +7,12 @@
 bool errors_add(errors *e, const char *fmt, ...)
 {
     va_list args, again;
+    if (e->count++ >= ERRORS_SHOWN)
+        return false;
     va_start(args, fmt);
     va_copy(again, args);
     int n = vsnprintf(NULL, 0, fmt, args);
     va_end(args);
-    e->count++;
     char *text = n < 0 ? NULL : realloc(e->text, e->size + (size_t)n + 2);
     if (text) { /* without memory the message is lost, its count is not */
         vsnprintf(text + e->size, (size_t)n + 1, fmt, again);

@@ -13,11 +13,13 @@
 #define KAGE_PRINTF(fmt, first)
 #endif
 
+enum { ERRORS_SHOWN = 50 }; /* more than that are only counted */
+
 /* Zero-initialise; errors_free when done. */
 typedef struct errors {
     char *text;  /* all messages, each ended by a newline; NULL: none */
     size_t size; /* bytes in text, without the final 0 */
-    int count;   /* messages */
+    int count;   /* messages, those not in text with them */
 } errors;
 
 /* Add one message, formatted as by printf, with no newline at its end. Messages may hold several

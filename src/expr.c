@@ -189,7 +189,8 @@ static const char *arguments_of(const function *f)
 static operand unexpected(parser *p, const char *expected)
 {
     char c = *p->at;
-    const char *what = found_at(p->at).text;
+    const found here = found_at(p->at);
+    const char *what = here.text;
     if (is_letter(c) || is_digit(c) || c == '.' || c == '(')
         return fail(p, p->at, "missing operator before %s: a product is written with '*'", what);
     return fail(p, p->at, "found %s, expected %s", what, expected);

@@ -41,7 +41,7 @@ int command_fail(errors *e, int status)
     else
         fputs("kage: out of memory\n", stderr);
     if (status == EXIT_INPUT && e->count > 1)
-        fprintf(stderr, "%d errors\n", e->count);
+        fprintf(stderr, "%d errors%s\n", e->count, e->count > ERRORS_SHOWN ? ", the first of them above" : "");
     errors_free(e);
     return status;
 }
@@ -53,6 +53,15 @@ scene *command_scene(const arguments *a)
     if (!s)
         command_fail(&e, EXIT_INPUT);
     return s;
+}
+
+/* The exit status, once all that was said on stdout has gone out. */
+static int finish(int status)
+{
+    if (fflush(stdout) == 0 && !ferror(stdout))
+        return status;
+    usage_error("standard output can't be written");
+    return status ? status : EXIT_OUTPUT;
 }
 
 static int methods(void)
@@ -75,20 +84,20 @@ int main(int argc, char **argv)
     for (int k = 1; k < argc; k++)
         if (strcmp(argv[k], "--help") == 0 || strcmp(argv[k], "-h") == 0) {
             fputs(help, stdout);
-            return 0;
+            return finish(0);
         }
     if (strcmp(argv[1], "--version") == 0) {
         printf("kage %s (%s)\n", KAGE_VERSION, REAL_NAME);
-        return 0;
+        return finish(0);
     }
     if (strcmp(argv[1], "methods") == 0)
-        return methods();
+        return finish(methods());
     for (size_t k = 0; k < sizeof commands / sizeof *commands; k++)
         if (strcmp(argv[1], commands[k].name) == 0) {
             arguments a;
             int status = arguments_read(&a, argc, argv) ? commands[k].run(&a) : EXIT_INPUT;
             arguments_free(&a);
-            return status;
+            return finish(status);
         }
     usage_error("no command '%s', expected render, check, pixel or methods; see kage --help", argv[1]);
     return EXIT_INPUT;

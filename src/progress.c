@@ -22,7 +22,7 @@ void progress_show(void *user, long done, long all)
     for (int k = 0; k < BAR; k++)
         bar[k] = k < (int)(share * BAR) ? '#' : '.';
     bar[BAR] = 0;
-    fprintf(stderr, "\r%s [%s] %3.0f %%  %.1f Mpixel/s  %.1f s left \033[K", p->name, bar, 100 * share,
+    fprintf(stderr, "\r%.24s [%s] %3.0f %%  %.1f Mpixel/s  %.1f s left \033[K", p->name, bar, 100 * share,
             share * (double)p->pixels / gone / 1e6, gone / share - gone);
 }
 

@@ -3,6 +3,7 @@
  */
 #include "scene.h"
 
+#include "image.h"
 #include "yaml.h"
 
 #include <math.h>
@@ -61,15 +62,20 @@ static bool number(reader *r, node *map, const char *key, double lo, bool open, 
     return !at || yaml_number(r->y, at, lo, open, hi, what, x);
 }
 
-/* Names are used in --set and as layers of the image. */
-static bool good_name(reader *r, node *key)
+/* A name in a map of named things; owned. NULL: an error is told. Names are used in --set and as layers of the
+ * image. */
+static char *name_of(reader *r, node *map, node *key)
 {
     const char *name = yaml_text(r->y, key, "a name");
     if (!name)
-        return false;
-    if (strlen(name) < 60 && name[strspn(name, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-")] == 0)
-        return true;
-    return yaml_error(r->y, key, "'%.60s' can't be a name, expected up to 59 letters, digits, _ and -", name);
+        return NULL;
+    if (strlen(name) > 59 || name[strspn(name, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-")])
+        yaml_error(r->y, key, "'%.60s' can't be a name, expected up to 59 letters, digits, _ and -", name);
+    else if (yaml_first(map, name) != key)
+        yaml_error(r->y, key, "a second '%s', expected each name once", name);
+    else
+        return copy(r, name);
+    return NULL;
 }
 
 /* A map of named things: makes room for them. Returns their map, NULL where there is none or it is wrong. */
@@ -108,6 +114,8 @@ static void read_image(reader *r)
     if (k && yaml_numbers(r->y, k, 2, 1, SCENE_MAX_SIDE, "[width, height] in pixels, from 1 to 32768", size)) {
         if (size[0] != floor(size[0]) || size[1] != floor(size[1]))
             yaml_error(r->y, k, "no whole numbers, expected [width, height] in pixels");
+        if (size[0] * size[1] > (double)IMAGE_MAX_PIXELS)
+            yaml_error(r->y, k, "%.0f pixels, expected at most %ld", size[0] * size[1], IMAGE_MAX_PIXELS);
         s->width = (int)size[0];
         s->height = (int)size[1];
     }
@@ -133,7 +141,8 @@ static void read_camera(reader *r)
     else if (vec3_length(up) < SMALL)
         yaml_error(r->y, yaml_get(at, "up"), "no direction, expected a vector with a length");
     else if (!camera_look(&r->s->camera, from, to, up, fov, r->s->width, r->s->height))
-        yaml_error(r->y, at, "up is along the view, expected 'up' to point sideways of 'at' - 'from'");
+        yaml_error(r->y, yaml_get(at, "up") ? yaml_get(at, "up") : at,
+                   "'up' is along the view, expected a direction across it%s", yaml_get(at, "up") ? "" : " (it is [0, 1, 0])");
 }
 
 static void read_render(reader *r)
@@ -166,9 +175,9 @@ static void read_lights(reader *r)
         node *v = yaml_pair(at, i, &key);
         light *l = &s->light[i];
         l->color = (vec3){1, 1, 1};
-        if (!good_name(r, key) || !yaml_map(r->y, v, "a light", "at color"))
+        l->name = name_of(r, at, key);
+        if (!yaml_map(r->y, v, "a light", "at color"))
             continue;
-        l->name = copy(r, yaml_text(r->y, key, "a name"));
         if (yaml_need(r->y, v, "at", "a light"))
             vector(r, v, "at", "the light's place [x, y, z]", &l->at);
         color(r, v, "color", &l->color);
@@ -183,10 +192,9 @@ static void read_materials(reader *r)
         node *v = yaml_pair(at, i, &key);
         material *m = &s->material[i];
         *m = (material){.color = {1, 1, 1}, .ambient = 0.1, .diffuse = 0.6, .phong_size = 40, .roughness = 0.05};
-        if (!good_name(r, key) ||
-            !yaml_map(r->y, v, "a material", "color ambient diffuse phong phong_size specular roughness"))
+        m->name = name_of(r, at, key);
+        if (!yaml_map(r->y, v, "a material", "color ambient diffuse phong phong_size specular roughness"))
             continue;
-        m->name = copy(r, yaml_text(r->y, key, "a name"));
         color(r, v, "color", &m->color);
         number(r, v, "ambient", 0, false, BIG, "a share of light, 0 or more", &m->ambient);
         number(r, v, "diffuse", 0, false, BIG, "a share of light, 0 or more", &m->diffuse);
@@ -202,7 +210,7 @@ static int find_material(reader *r, node *at)
     const char *name = yaml_text(r->y, at, "the name of a material");
     char near[64], *names = NULL;
     size_t size = 1;
-    if (!name)
+    if (!name || !r->s->material) /* without materials that alone is told */
         return 0;
     for (int i = 0; i < r->s->materials; i++) {
         if (r->s->material[i].name && strcmp(name, r->s->material[i].name) == 0)
@@ -265,7 +273,7 @@ static surface *read_sphere(reader *r, node *at)
         return NULL;
     bool good = yaml_need(r->y, at, "center", "sphere") && yaml_need(r->y, at, "radius", "sphere");
     good = vector(r, at, "center", "a place [x, y, z]", &c) && good;
-    good = number(r, at, "radius", SMALL, false, BIG, "a length above 0", &radius) && good;
+    good = number(r, at, "radius", SMALL, false, BIG, "a length from 1e-6 to 1e6", &radius) && good;
     return good ? sphere_new(c, radius) : NULL;
 }
 
@@ -277,7 +285,7 @@ static surface *read_surface(reader *r, node *at)
     for (int k = 0; k < 4; k++) {
         node *v = yaml_get(at, kinds[k]);
         if (v && shape) {
-            yaml_error(r->y, v, "a second shape, expected one an object");
+            yaml_error(r->y, v, "a second shape, '%s' beside '%s', expected one", kinds[k], kinds[kind]);
             return NULL;
         }
         if (v) {
@@ -286,7 +294,7 @@ static surface *read_surface(reader *r, node *at)
         }
     }
     if (!shape) {
-        yaml_error(r->y, at, "an object lacks its shape, expected plane, rectangle, box or sphere");
+        yaml_error(r->y, at, "an object lacks its shape, expected one of: plane rectangle box sphere");
         return NULL;
     }
     return kind < 2 ? read_plane(r, shape, kinds[kind], kind == 1) : kind == 2 ? read_box(r, shape) : read_sphere(r, shape);
@@ -320,13 +328,13 @@ static bool read_layout(reader *r, node *at, const double u[2], const double w[2
     if (size && repeat)
         good = yaml_error(r->y, repeat, "both 'size' and 'repeat', expected one of them");
     else if (size) {
-        good = yaml_numbers(r->y, size, 2, SMALL, BIG, "the size of the map [in u, in w], above 0", l->size);
+        good = yaml_numbers(r->y, size, 2, SMALL, BIG, "the size of the map [in u, in w], 1e-6 or more", l->size);
     } else if (!bounded)
         good = yaml_error(r->y, repeat ? repeat : at, "a map on an unbounded surface, expected 'size: [in u, in w]'");
     else {
         double n[2] = {1, 1};
         if (repeat)
-            good = yaml_numbers(r->y, repeat, 2, SMALL, BIG, "how often the map goes into the surface [in u, in w], above 0", n);
+            good = yaml_numbers(r->y, repeat, 2, SMALL, BIG, "how often the map goes into the surface [in u, in w], 1e-6 or more", n);
         l->size[0] = extent[0] / n[0];
         l->size[1] = extent[1] / n[1];
     }
@@ -394,6 +402,10 @@ static perturb *read_map(reader *r, node *at, const double u[2], const double w[
     if (!note->file) /* there are no samples */
         return NULL;
     l.scale = up == 1 ? -l.scale : l.scale;
+    const double low = l.scale * (note->low - l.zero), high = l.scale * (note->high - l.zero);
+    if (good && fmax(fabs(low), fabs(high)) > BIG)
+        good = yaml_error(r->y, scale, "heights from %.4g to %.4g, expected them within 1000000 scene units", fmin(low, high),
+                          fmax(low, high));
     perturb *p = good ? perturb_map(&samples, &l) : NULL;
     if (good && !p)
         errors_add(r->e, "out of memory");
@@ -429,7 +441,7 @@ static perturb *read_bump(reader *r, node *at, const surface *f, map_note *note)
         return NULL;
     node *map = yaml_get(at, "map"), *function = yaml_get(at, "function");
     if (!map == !function) {
-        yaml_error(r->y, at, "a bump with %s, expected either 'map' or 'function'", map ? "both" : "neither map nor function");
+        yaml_error(r->y, at, "a bump with %s, expected either 'map' or 'function'", map ? "both map and function" : "neither map nor function");
         return NULL;
     }
     f->is->extent(f, u, w);
@@ -443,9 +455,9 @@ static void read_objects(reader *r)
     for (int i = 0; at && i < s->objects; i++) {
         node *v = yaml_pair(at, i, &key), *m, *bump;
         object *o = &s->object[i];
-        if (!good_name(r, key) || !yaml_map(r->y, v, "an object", "plane rectangle box sphere material bump"))
+        o->name = name_of(r, at, key);
+        if (!yaml_map(r->y, v, "an object", "plane rectangle box sphere material bump"))
             continue;
-        o->name = copy(r, yaml_text(r->y, key, "a name"));
         o->shape = read_surface(r, v);
         if ((m = yaml_need(r->y, v, "material", "an object")))
             o->material = find_material(r, m);

@@ -1,0 +1,77 @@
+"""What the tests of the program share: the program under test, a scene to break, ways to run both.
+
+The environment variable KAGE names the program, by default build/float/kage.
+"""
+
+from __future__ import annotations
+
+import os
+import subprocess
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import pytest
+
+TOP = Path(__file__).resolve().parent.parent
+PROGRAM = Path(os.environ.get("KAGE", TOP / "build" / "float" / "kage")).resolve()
+
+#: A scene with one of everything that can be wrong. Tests replace parts of it.
+SCENE = """\
+camera: {from: [0, 3, -5], at: [0, 0, 0], up: [0, 1, 0], fov: 40}
+image: {size: [40, 30], background: [0, 0, 0]}
+render: {shadow: 0, guard: true, aa: 1}
+lights:
+  lamp: {at: [-4, 5, -2], color: [1, 1, 1]}
+materials:
+  clay: {color: [0.8, 0.7, 0.6], ambient: 0.1, diffuse: 0.8}
+objects:
+  ground:
+    plane: {origin: [0, 0, 0], u: [0, 0, 1], w: [1, 0, 0]}
+    material: clay
+    bump:
+      function: "0.1 * sin(u)"
+  wall:
+    rectangle: {origin: [2, 0, 2], u: [1, 0, 0], w: [0, -1, 0]}
+    material: clay
+    bump: {map: {file: map.png}, scale: 0.1, zero: 0.5, sign: up}
+  cube:
+    box: {from: [-1, 0.5, -1], to: [0, 1.5, 0]}
+    material: clay
+  ball:
+    sphere: {center: [1, 1, 0], radius: 0.5}
+    material: clay
+"""
+
+
+@dataclass
+class Kage:
+    """Runs the program in a folder of its own."""
+
+    folder: Path
+    environment: dict[str, str] = field(default_factory=lambda: dict(os.environ))
+
+    def __call__(self, *arguments: object, cwd: Path | None = None, timeout: float = 120) -> subprocess.CompletedProcess[str]:
+        return subprocess.run(
+            [str(PROGRAM), *map(str, arguments)],
+            cwd=cwd or self.folder,
+            env=self.environment,
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            timeout=timeout,
+            encoding="utf-8",
+        )
+
+    def good(self, *arguments: object, cwd: Path | None = None) -> str:
+        """Run what must succeed without a word on stderr; its stdout."""
+        done = self(*arguments, cwd=cwd)
+        assert (done.returncode, done.stderr) == (0, ""), done.stderr
+        return done.stdout
+
+    def files(self) -> set[str]:
+        return {str(path.relative_to(self.folder)) for path in self.folder.rglob("*")}
+
+
+@pytest.fixture
+def kage(tmp_path: Path) -> Kage:
+    assert PROGRAM.exists(), f"{PROGRAM} is not there: run make"
+    return Kage(tmp_path)

@@ -1,0 +1,432 @@
+"""The program from outside: what it writes, that it is the same again, and how it behaves as a program."""
+
+from __future__ import annotations
+
+import os
+import pty
+import re
+import shutil
+import signal
+import subprocess
+import time
+from pathlib import Path
+
+import numpy as np
+import OpenEXR
+import pytest
+from conftest import PROGRAM, SCENE, TOP, Kage
+from PIL import Image
+
+DATA = TOP / "tests" / "data"
+CUBE, SPHERE = DATA / "cube.yaml", DATA / "sphere.yaml"
+SMALL = ("--size", "160x120")
+METHODS = ["none", "0", "1", "2", "2+", "iter:3", "march:4"]
+LAYERS = {"R", "G", "B", "Z", "P.X", "P.Y", "P.Z", "N.X", "N.Y", "N.Z", "uw.u", "uw.w", "height", "tau", "order"}
+
+
+def exr(path: Path) -> dict[str, np.ndarray]:
+    with OpenEXR.File(str(path), separate_channels=True) as file:
+        return {name: channel.pixels.copy() for name, channel in file.channels().items()}
+
+
+def header(path: Path) -> dict[str, object]:
+    with OpenEXR.File(str(path), separate_channels=True) as file:
+        return dict(file.header())
+
+
+def png(path: Path) -> np.ndarray:
+    return np.array(Image.open(path))
+
+
+def same(a: dict[str, np.ndarray], b: dict[str, np.ndarray]) -> bool:
+    return a.keys() == b.keys() and all(a[name].tobytes() == b[name].tobytes() for name in a)
+
+
+# ---- what it says ----
+
+
+def test_help_and_version(kage: Kage) -> None:
+    text = kage.good("--help")
+    for word in ("render", "check", "pixel", "methods", "--set", "--size", "-o", "--shadow", "--no-guard", "--aa", "--crop",
+                 "--bits", "--threads", "--stats", "--quiet"):
+        assert word in text
+    assert max(map(len, text.splitlines())) <= 120
+    assert kage.good("-h") == text == kage.good("render", "--help")
+    assert re.fullmatch(r"kage \d+\.\d+\.\d+ \((float|double)\)\n", kage.good("--version"))
+
+
+def test_methods(kage: Kage) -> None:
+    names = [line.split()[0] for line in kage.good("methods").splitlines()]
+    assert names == ["none", "0", "1", "2", "2+", "iter:K", "march:N"]
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="no /dev/full on this system")
+def test_full_standard_output(kage: Kage) -> None:
+    with open("/dev/full", "w") as full:
+        done = subprocess.run([PROGRAM, "methods"], stdout=full, stderr=subprocess.PIPE, text=True, check=False)
+    assert (done.returncode, done.stderr) == (1, "kage: standard output can't be written\n")
+
+
+def test_check(kage: Kage) -> None:
+    text = kage.good("check", CUBE)
+    assert re.search(r"cube\.yaml: 640 x 480 pixels", text)
+    assert "light lamp at -4.5, 5.2, -2.2" in text
+    assert "object ground: plane, material clay, bump by map" in text
+    assert re.search(r"map +bumps\.png: \d+ x \d+ samples from", text)
+    assert re.search(r"P +from -0\.\d+ to 0\.\d+ scene units", text)
+    assert re.search(r"slope +median \d\.\d+, 95 % below \d\.\d+, steepest \d\.\d+", text)
+    assert "object cube: box, material blue" in text
+
+
+def test_check_warns_of_steep_slopes_alone(kage: Kage) -> None:
+    gentle = kage.good("check", CUBE, "--set", "objects.ground.bump.scale=0.01")
+    steep = kage.good("check", CUBE, "--set", "objects.ground.bump.scale=2")
+    assert gentle.endswith("\n0 warnings\n")
+    assert "warning: slopes above" in steep
+    assert re.search(r"\n[12] warnings?\n$", steep)
+
+
+def test_check_warns_of_unbounded_functions(kage: Kage) -> None:
+    (kage.folder / "scene.yaml").write_text(SCENE.replace("0.1 * sin(u)", "0.01 * u").replace("bump: {map", "#"))
+    text = kage.good("check", "scene.yaml")
+    assert "warning: P has no bounds" in text
+
+
+# ---- outputs ----
+
+
+def test_default_output(kage: Kage) -> None:
+    assert kage.good("render", CUBE, *SMALL) == ""
+    assert kage.files() == {"cube.png"}
+    assert png(kage.folder / "cube.png").shape == (120, 160, 3)
+
+
+def test_several_outputs(kage: Kage) -> None:
+    kage.good("render", CUBE, "-o", "a.png", "-o", "b.exr", "-o", "c.png", "--size=160x120")
+    assert kage.files() == {"a.png", "b.exr", "c.png"}
+    assert (kage.folder / "a.png").read_bytes() == (kage.folder / "c.png").read_bytes()
+    assert exr(kage.folder / "b.exr").keys() == LAYERS | {"visibility.lamp"}
+
+
+def test_bits_of_a_png(kage: Kage) -> None:
+    kage.good("render", CUBE, *SMALL, "-o", "a.png")
+    kage.good("render", CUBE, *SMALL, "-o", "b.png", "--bits", "16")
+    kage.good("render", CUBE, *SMALL, "-o", "c.exr")
+    assert (kage.folder / "a.png").read_bytes()[24:26] == b"\x08\x02"  # depth, RGB
+    assert (kage.folder / "b.png").read_bytes()[24:26] == b"\x10\x02"
+    layers = exr(kage.folder / "c.exr")
+    linear = np.clip(np.stack([layers["R"], layers["G"], layers["B"]], -1).astype(float), 0, 1)
+    srgb = np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
+    assert np.abs(png(kage.folder / "a.png") - srgb * 255).max() <= 0.501
+    # Pillow gives the high bytes of 16 bits
+    assert np.abs(png(kage.folder / "b.png").astype(float) * 257 - srgb * 65535).max() <= 65535 / 200
+
+
+def test_layers_of_an_exr(kage: Kage) -> None:
+    kage.good("render", CUBE, *SMALL, "--shadow", "2", "-o", "a.exr")
+    v = exr(kage.folder / "a.exr")
+    assert all(plane.dtype == np.float32 and plane.shape == (120, 160) for plane in v.values())
+    hit = np.hypot(np.hypot(v["N.X"], v["N.Y"]), v["N.Z"]) > 0
+    assert hit.mean() > 0.5
+    length = np.sqrt(v["N.X"] ** 2 + v["N.Y"] ** 2 + v["N.Z"] ** 2)[hit]
+    assert np.abs(length - 1).max() < 1e-6
+    ground = hit & (np.abs(v["P.Y"]) < 1e-5)
+    assert np.abs(v["P.Z"] - (v["uw.u"] - 6))[ground].max() < 1e-4
+    assert np.abs(v["P.X"] - (v["uw.w"] - 6))[ground].max() < 1e-4
+    assert set(np.unique(v["order"])) <= {-1, 0, 1, 2}
+    assert set(np.unique(v["visibility.lamp"])) == {0, 1}
+    low, high = (0.22 * (value - 0.417) for value in (0, 1))  # the map goes from black to white
+    assert low - 1e-6 <= v["height"].min() < 0 < v["height"].max() <= high + 1e-6
+
+
+def test_metadata(kage: Kage) -> None:
+    kage.good("render", CUBE, *SMALL, "--crop", "10,20,50,60", "--no-guard", "--shadow", "march:4", "-o", "a.exr")
+    h = header(kage.folder / "a.exr")
+    assert re.fullmatch(r"kage \d+\.\d+\.\d+ (float|double)", str(h["Software"]))
+    assert h["kage:scene"] == CUBE.read_text()
+    assert h["kage:file"] == "cube.yaml"
+    assert h["kage:set"] == "image.size=[160, 120]\nrender.guard=false\nrender.shadow=march:4"
+    assert (h["kage:crop"], h["kage:shadow"], h["kage:guard"]) == ("10,20,50,60", "march:4", "no")
+
+
+def test_exrheader_reads_it(kage: Kage) -> None:
+    if not shutil.which("exrheader"):
+        pytest.skip("exrheader is not installed")
+    kage.good("render", CUBE, *SMALL, "-o", "a.exr")
+    text = subprocess.run(["exrheader", "a.exr"], cwd=kage.folder, capture_output=True, text=True, check=True).stdout
+    for name in LAYERS:
+        assert f"    {name}, 32-bit floating-point" in text
+    assert 'kage:shadow (type string): "0"' in text
+
+
+def test_oiiotool_reads_it(kage: Kage) -> None:
+    if not shutil.which("oiiotool"):
+        pytest.skip("oiiotool is not installed")
+    kage.good("render", CUBE, *SMALL, "-o", "a.exr", "-o", "a.png")
+    for name, channels in (("a.exr", 16), ("a.png", 3)):
+        command = ["oiiotool", "--info", "-v", name]
+        text = subprocess.run(command, cwd=kage.folder, capture_output=True, text=True, check=True).stdout
+        assert re.search(rf"160 x +120, {channels} channel", text)
+        assert "Software:" in text
+
+
+def test_made_again_from_its_own_metadata(kage: Kage) -> None:
+    options = [*SMALL, "--shadow", "2", "--aa", "2", "--set", "objects.ground.bump.scale=0.3", "--crop", "20,10,100,90"]
+    kage.good("render", CUBE, *options, "-o", "first.exr", "-o", "first.png")
+    h = header(kage.folder / "first.exr")
+    (kage.folder / str(h["kage:file"])).write_text(str(h["kage:scene"]))
+    (kage.folder / "bumps.png").symlink_to(DATA / "bumps.png")
+    again = [part for change in str(h["kage:set"]).split("\n") for part in ("--set", change)]
+    kage.good("render", h["kage:file"], *again, "--crop", h["kage:crop"], "-o", "again.exr", "-o", "again.png")
+    for ending in ("exr", "png"):
+        assert (kage.folder / f"first.{ending}").read_bytes() == (kage.folder / f"again.{ending}").read_bytes()
+
+
+# ---- what must be the same ----
+
+
+@pytest.mark.parametrize("scene", [CUBE, SPHERE], ids=["cube", "sphere"])
+@pytest.mark.parametrize("aa", [1, 2])
+def test_crop_is_that_part_of_the_picture(kage: Kage, scene: Path, aa: int) -> None:
+    kage.good("render", scene, *SMALL, "--aa", aa, "--shadow", "2", "-o", "all.exr", "-o", "all.png")
+    kage.good("render", scene, *SMALL, "--aa", aa, "--shadow", "2", "-o", "part.exr", "-o", "part.png", "--crop", "37,21,120,86")
+    whole, part = exr(kage.folder / "all.exr"), exr(kage.folder / "part.exr")
+    assert same({name: plane[21:86, 37:120] for name, plane in whole.items()}, part)
+    assert (png(kage.folder / "all.png")[21:86, 37:120] == png(kage.folder / "part.png")).all()
+
+
+@pytest.mark.parametrize("crop", ["0,0,1,1", "159,119,160,120", "0,5,160,6", "3,0,4,120"])
+def test_thin_crops(kage: Kage, crop: str) -> None:
+    kage.good("render", CUBE, *SMALL, "--crop", crop, "-o", "a.png")
+    kage.good("render", CUBE, *SMALL, "-o", "b.png")
+    x0, y0, x1, y1 = map(int, crop.split(","))
+    assert (png(kage.folder / "a.png") == png(kage.folder / "b.png")[y0:y1, x0:x1]).all()
+
+
+@pytest.mark.parametrize("size", [(1, 1), (3, 200), (200, 3), (129, 65)])
+def test_size(kage: Kage, size: tuple[int, int]) -> None:
+    kage.good("render", CUBE, "--size", f"{size[0]}x{size[1]}", "-o", "a.png")
+    assert Image.open(kage.folder / "a.png").size == size
+
+
+def test_aa_averages_the_samples(kage: Kage) -> None:
+    """2 x 2 samples a pixel are the four pixels of the picture of twice the size."""
+    kage.good("render", CUBE, "--size", "80x60", "--aa", "2", "-o", "a.exr")
+    kage.good("render", CUBE, "--size", "160x120", "-o", "b.exr")
+    coarse, fine = exr(kage.folder / "a.exr"), exr(kage.folder / "b.exr")
+    for name in ("R", "G", "B", "visibility.lamp"):
+        mean = fine[name].reshape(60, 2, 80, 2).mean((1, 3))
+        assert np.mean(np.abs(coarse[name] - mean) > 1e-5) < 0.002, name  # a hit on an edge may go either way
+
+
+def test_set_is_an_edited_scene(kage: Kage) -> None:
+    edited = CUBE.read_text().replace("scale: 0.22", "scale: 0.1").replace("from: [0, 3.9, -5.2]", "from: [0, 3, -5.2]")
+    (kage.folder / "bumps.png").symlink_to(DATA / "bumps.png")
+    (kage.folder / "edited.yaml").write_text(edited)
+    kage.good("render", "edited.yaml", *SMALL, "-o", "a.exr")
+    kage.good("render", CUBE, *SMALL, "-o", "b.exr", "--set", "objects.ground.bump.scale=0.1", "--set", "camera.from.1=3")
+    assert same(exr(kage.folder / "a.exr"), exr(kage.folder / "b.exr"))
+
+
+def test_set_adds_removes_nothing_else(kage: Kage) -> None:
+    add = "objects.moon={sphere: {center: [1, 2, 0], radius: 0.3}, material: blue}"
+    text = kage.good("check", CUBE, "--set", add, "--set", "objects.moon.sphere.radius=0.4")
+    assert "object moon: sphere, material blue" in text
+    assert "object cube: box, material blue" in text
+
+
+@pytest.mark.parametrize("scene", [CUBE, SPHERE], ids=["cube", "sphere"])
+def test_any_number_of_threads_gives_the_same_bytes(kage: Kage, scene: Path) -> None:
+    for threads in (1, 2, 7):
+        kage.good("render", scene, *SMALL, "--aa", 2, "--threads", threads, "-o", f"{threads}.png", "-o", f"{threads}.exr")
+    for ending in ("png", "exr"):
+        pictures = {(kage.folder / f"{threads}.{ending}").read_bytes() for threads in (1, 2, 7)}
+        assert len(pictures) == 1
+
+
+def test_any_working_directory_gives_the_same_bytes(kage: Kage) -> None:
+    out = kage.folder
+    kage.good("render", CUBE, *SMALL, "-o", out / "a.exr", cwd=Path("/"))
+    kage.good("render", "cube.yaml", *SMALL, "-o", out / "b.exr", cwd=CUBE.parent)
+    kage.good("render", "data/cube.yaml", *SMALL, "-o", out / "c.exr", cwd=TOP / "tests")
+    assert len({(out / f"{name}.exr").read_bytes() for name in "abc"}) == 1
+
+
+def test_every_method_is_the_same_where_the_surface_is_flat(kage: Kage) -> None:
+    flat = ("--set", "objects.ground.bump.scale=0")
+    kage.good("render", CUBE, *SMALL, *flat, "--shadow", "none", "-o", "none.png", "-o", "none.exr")
+    reference, picture = exr(kage.folder / "none.exr"), png(kage.folder / "none.png")
+    for method in METHODS[1:]:
+        for guard in ([], ["--no-guard"]):
+            kage.good("render", CUBE, *SMALL, *flat, "--shadow", method, *guard, "-o", "a.png", "-o", "a.exr")
+            layers = exr(kage.folder / "a.exr")
+            assert (png(kage.folder / "a.png") == picture).all(), (method, guard)
+            for name in set(reference) - {"order", "tau"}:
+                assert layers[name].tobytes() == reference[name].tobytes(), (method, guard, name)
+            assert not layers["tau"].any()
+
+
+# ---- kage pixel ----
+
+
+def pixel(kage: Kage, scene: Path, x: int, y: int, *options: object) -> tuple[dict[str, list[float]], dict[str, list[str]]]:
+    """The values of `kage pixel`, and its table: method -> columns."""
+    head, _, table = kage.good("pixel", scene, f"{x},{y}", *options).partition("\n\n")
+    values = {}
+    for line in head.splitlines():
+        name, *rest = re.sub(r" to | in tau", " ", line).split()
+        try:
+            values[name] = [float(v) for v in rest]
+        except ValueError:
+            continue
+    rows = {}
+    for line in table.splitlines()[1:]:
+        match = re.match(r"(\S+(?: bare)?)\s+(.*)", line)
+        assert match
+        rows[match[1]] = match[2].split()
+    return values, rows
+
+
+PIXELS = [(80, 60), (75, 75), (10, 110), (150, 70), (60, 90), (83, 49), (79, 30)]
+
+
+@pytest.mark.parametrize("scene", [CUBE, SPHERE], ids=["cube", "sphere"])
+@pytest.mark.parametrize("method", ["none", "0", "1", "2", "2+", "march:4", "1 bare", "2 bare"])
+def test_pixel_agrees_with_the_layers(kage: Kage, scene: Path, method: str) -> None:
+    name, _, bare = method.partition(" ")
+    options = ["--no-guard"] if bare else []
+    kage.good("render", scene, *SMALL, "--shadow", name, *options, "-o", "a.exr")
+    layers = exr(kage.folder / "a.exr")
+    bumped = 0
+    for x, y in PIXELS:
+        at = {layer: float(plane[y, x]) for layer, plane in layers.items()}
+        values, rows = pixel(kage, scene, x, y, *SMALL)
+        if "t_hit" not in values:
+            assert not rows and at["N.X"] == at["N.Y"] == at["N.Z"] == 0
+            continue
+        near = {"rel": 1e-6, "abs": 1e-6}
+        assert at["Z"] == pytest.approx(values["t_hit"][0], **near)
+        assert [at["P.X"], at["P.Y"], at["P.Z"]] == pytest.approx(values["Q"], rel=1e-5, abs=1e-5)
+        assert [at["uw.u"], at["uw.w"]] == pytest.approx([values["u"][0], values["w"][0]], **near)
+        normal = np.array(values.get("n'", values["n"]))
+        assert [at["N.X"], at["N.Y"], at["N.Z"]] == pytest.approx(list(normal / np.linalg.norm(normal)), **near)
+        row = rows[method]
+        assert [at["R"], at["G"], at["B"]] == pytest.approx([float(v) for v in row[-3:]], abs=6e-5)
+        assert at["visibility.lamp"] == (row[-4] == "lit")
+        if "P" in values:
+            bumped += 1
+            assert at["height"] == pytest.approx(values["P"][0], **near)
+            assert at["tau"] == pytest.approx(float(row[0]), rel=1e-5, abs=1e-6)
+            fell = row[5] if len(row) == 10 else name
+            code = {"none": -1, "0": 0, "1": 1, "2": 2, "2+": 3, "iter": 4, "march": 5}[fell.partition(":")[0]]
+            assert at["order"] == code
+    assert bumped >= 2
+
+
+# ---- as a program ----
+
+
+def test_stats(kage: Kage) -> None:
+    text = kage.good("render", CUBE, *SMALL, "--stats", "--shadow", "2", "-o", "a.png")
+    for stage in ("render", "camera", "hit", "sort", "surface", "bump", "normal", "shift", "shadow", "shade", "film", "output"):
+        assert re.search(rf"^ *{stage} +[\d.]+ ms", text, re.MULTILINE), stage
+    assert "Mrays/s" in text
+    assert re.search(r"camera rays 19200, shadow rays \d+, height look-ups \d+", text)
+    assert re.search(r"bumped samples \d+ by method 2, fell back \d+ \([\d.]+ %\); by order", text)
+
+
+def test_no_progress_without_a_terminal(kage: Kage) -> None:
+    assert kage.good("render", CUBE, "--size", "1600x1200", "--aa", "2", "-o", "a.png") == ""
+
+
+def on_terminal(kage: Kage, *arguments: object) -> tuple[int, str]:
+    """Run with a terminal behind stderr; (status, what it was sent)."""
+    master, slave = pty.openpty()
+    command = [str(PROGRAM), *map(str, arguments)]
+    process = subprocess.Popen(command, cwd=kage.folder, stdin=slave, stdout=subprocess.DEVNULL, stderr=slave)
+    os.close(slave)
+    said = b""
+    while True:
+        try:
+            part = os.read(master, 4096)
+        except OSError:  # Linux: the other end is closed
+            break
+        if not part:
+            break
+        said += part
+    os.close(master)
+    return process.wait(), said.decode()
+
+
+def shown(said: str) -> list[str]:
+    """The lines left on a terminal that was sent this."""
+    lines = []
+    for line in said.replace("\r\n", "\n").split("\n"):
+        screen = ""
+        for part in line.split("\r"):
+            at = 0
+            for k, text in enumerate(part.split("\x1b[K")):
+                screen = screen[:at] + text + screen[at + len(text) :]
+                at += len(text)
+                if part.count("\x1b[K") > k:
+                    screen = screen[:at]
+        lines.append(screen.rstrip())
+    return [line for line in lines if line]
+
+
+def test_progress_on_a_terminal(kage: Kage) -> None:
+    status, said = on_terminal(
+        kage, "render", CUBE, "--size", "2400x1800", "--aa", "3", "--threads", "1", "--crop", "0,0,2400,1200", "-o", "a.png"
+    )
+    assert status == 0
+    bars = re.findall(r"\rcube\.yaml \[(#*)(\.*)\] +(\d+) %  [\d.]+ Mpixel/s  [\d.]+ s left", said)
+    assert bars
+    assert all(len(done) + len(left) == 30 for done, left, _ in bars)
+    shares = [int(share) for _, _, share in bars]
+    assert shares == sorted(shares)
+    left = shown(said)
+    assert len(left) == 1
+    assert re.fullmatch(r"cube\.yaml: [\d.]+ s; a\.png", left[0])
+
+
+def test_quiet_on_a_terminal(kage: Kage) -> None:
+    assert on_terminal(kage, "render", CUBE, "--size", "800x600", "--aa", "4", "--quiet", "-o", "a.png") == (0, "")
+
+
+@pytest.mark.parametrize("name", ["none/a.png", "none/a.exr", "folder.png", "folder.exr"])
+def test_output_that_cannot_be_written(kage: Kage, name: str) -> None:
+    (kage.folder / "folder.png").mkdir()
+    (kage.folder / "folder.exr").mkdir()
+    before = kage.files()
+    done = kage("render", CUBE, *SMALL, "-o", name)
+    assert (done.returncode, done.stdout) == (1, "")
+    why = "Is a directory" if name.startswith("folder") else "No such file or directory"
+    assert done.stderr == f"{name}: cannot be written: {why}\n"
+    assert kage.files() == before
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="no /dev/full on this system")
+@pytest.mark.parametrize("ending", ["png", "exr"])
+def test_full_disk(kage: Kage, ending: str) -> None:
+    (kage.folder / f"full.{ending}").symlink_to("/dev/full")
+    before = kage.files()
+    done = kage("render", CUBE, *SMALL, "-o", f"full.{ending}")
+    assert (done.returncode, done.stderr) == (1, f"full.{ending}: cannot be written: No space left on device\n")
+    assert kage.files() == before
+
+
+@pytest.mark.parametrize("wait", [0.05, 0.3, 0.6, 0.9, 1.2])
+def test_interrupt_leaves_no_half_file(kage: Kage, wait: float) -> None:
+    """Ctrl-C at several times, some of them while files are written."""
+    command = [PROGRAM, "render", CUBE, "--size", "1600x1200", "-o", "a.exr", "-o", "b.png", "-o", "c.exr", "-o", "d.png"]
+    process = subprocess.Popen(command, cwd=kage.folder, stderr=subprocess.PIPE)
+    time.sleep(wait)
+    process.send_signal(signal.SIGINT)
+    process.communicate(timeout=60)
+    assert process.returncode in (0, -signal.SIGINT)
+    assert kage.files() <= {"a.exr", "b.png", "c.exr", "d.png"}
+    for path in kage.folder.iterdir():
+        if path.suffix == ".exr":
+            assert exr(path)["R"].shape == (1200, 1600)
+        else:
+            assert png(path).shape == (1200, 1600, 3)
