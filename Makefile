@@ -135,4 +135,6 @@ install: all
 clean:
 	rm -rf build out
 
+.PRECIOUS: $(BUILD)/%.o
+
 -include $(wildcard $(BUILD)/*.d)

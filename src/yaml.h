@@ -1,4 +1,5 @@
-/* A YAML file as the scene reader sees it: nodes, and errors that point at them. Only yaml.c includes libfyaml.
+/* A YAML file as the scene reader sees it: nodes, and errors that point at them. Only yaml.c, yaml_error.c, yaml_set.c and
+ * yaml_value.c include libfyaml.
  *
  * All getters take the place of an error as a node: a wrong value adds one message to the list given to yaml_open,
  *
@@ -55,8 +56,5 @@ bool yaml_numbers(yaml *y, node *at, int n, double lo, double hi, const char *wh
 
 /* The index of the text among words separated by spaces; -1 with an error where it is none of them. */
 int yaml_word(yaml *y, node *at, const char *words, const char *what);
-
-/* Writes the words' nearest to `text` into out, or "" where none is near. */
-void yaml_nearest(const char *text, const char *words, char *out, size_t size);
 
 #endif

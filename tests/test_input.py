@@ -649,7 +649,7 @@ def test_examples_of_the_page(kage: Kage, images: Path, block: tuple[int, str]) 
 
 def test_the_page_names_every_key() -> None:
     """Every key that the reader takes stands in the page as code."""
-    source = (TOP / "src" / "scene_read.c").read_text()
+    source = "".join((TOP / "src" / name).read_text() for name in ("scene_read.c", "scene_objects.c"))
     keys = {key for words in re.findall(r'yaml_map\([^;]*?"([a-z_ ]+)"\)', source) for key in words.split()}
     assert {"camera", "fov", "phong_size", "samples"} <= keys
     text = PAGE.read_text()

@@ -1,0 +1,273 @@
+/* The scene reader's objects: their surfaces, and the bumps on them. */
+#include "scene_reader.h"
+
+#include "image.h"
+#include "yaml_text.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- surfaces ---- */
+
+static surface *read_plane(reader *r, node *at, const char *kind, bool bounded)
+{
+    vec3 O = {0, 0, 0}, U = {0, 0, 0}, W = {0, 0, 0};
+    if (!yaml_map(r->y, at, kind, "origin u w"))
+        return NULL;
+    bool good = yaml_need(r->y, at, "origin", kind) && yaml_need(r->y, at, "u", kind) && yaml_need(r->y, at, "w", kind);
+    good = reader_vector(r, at, "origin", "the place of u = w = 0, [x, y, z]", &O) && good;
+    good = reader_vector(r, at, "u", "the edge along u, [x, y, z]", &U) && good;
+    good = reader_vector(r, at, "w", "the edge along w, [x, y, z]", &W) && good;
+    if (!good)
+        return NULL;
+    if (vec3_length(U) < SMALL || vec3_length(W) < SMALL) {
+        yaml_error(r->y, yaml_get(at, vec3_length(U) < SMALL ? "u" : "w"), "no direction, expected an edge with a length");
+        return NULL;
+    }
+    surface *f = plane_new(O, U, W, bounded);
+    if (!f)
+        yaml_error(r->y, at, "u and w are parallel, expected two directions");
+    return f;
+}
+
+static surface *read_box(reader *r, node *at)
+{
+    vec3 from = {0, 0, 0}, to = {0, 0, 0};
+    if (!yaml_map(r->y, at, "box", "from to"))
+        return NULL;
+    bool good = yaml_need(r->y, at, "from", "box") && yaml_need(r->y, at, "to", "box");
+    good = reader_vector(r, at, "from", "a corner [x, y, z]", &from) && good;
+    good = reader_vector(r, at, "to", "the opposite corner [x, y, z]", &to) && good;
+    surface *f = good ? box_new(from, to) : NULL;
+    if (good && !f)
+        yaml_error(r->y, yaml_get(at, "to"), "a box without thickness, expected 'to' apart from 'from' along x, y and z");
+    return f;
+}
+
+static surface *read_sphere(reader *r, node *at)
+{
+    vec3 c = {0, 0, 0};
+    double radius = 1;
+    if (!yaml_map(r->y, at, "sphere", "center radius"))
+        return NULL;
+    bool good = yaml_need(r->y, at, "center", "sphere") && yaml_need(r->y, at, "radius", "sphere");
+    good = reader_vector(r, at, "center", "a place [x, y, z]", &c) && good;
+    good = reader_number(r, at, "radius", SMALL, false, BIG, "a length from 1e-6 to 1e6", &radius) && good;
+    return good ? sphere_new(c, radius) : NULL;
+}
+
+static surface *read_surface(reader *r, node *at)
+{
+    static const char *const kinds[] = {"plane", "rectangle", "box", "sphere"};
+    node *shape = NULL;
+    int kind = -1;
+    for (int k = 0; k < 4; k++) {
+        node *v = yaml_get(at, kinds[k]);
+        if (v && shape) {
+            yaml_error(r->y, v, "a second shape, '%s' beside '%s', expected one", kinds[k], kinds[kind]);
+            return NULL;
+        }
+        if (v) {
+            shape = v;
+            kind = k;
+        }
+    }
+    if (!shape) {
+        yaml_error(r->y, at, "an object lacks its shape, expected one of: plane rectangle box sphere");
+        return NULL;
+    }
+    return kind < 2 ? read_plane(r, shape, kinds[kind], kind == 1) : kind == 2 ? read_box(r, shape) : read_sphere(r, shape);
+}
+
+/* ---- bumps ---- */
+
+/* The file beside the scene, so that a scene finds its maps from any working directory. */
+static char *beside(reader *r, const char *file)
+{
+    const char *slash = strrchr(r->s->path, '/');
+    int folder = slash && *file != '/' ? (int)(slash - r->s->path) + 1 : 0;
+    size_t size = (size_t)folder + strlen(file) + 1;
+    char *path = malloc(size);
+    if (path)
+        snprintf(path, size, "%.*s%s", folder, r->s->path, file);
+    else
+        errors_add(r->e, "out of memory");
+    return path;
+}
+
+/* Where the map lies: by its size in (u,w), or by how often it goes into the surface's extent. */
+static bool read_layout(reader *r, node *at, const double u[2], const double w[2], map_layout *l)
+{
+    const double extent[2] = {u[1] - u[0], w[1] - w[0]};
+    const bool bounded = extent[0] < HUGE_VAL;
+    node *size = yaml_get(at, "size"), *repeat = yaml_get(at, "repeat"), *k;
+    bool good = true;
+    l->offset[0] = bounded ? u[0] : 0;
+    l->offset[1] = bounded ? w[0] : 0;
+    if (size && repeat)
+        good = yaml_error(r->y, repeat, "both 'size' and 'repeat', expected one of them");
+    else if (size) {
+        good = yaml_numbers(r->y, size, 2, SMALL, BIG, "the size of the map [in u, in w], 1e-6 or more", l->size);
+    } else if (!bounded)
+        good = yaml_error(r->y, repeat ? repeat : at, "a map on an unbounded surface, expected 'size: [in u, in w]'");
+    else {
+        double n[2] = {1, 1};
+        if (repeat)
+            good = yaml_numbers(r->y, repeat, 2, SMALL, BIG, "how often the map goes into the surface [in u, in w], 1e-6 or more", n);
+        l->size[0] = extent[0] / n[0];
+        l->size[1] = extent[1] / n[1];
+    }
+    double shift[2] = {0, 0};
+    if ((k = yaml_get(at, "offset")))
+        good = yaml_numbers(r->y, k, 2, -BIG, BIG, "where the map begins [in u, in w]", shift) && good;
+    l->offset[0] += shift[0];
+    l->offset[1] += shift[1];
+    if ((k = yaml_get(at, "wrap"))) {
+        int wrap = yaml_word(r->y, k, "repeat clamp mirror", "repeat, clamp or mirror");
+        good = wrap >= 0 && good;
+        l->wrap = wrap == 1 ? MAP_CLAMP : wrap == 2 ? MAP_MIRROR : MAP_REPEAT;
+    }
+    if ((k = yaml_get(at, "samples"))) {
+        int samples = yaml_word(r->y, k, "cells corners", "cells or corners");
+        good = samples >= 0 && good;
+        l->corners = samples == 1;
+    }
+    return good;
+}
+
+static bool read_samples(reader *r, node *at, image *out, map_note *note)
+{
+    if (!yaml_map(r->y, at, "map", "file channel"))
+        return false;
+    node *file = yaml_need(r->y, at, "file", "map"), *channel = yaml_get(at, "channel");
+    const char *name = file ? yaml_text(r->y, file, "the file of a height map") : NULL;
+    const char *layer = channel ? yaml_text(r->y, channel, "the name of a channel") : NULL;
+    if (!name || (channel && !layer))
+        return false;
+    char *path = beside(r, name);
+    errors e = {0};
+    bool good = path && image_read(path, layer, out, &e);
+    if (!good && path)
+        yaml_error(r->y, file, "'%s' can't be used: %.*s", name, e.size ? (int)e.size - 1 : 0, e.text ? e.text : "");
+    if (good && (out->width < 2 || out->height < 2)) {
+        free(out->v);
+        good = yaml_error(r->y, file, "'%s' has %d x %d samples, expected at least 2 x 2", name, out->width, out->height);
+    }
+    if (good) {
+        *note = (map_note){reader_copy(r, name), out->width, out->height, HUGE_VAL, -HUGE_VAL};
+        for (size_t k = 0; k < (size_t)out->width * (size_t)out->height; k++) {
+            note->low = fmin(note->low, (double)out->v[k]);
+            note->high = fmax(note->high, (double)out->v[k]);
+        }
+    }
+    errors_free(&e);
+    free(path);
+    return good;
+}
+
+/* Scale, zero level and sign: without them a map is no height, so none has a default. */
+static perturb *read_map(reader *r, node *at, const double u[2], const double w[2], map_note *note)
+{
+    image samples;
+    map_layout l = {.size = {1, 1}};
+    bool good = yaml_map(r->y, at, "a bump with a map", "map scale zero sign size repeat offset wrap samples");
+    node *scale = yaml_need(r->y, at, "scale", "a bump with a map"), *zero = yaml_need(r->y, at, "zero", "a bump with a map");
+    node *sign = yaml_need(r->y, at, "sign", "a bump with a map");
+    good = scale && yaml_number(r->y, scale, 0, false, BIG, "scene units for one unit of the map, 0 or more", &l.scale) && good;
+    good = zero && yaml_number(r->y, zero, -BIG, false, BIG, "the map's value whose height is 0", &l.zero) && good;
+    int up = sign ? yaml_word(r->y, sign, "up down", "up (higher values are higher) or down") : -1;
+    good = read_layout(r, at, u, w, &l) && up >= 0 && good;
+    good = read_samples(r, yaml_get(at, "map"), &samples, note) && good;
+    if (!note->file) /* there are no samples */
+        return NULL;
+    l.scale = up == 1 ? -l.scale : l.scale;
+    const double low = l.scale * (note->low - l.zero), high = l.scale * (note->high - l.zero);
+    if (good && fmax(fabs(low), fabs(high)) > BIG)
+        good = yaml_error(r->y, scale, "heights from %.4g to %.4g, expected them within 1000000 scene units", fmin(low, high),
+                          fmax(low, high));
+    perturb *p = good ? perturb_map(&samples, &l) : NULL;
+    if (good && !p)
+        errors_add(r->e, "out of memory");
+    free(samples.v);
+    return p;
+}
+
+static perturb *read_function(reader *r, node *at, const double u[2], const double w[2])
+{
+    double scale = 1;
+    bool good = yaml_map(r->y, at, "a bump with a function", "function scale");
+    good = reader_number(r, at, "scale", -BIG, false, BIG, "a factor", &scale) && good;
+    node *f = yaml_get(at, "function");
+    const char *text = yaml_text(r->y, f, "a function of u and w");
+    expr_error wrong;
+    expr *e = text ? expr_parse(text, &wrong) : NULL;
+    if (text && !e)
+        yaml_error_in(r->y, f, wrong.offset, "%s", wrong.message);
+    if (!good || !e) {
+        expr_free(e);
+        return NULL;
+    }
+    perturb *p = perturb_function(e, scale, u, w);
+    if (!p)
+        errors_add(r->e, "out of memory");
+    return p;
+}
+
+static perturb *read_bump(reader *r, node *at, const surface *f, map_note *note)
+{
+    double u[2], w[2];
+    if (!yaml_map(r->y, at, "bump", NULL))
+        return NULL;
+    node *map = yaml_get(at, "map"), *function = yaml_get(at, "function");
+    if (!map == !function) {
+        yaml_error(r->y, at, "a bump with %s, expected either 'map' or 'function'", map ? "both map and function" : "neither map nor function");
+        return NULL;
+    }
+    f->is->extent(f, u, w);
+    return map ? read_map(r, at, u, w, note) : read_function(r, at, u, w);
+}
+
+/* ---- objects ---- */
+
+static int find_material(reader *r, node *at)
+{
+    const char *name = yaml_text(r->y, at, "the name of a material");
+    char near[64], *names = NULL;
+    size_t size = 1;
+    if (!name || !r->s->material) /* without materials that alone is told */
+        return 0;
+    for (int i = 0; i < r->s->materials; i++) {
+        if (r->s->material[i].name && strcmp(name, r->s->material[i].name) == 0)
+            return i;
+        size += r->s->material[i].name ? strlen(r->s->material[i].name) + 1 : 0;
+    }
+    if ((names = calloc(1, size)))
+        for (int i = 0; i < r->s->materials; i++)
+            if (r->s->material[i].name)
+                strcat(strcat(names, i ? " " : ""), r->s->material[i].name);
+    text_nearest(name, names ? names : "", near, sizeof near);
+    yaml_error(r->y, at, "no material '%.60s'%s%s%s", name, *near ? ", did you mean '" : ", expected one of those under 'materials'",
+               near, *near ? "'?" : "");
+    free(names);
+    return 0;
+}
+
+void reader_objects(reader *r)
+{
+    scene *s = r->s;
+    node *at = reader_named(r, "objects", "objects", true, sizeof *s->object, &s->object, &s->objects), *key;
+    for (int i = 0; at && i < s->objects; i++) {
+        node *v = yaml_pair(at, i, &key), *m, *bump;
+        object *o = &s->object[i];
+        o->name = reader_name(r, at, key);
+        if (!yaml_map(r->y, v, "an object", "plane rectangle box sphere material bump"))
+            continue;
+        o->shape = read_surface(r, v);
+        if ((m = yaml_need(r->y, v, "material", "an object")))
+            o->material = find_material(r, m);
+        if ((bump = yaml_get(v, "bump")) && o->shape)
+            o->bump = read_bump(r, bump, o->shape, &o->map);
+    }
+}

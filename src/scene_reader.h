@@ -1,0 +1,36 @@
+/* What the parts of the scene reader share: its state, and the small readers. Private to scene_read.c and scene_objects.c. */
+#ifndef KAGE_SCENE_READER_H
+#define KAGE_SCENE_READER_H
+
+#include "scene.h"
+#include "yaml.h"
+
+/* Numbers of a scene: within these, no product of a few overflows float, and no square vanishes. */
+#define BIG 1e6
+#define SMALL 1e-6
+
+typedef struct reader {
+    yaml *y;
+    scene *s;
+    errors *e;
+} reader;
+
+/* An owned copy of a text; NULL of NULL. */
+char *reader_copy(reader *r, const char *text);
+
+/* Three numbers, each within BIG. An absent key leaves *v and is no error here. */
+bool reader_vector(reader *r, node *map, const char *key, const char *what, vec3 *v);
+
+/* A number lo <= x <= hi; `open`: lo < x. An absent key leaves *x and is no error here. */
+bool reader_number(reader *r, node *map, const char *key, double lo, bool open, double hi, const char *what, double *x);
+
+/* A name in a map of named things; owned. NULL: an error is told. */
+char *reader_name(reader *r, node *map, node *key);
+
+/* A map of named things: makes room for them. Returns their map, NULL where there is none or it is wrong. */
+node *reader_named(reader *r, const char *key, const char *what, bool need, size_t size, void *array, int *count);
+
+/* The objects with their surfaces and bumps; after the materials, whose names they give. (scene_objects.c) */
+void reader_objects(reader *r);
+
+#endif
