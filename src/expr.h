@@ -40,6 +40,19 @@ void expr_eval(const expr *e, int n, const double *u, const double *w, int order
  * be infinite. */
 void expr_range(const expr *e, double u0, double u1, double w0, double w1, double *lo, double *hi);
 
+/* Least and greatest value, and partials along u and along w. */
+typedef struct expr_bounds {
+    double v[2], u[2], w[2];
+} expr_bounds;
+
+/* As expr_range, and bounds of the first partials: never NaN, infinite where none is known. With L the larger magnitude
+ * of u's and M that of w's, |e(p) - e(q)| <= L |pu - qu| + M |pw - qw| for all points p and q of the box at which e is
+ * defined, in exact arithmetic, with 0 infinity = 0. So at a kink (abs, min, max, clamp) they hold the slopes of both
+ * sides; and they are infinite along a direction in which a jump may lie in the box, its edge included (floor, mod,
+ * select unless its branches are the same, atan2's cut, poles), and where a slope is (sqrt, log, u^0.5 at 0; asin at 1).
+ * They also hold the partials of expr_eval, unless intermediate results underflow. */
+void expr_range_gradient(const expr *e, double u0, double u1, double w0, double w1, expr_bounds *out);
+
 void expr_free(expr *e);
 
 #endif

@@ -1,75 +1,8 @@
-/* Bounds by interval arithmetic: the program of expr_eval.c, run once on intervals instead of on points.
+/* Bounds of the value by interval arithmetic: the program of expr_eval.c, run once on intervals instead of on points.
  *
- * An operation's bounds are computed in the usual rounding and then widened by more than its error, so
- * they hold for the exact value and for the evaluated one. Zero stays zero, so that 0 <= u^2 is kept. A point
- * at which some operand is NaN or a pole counts as outside the expression's domain.
+ * A point at which some operand is NaN or a pole counts as outside the expression's domain.
  */
-#include "expr_program.h"
-#include "kmath.h"
-
-typedef struct interval {
-    double lo, hi;
-} interval;
-
-static const interval everything = {-KM_INF, KM_INF};
-
-static double least(double x, double y) { return x < y ? x : y; }
-static double most(double x, double y) { return x > y ? x : y; }
-static interval hull(interval a, interval b) { return (interval){least(a.lo, b.lo), most(a.hi, b.hi)}; }
-static interval negative(interval a) { return (interval){-a.hi, -a.lo}; }
-static bool contains(interval a, double x) { return a.lo <= x && x <= a.hi; }
-
-/* The part of a in lo..hi; everything where there is none, for then no point is in the domain. */
-static interval clip(interval a, double lo, double hi)
-{
-    interval c = {most(a.lo, lo), least(a.hi, hi)};
-    return c.lo <= c.hi ? c : (interval){lo, hi};
-}
-
-/* The errors: half an ulp for one operation of the hardware; 2 ulp for those of kmath.h, 8 for a power that
- * is multiplied out. */
-#define ONE_ROUNDING 2.3e-16
-#define SOME_ROUNDINGS 4e-15
-
-/* How much to move an end. 0 is exact; 1e-305 counts only where numbers are too small to round relatively. */
-static double margin(double x, double relative) { return x == 0 ? 0 : relative * fabs(x) + 1e-305; }
-
-static interval widen(interval a, double relative)
-{
-    return (interval){a.lo - margin(a.lo, relative), a.hi + margin(a.hi, relative)};
-}
-
-static interval magnitude(interval a)
-{
-    double l = fabs(a.lo), h = fabs(a.hi);
-    return (interval){contains(a, 0) ? 0 : least(l, h), most(l, h)};
-}
-
-/* x y at two ends: 0 times infinity is 0, since infinity only bounds what is finite; and a product
- * that underflows is not 0. */
-static interval end_product(double x, double y)
-{
-    double p = x == 0 || y == 0 ? 0 : x * y;
-    const double tiny = 1e-305;
-    if (p == 0 && x != 0 && y != 0)
-        return (x > 0) == (y > 0) ? (interval){0, tiny} : (interval){-tiny, 0};
-    return (interval){p, p};
-}
-
-static interval multiply(interval a, interval b)
-{
-    interval z = hull(hull(end_product(a.lo, b.lo), end_product(a.lo, b.hi)),
-                      hull(end_product(a.hi, b.lo), end_product(a.hi, b.hi)));
-    return widen(z, ONE_ROUNDING);
-}
-
-static interval reciprocal(interval b)
-{
-    if ((b.lo < 0 && b.hi > 0) || (b.lo == 0 && b.hi == 0))
-        return everything;
-    interval z = {b.hi == 0 ? -KM_INF : 1 / b.hi, b.lo == 0 ? KM_INF : 1 / b.lo};
-    return widen(z, ONE_ROUNDING);
-}
+#include "expr_interval.h"
 
 /* Is there an integer in lo..hi, or so near that rounding decides? */
 static bool holds_integer(double lo, double hi) { return floor(hi + 1e-9) >= ceil(lo - 1e-9); }
@@ -100,7 +33,7 @@ static interval positive_power(interval a, interval b)
     interval p = {km_pow(a.lo, b.lo), km_pow(a.lo, b.hi)}, q = {km_pow(a.hi, b.lo), km_pow(a.hi, b.hi)};
     interval z = {least(least(p.lo, p.hi), least(q.lo, q.hi)), most(most(p.lo, p.hi), most(q.lo, q.hi))};
     z = widen(z, SOME_ROUNDINGS);
-    return (interval){most(z.lo, 0), most(z.hi, 1e-305)}; /* which also holds what underflows */
+    return (interval){most(z.lo, 0), most(z.hi, TINY)}; /* which also holds what underflows */
 }
 
 static interval power(interval a, interval b)
@@ -150,11 +83,11 @@ static interval range_of(const expr_code *p, const interval *slot)
     case OP_CONST:
         return k;
     case OP_ADDK:
-        return widen((interval){a.lo + p->k, a.hi + p->k}, ONE_ROUNDING);
+        return add(a, k);
     case OP_ADD:
-        return widen((interval){a.lo + b.lo, a.hi + b.hi}, ONE_ROUNDING);
+        return add(a, b);
     case OP_SUB:
-        return widen((interval){a.lo - b.hi, a.hi - b.lo}, ONE_ROUNDING);
+        return add(a, negative(b));
     case OP_MULK:
         return multiply(a, k);
     case OP_MUL:
@@ -192,7 +125,7 @@ static interval range_of(const expr_code *p, const interval *slot)
         return rising(km_tanh(a.lo), km_tanh(a.hi));
     case OP_EXP:
         z = rising(km_exp(a.lo), km_exp(a.hi));
-        return (interval){most(z.lo, 0), most(z.hi, 1e-305)};
+        return (interval){most(z.lo, 0), most(z.hi, TINY)};
     case OP_LOG:
         z = clip(a, 0, KM_INF);
         return rising(km_log(z.lo), km_log(z.hi));
@@ -219,14 +152,13 @@ static interval range_of(const expr_code *p, const interval *slot)
     return everything;
 }
 
+interval expr_value_range(const expr_code *p, const interval *slot) { return known(range_of(p, slot)); }
+
 void expr_range(const expr *e, double u0, double u1, double w0, double w1, double *lo, double *hi)
 {
     interval slot[EXPR_SLOTS] = {{u0, u1}, {w0, w1}};
-    for (int i = 0; i < e->count; i++) {
-        interval z = range_of(&e->code[i], slot);
-        /* NaN: the ends are infinities that cancel, or the operation is defined nowhere. */
-        slot[e->code[i].z] = (interval){z.lo == z.lo ? z.lo : -KM_INF, z.hi == z.hi ? z.hi : KM_INF};
-    }
+    for (int i = 0; i < e->count; i++)
+        slot[e->code[i].z] = expr_value_range(&e->code[i], slot);
     *lo = slot[e->result].lo;
     *hi = slot[e->result].hi;
 }

@@ -24,6 +24,13 @@ typedef struct perturb_methods {
 struct perturb {
     const perturb_methods *is;
     real Pmin, Pmax; /* bounds of P, for the slab; infinite where none is known */
+
+    /* Lipschitz constants of P as it is looked up: for any two places on the surface
+     *     |P(u,w) - P(u',w')| <= Pu_max |u - u'| + Pw_max |w - w'|
+     * but for the rounding of the two P, and with a map that of the places among its samples. Rounded up; 0 where P does
+     * not depend on the coordinate; infinite where none is known, as with a function that jumps. |Pu| and |Pw| are
+     * within them, too; a map's are central differences, and can stay far below. */
+    real Pu_max, Pw_max;
 };
 
 /* How a map goes on when (u,w) leaves it. */
@@ -46,10 +53,22 @@ typedef struct map_layout {
  * than 2^29 (a mirrored map counts four times). */
 perturb *perturb_map(const image *samples, const map_layout *layout);
 
-/* P = scale f(u,w), with exact partials. Owns f, also on failure. The bounds hold for u and w in the extent given
- * (infinite ends allowed). NULL: out of memory. */
+/* P = scale f(u,w), with exact partials. Owns f, also on failure. The bounds (Pmin to Pw_max) hold for u and w in
+ * the extent given (infinite ends allowed). NULL: out of memory. */
 perturb *perturb_function(expr *f, double scale, const double u[2], const double w[2]);
 
 void perturb_free(perturb *p);
+
+/* For the constructors: a bound of slope |scale|, rounded up. */
+static inline real perturb_slope(double slope, double scale)
+{
+    double x = scale == 0 ? 0 : slope * fabs(scale) * (1 + 1e-15); /* more than the roundings that led here */
+#ifdef KAGE_DOUBLE
+    return x;
+#else
+    real r = (real)x;
+    return (double)r < x ? nextafterf(r, HUGE_VALF) : r;
+#endif
+}
 
 #endif

@@ -48,23 +48,32 @@ static void function_free(perturb *base)
 
 static const perturb_methods function_methods = {"function", function_eval, function_free};
 
+static double widest(const double range[2], double so_far) { return fmax(so_far, fmax(fabs(range[0]), fabs(range[1]))); }
+
+/* Where part i of n of an extent begins, which is where part i - 1 ends. */
+static double part(const double extent[2], int i, int n)
+{
+    return i == 0 ? extent[0] : i == n ? extent[1] : extent[0] + (extent[1] - extent[0]) * i / n;
+}
+
 /* Interval arithmetic takes each mention of u for another variable, so its bounds are wide over a wide extent. Over
- * CELLS x CELLS parts of it they are close. */
-static void function_bounds(const expr *f, const double u[2], const double w[2], double *lo, double *hi)
+ * CELLS x CELLS parts of it they are close. Slopes bounded in each part are bounded by the steepest in all: the parts
+ * share their edges, so that no jump is between them. */
+static void function_bounds(const expr *f, const double u[2], const double w[2], double P[2], double slope[2])
 {
     enum { CELLS = 64 };
     int nu = u[1] - u[0] < HUGE_VAL ? CELLS : 1, nw = w[1] - w[0] < HUGE_VAL ? CELLS : 1;
-    *lo = HUGE_VAL;
-    *hi = -HUGE_VAL;
+    P[0] = HUGE_VAL;
+    P[1] = -HUGE_VAL;
+    slope[0] = slope[1] = 0;
     for (int j = 0; j < nw; j++)
         for (int i = 0; i < nu; i++) {
-            double a, b;
-            double u0 = nu > 1 ? u[0] + (u[1] - u[0]) * i / nu : u[0], w0 = nw > 1 ? w[0] + (w[1] - w[0]) * j / nw : w[0];
-            double u1 = nu > 1 ? u[0] + (u[1] - u[0]) * (i + 1) / nu : u[1];
-            double w1 = nw > 1 ? w[0] + (w[1] - w[0]) * (j + 1) / nw : w[1];
-            expr_range(f, u0, u1, w0, w1, &a, &b);
-            *lo = a < *lo ? a : *lo;
-            *hi = b > *hi ? b : *hi;
+            expr_bounds b;
+            expr_range_gradient(f, part(u, i, nu), part(u, i + 1, nu), part(w, j, nw), part(w, j + 1, nw), &b);
+            P[0] = fmin(P[0], b.v[0]);
+            P[1] = fmax(P[1], b.v[1]);
+            slope[0] = widest(b.u, slope[0]);
+            slope[1] = widest(b.w, slope[1]);
         }
 }
 
@@ -75,13 +84,15 @@ perturb *perturb_function(expr *f, double scale, const double u[2], const double
         expr_free(f);
         return NULL;
     }
-    double lo, hi;
-    function_bounds(f, u, w, &lo, &hi);
+    double P[2], slope[2];
+    function_bounds(f, u, w, P, slope);
     p->base.is = &function_methods;
     if (scale != 0) { /* 0 times an infinite bound is no bound */
-        p->base.Pmin = (real)(scale < 0 ? scale * hi : scale * lo);
-        p->base.Pmax = (real)(scale < 0 ? scale * lo : scale * hi);
+        p->base.Pmin = (real)(scale < 0 ? scale * P[1] : scale * P[0]);
+        p->base.Pmax = (real)(scale < 0 ? scale * P[0] : scale * P[1]);
     }
+    p->base.Pu_max = perturb_slope(slope[0], scale);
+    p->base.Pw_max = perturb_slope(slope[1], scale);
     p->f = f;
     p->scale = scale;
     return &p->base;

@@ -179,6 +179,28 @@ static void map_differences(map *m, const image *s, const map_layout *l, double 
         }
 }
 
+static double steepest(const real *from, const real *to, double so_far)
+{
+    double d = fabs((double)*to - (double)*from);
+    return d <= so_far ? so_far : d == d ? d : HUGE_VAL; /* NaN: a sample is, or is infinite */
+}
+
+/* Bilinear between the samples, P is steepest along the edge of a cell: by the difference of two neighbours, not by the
+ * central ones, which are means of two such. The extra column and row hold the neighbours across the wrap. */
+static void map_slopes(map *m)
+{
+    double du = 0, dw = 0;
+    const size_t next = VALUES, below = (size_t)(m->columns + 1) * VALUES;
+    const real *v = m->table[P_PU_PW];
+    for (int j = 0; j <= m->rows; j++)
+        for (int i = 0; i <= m->columns; i++, v += VALUES) {
+            du = i < m->columns ? steepest(v, v + next, du) : du;
+            dw = j < m->rows ? steepest(v, v + below, dw) : dw;
+        }
+    m->base.Pu_max = perturb_slope(du, (double)m->ku); /* as the stages have it */
+    m->base.Pw_max = perturb_slope(dw, (double)m->kw);
+}
+
 /* Cells to step over before the map repeats, or ends. */
 static int map_period(int n, const map_layout *l)
 {
@@ -214,6 +236,7 @@ perturb *perturb_map(const image *samples, const map_layout *l)
     m->ou = (real)(-l->offset[0] * ku - half);
     m->ow = (real)(-l->offset[1] * kw - half);
     map_differences(m, samples, l, ku, kw);
+    map_slopes(m);
     return &m->base;
 }
 

@@ -251,6 +251,122 @@ static void functions(void **state)
     perturb_free(p);
 }
 
+static uint32_t draw_state = 7;
+
+static double draw_in(double lo, double hi)
+{
+    draw_state = draw_state * 1664525u + 1013904223u;
+    return lo + (hi - lo) * (draw_state >> 8) / 16777216.0;
+}
+
+/* Pairs anywhere on several copies of the map, across cells and wraps, half of them near, some along one coordinate only:
+ * none rises by more than the bounds allow, and along each coordinate some pair rises by as much. */
+static void map_slopes(void **state)
+{
+    (void)state;
+    for (int n = 0; n < LAYOUTS; n++) {
+        const map_layout *l = &layouts[n];
+        perturb *p = perturb_map(data(), l);
+        const double top[2] = {(double)p->Pu_max, (double)p->Pw_max};
+        double steepest[2] = {0, 0}, size[6];
+        sizes(l, size);
+        /* a place rounds as its sample number does: up to 3 copies of W samples */
+        const double rounding = TOLERANCE * (size[0] + (top[0] * l->size[0] + top[1] * l->size[1]) * 3);
+        for (int k = 0; k < 100000; k++) {
+            double u = l->offset[0] + l->size[0] * draw_in(-1.2, 2.2), w = l->offset[1] + l->size[1] * draw_in(-1.2, 2.2);
+            double reach = k % 2 ? 0.03 : 1, a[6], b[6];
+            double du = k % 3 == 0 ? 0 : reach * l->size[0] * draw_in(-1, 1);
+            double dw = k % 3 == 1 ? 0 : reach * l->size[1] * draw_in(-1, 1);
+            look(p, u, w, a);
+            look(p, u + du, w + dw, b);
+            double rise = fabs(b[0] - a[0]), allowed = top[0] * fabs(du) + top[1] * fabs(dw);
+            if (!(rise <= allowed + rounding))
+                fail_msg("layout %d at %g %g, by %g %g: rises by %.9g, allowed %.9g", n, u, w, du, dw, rise, allowed);
+            assert_true(fabs(a[1]) <= top[0] * (1 + TOLERANCE) && fabs(a[2]) <= top[1] * (1 + TOLERANCE));
+        }
+        /* from each sample to the next; those beyond the last are the first's copies or mirrored */
+        for (int j = 0; j < 2 * H; j++)
+            for (int i = 0; i < 2 * W; i++) {
+                double half = l->corners ? 0 : 0.5, d[2] = {l->size[0] / (W - l->corners), l->size[1] / (H - l->corners)};
+                double u = l->offset[0] + (i + half) * d[0], w = l->offset[1] + (j + half) * d[1], a[6], b[6];
+                look(p, u, w, a);
+                look(p, u + d[0], w, b);
+                steepest[0] = fmax(steepest[0], fabs(b[0] - a[0]) / d[0]);
+                look(p, u, w + d[1], b);
+                steepest[1] = fmax(steepest[1], fabs(b[0] - a[0]) / d[1]);
+            }
+        for (int k = 0; k < 2; k++)
+            near(top[k], steepest[k], size[1 + k] * 8);
+        perturb_free(p);
+    }
+}
+
+/* Turned over, flat, of no scale, broken. */
+static void odd_map_slopes(void **state)
+{
+    (void)state;
+    map_layout l = layouts[0];
+    perturb *p = perturb_map(data(), &l), *q;
+    l.scale = -l.scale;
+    l.size[0] = -l.size[0];
+    q = perturb_map(data(), &l);
+    assert_true(q->Pu_max == p->Pu_max && q->Pw_max == p->Pw_max && p->Pu_max > 0);
+    perturb_free(p);
+    perturb_free(q);
+    l.scale = 0;
+    p = perturb_map(data(), &l);
+    assert_true(p->Pu_max == 0 && p->Pw_max == 0);
+    perturb_free(p);
+
+    /* a step along w alone; the last row's is across the wrap */
+    float steps[6] = {0, 0, 1, 1, 3, 3};
+    image m = {2, 3, steps};
+    const map_layout plain = {{1, 0.5}, {0, 0}, MAP_REPEAT, false, 2, 0}, clamped = {{1, 0.5}, {0, 0}, MAP_CLAMP, false, 2, 0};
+    p = perturb_map(&m, &plain);
+    assert_true(p->Pu_max == 0);
+    near((double)p->Pw_max, 3 * 2 * 6, 36); /* a difference of 3, scale 2, 6 samples per unit */
+    perturb_free(p);
+    p = perturb_map(&m, &clamped);
+    near((double)p->Pw_max, 2 * 2 * 6, 24);
+    perturb_free(p);
+    steps[3] = (float)NAN;
+    p = perturb_map(&m, &plain);
+    assert_true(isinf(p->Pu_max) && isinf(p->Pw_max));
+    perturb_free(p);
+}
+
+static void check_function(const char *text, double scale, double u0, double u1, double Pu, double Pw, double slack)
+{
+    const double u[2] = {u0, u1}, w[2] = {0, 2};
+    expr_error e;
+    perturb *p = perturb_function(expr_parse(text, &e), scale, u, w);
+    const double got[2] = {(double)p->Pu_max, (double)p->Pw_max}, want[2] = {Pu, Pw};
+    for (int k = 0; k < 2; k++)
+        if (got[k] != want[k] && !(got[k] >= want[k] && got[k] <= want[k] * (1 + slack)))
+            fail_msg("%s: %.17g, expected %.17g", text, got[k], want[k]);
+    perturb_free(p);
+}
+
+static void function_slopes(void **state)
+{
+    (void)state;
+    const double ulps = sizeof(real) == 4 ? 3e-7 : 1e-14, inf = HUGE_VAL;
+    check_function("0.1*sin(7*u)", 1, -inf, inf, 0.1 * 7, 0, ulps);
+    check_function("sin(7*u)+cos(3*w)", -0.3, -2, 2, 2.1, 0.9, ulps);
+    check_function("3*u-w", -0.7, -1, 1, 3 * 0.7, 0.7, ulps);
+    check_function("u^2-w*u", 0.5, -1, 1, 2, 0.5, 0.03); /* 2u - w, in parts */
+    check_function("u^2", 0, -inf, inf, 0, 0, 0);
+    check_function("floor(u)", 0, -1, 1, 0, 0, 0);
+    check_function("u^2", 1, -inf, inf, inf, 0, 0);
+    check_function("sqrt(u)", 1, 0, 1, inf, 0, 0);
+    check_function("5", 1, -1, 1, 0, 0, 0);
+    /* 64 parts of 0..64: each jump is on an edge between two */
+    check_function("floor(u)", 1, 0, 64, inf, 0, 0);
+    check_function("floor(w)", 1, 0.25, 0.75, 0, inf, 0);
+    check_function("select(u,0,1)+w", 1, -1, 1, inf, 1, ulps);
+    check_function("w+abs(u)", 1, -1, 1, 1, 1, ulps);
+}
+
 static void too_small(void **state)
 {
     (void)state;
@@ -264,6 +380,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(at_the_samples), cmocka_unit_test(bilinear_between), cmocka_unit_test(anywhere),
         cmocka_unit_test(map_bounds),     cmocka_unit_test(orders),           cmocka_unit_test(functions),
+        cmocka_unit_test(map_slopes),     cmocka_unit_test(odd_map_slopes),   cmocka_unit_test(function_slopes),
         cmocka_unit_test(too_small),
     };
     return cmocka_run_group_tests_name("heights", tests, NULL, NULL);
