@@ -74,6 +74,10 @@ static bool option(arguments *a, const char *name, const char *v)
     if (strcmp(name, "--shadow") == 0)
         return method_parse(v, &m) ? add_set(a, "render.shadow=%s", v)
                                    : usage_error("--shadow %s: no such method, expected %s", v, method_expected);
+    if (strcmp(name, "--surface") == 0)
+        return strcmp(v, "smooth") == 0 || strcmp(v, "displaced") == 0
+                   ? add_set(a, "render.surface=%s", v)
+                   : usage_error("--surface %s: expected smooth or displaced", v);
     if (strcmp(name, "--size") == 0)
         return whole_numbers(v, 'x', 2, x) && x[0] > 0 && x[1] > 0 && x[0] <= SCENE_MAX_SIDE && x[1] <= SCENE_MAX_SIDE
                    ? add_set(a, "image.size=[%d, %d]", x[0], x[1])
@@ -107,6 +111,8 @@ static bool option(arguments *a, const char *name, const char *v)
 
 static bool flag(arguments *a, const char *name)
 {
+    if (strcmp(name, "--no-self-shadow") == 0)
+        return add_set(a, "render.self_shadow=false");
     if (strcmp(name, "--no-guard") == 0)
         return add_set(a, "render.guard=false");
     if (strcmp(name, "--stats") == 0)
@@ -127,9 +133,9 @@ static const char *find(const char *const *names, const char *arg)
 
 bool arguments_read(arguments *a, int argc, char **argv)
 {
-    static const char *const render_values[] = {"-o",     "--shadow",  "--size", "--aa", "--crop",
+    static const char *const render_values[] = {"-o",     "--shadow",  "--surface", "--size", "--aa", "--crop",
                                                 "--set",  "--threads", "--bits", NULL};
-    static const char *const render_flags[] = {"--no-guard", "--stats", "--quiet", NULL};
+    static const char *const render_flags[] = {"--no-guard", "--no-self-shadow", "--stats", "--quiet", NULL};
     static const char *const other_values[] = {"--set", "--size", NULL};
     static const char *const no_flags[] = {NULL};
     *a = (arguments){.command = argv[1], .bits = 8};

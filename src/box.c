@@ -1,4 +1,5 @@
 /* Box with sides along the axes: six faces, each a plane with its own (u,w). */
+#include "clip.h"
 #include "surface.h"
 
 #include <stdlib.h>
@@ -115,6 +116,75 @@ STAGE static void box_occlude_own(const surface *base, int n, const rays *x, con
     }
 }
 
+/* ---- for true displacement: each face by itself, as a rectangle; at the box's edges displaced faces part or cross ---- */
+
+/* A face: the axis across it and the place there, the axes of u and w, and the direction of n. */
+typedef struct face {
+    int k, a, b;
+    real at, side;
+} face;
+
+static face box_face(const box *f, int part)
+{
+    int k = part >> 1, high = part & 1;
+    face c = {k, (k + (high ? 1 : 2)) % 3, (k + (high ? 2 : 1)) % 3, high ? f->hi[k] : f->lo[k], high ? R(1) : R(-1)};
+    return c;
+}
+
+static const real *axis(const vec3s *v, int k) { return k == 0 ? v->x : k == 1 ? v->y : v->z; }
+static real *axis_of(vec3s *v, int k) { return k == 0 ? v->x : k == 1 ? v->y : v->z; }
+
+static void box_shell(const surface *base, int part, int n, const rays *x, const real *end, real Pmin, real Pmax, real *t0,
+                      real *t1)
+{
+    const box *f = (const box *)base;
+    const face c = box_face(f, part);
+    const real *r = axis(&x->r, c.k), *s = axis(&x->s, c.k), *ra = axis(&x->r, c.a), *sa = axis(&x->s, c.a);
+    const real *rb = axis(&x->r, c.b), *sb = axis(&x->s, c.b);
+    for (int i = 0; i < n; i++) {
+        real from = 0, to = end[i];
+        clip(c.side * (r[i] - c.at), c.side * s[i], Pmin, Pmax, &from, &to);
+        clip(ra[i], sa[i], f->lo[c.a], f->hi[c.a], &from, &to);
+        clip(rb[i], sb[i], f->lo[c.b], f->hi[c.b], &from, &to);
+        t0[i] = from;
+        t1[i] = to;
+    }
+}
+
+static void box_foot(const surface *base, int part, int n, const rays *x, const real *t, feet *p)
+{
+    const box *f = (const box *)base;
+    const face c = box_face(f, part);
+    const real *r = axis(&x->r, c.k), *s = axis(&x->s, c.k), *ra = axis(&x->r, c.a), *sa = axis(&x->s, c.a);
+    const real *rb = axis(&x->r, c.b), *sb = axis(&x->s, c.b);
+    const real iu = 1 / (f->hi[c.a] - f->lo[c.a]), iw = 1 / (f->hi[c.b] - f->lo[c.b]);
+    vec3s_fill(&p->gu, n, 0, 0, 0);
+    vec3s_fill(&p->gw, n, 0, 0, 0);
+    vec3s_fill(&p->gh, n, 0, 0, 0);
+    for (int i = 0; i < n; i++) {
+        p->h[i] = c.side * (r[i] + s[i] * t[i] - c.at);
+        p->u[i] = (ra[i] + sa[i] * t[i] - f->lo[c.a]) * iu;
+        p->w[i] = (rb[i] + sb[i] * t[i] - f->lo[c.b]) * iw;
+        axis_of(&p->gu, c.a)[i] = iu;
+        axis_of(&p->gw, c.b)[i] = iw;
+        axis_of(&p->gh, c.k)[i] = c.side;
+    }
+}
+
+static void box_steep(const surface *base, int part, int n, const rays *x, const feet *p, real Pu_max, real Pw_max, real *rate,
+                      real *reach)
+{
+    const box *f = (const box *)base;
+    const face c = box_face(f, part);
+    const real *s = axis(&x->s, c.k), *sa = axis(&x->s, c.a), *sb = axis(&x->s, c.b);
+    const real iu = 1 / (f->hi[c.a] - f->lo[c.a]), iw = 1 / (f->hi[c.b] - f->lo[c.b]);
+    (void)p;
+    for (int i = 0; i < n; i++) {
+        rate[i] = real_abs(s[i]) + real_abs(sa[i]) * iu * Pu_max + real_abs(sb[i]) * iw * Pw_max;
+        reach[i] = REAL_FAR;
+    }
+}
+
 static void box_extent(const surface *base, double u[2], double w[2])
 {
     (void)base;
@@ -123,7 +193,8 @@ static void box_extent(const surface *base, double u[2], double w[2])
 }
 
 static const surface_methods box_methods = {
-    "box", box_hit, box_locate, box_eval, box_occlude, box_occlude_own, box_extent,
+    "box", box_hit,   box_locate, box_eval,  box_occlude, box_occlude_own, box_extent,
+    6,     box_shell, box_foot,   box_steep,
 };
 
 surface *box_new(vec3 from, vec3 to)

@@ -36,7 +36,7 @@ static float slope(const group *g, int i)
 
 static void look(const scene *s, int order, workspace *v, seen *all)
 {
-    tracer k = {s, {METHOD_ORDER, order}, true, false};
+    tracer k = {.scene = s, .shadow = {METHOD_ORDER, order}, .guard = true};
     for (int first = 0; first < SAMPLES * SAMPLES; first += LANES) {
         const int n = SAMPLES * SAMPLES - first < LANES ? SAMPLES * SAMPLES - first : LANES;
         for (int i = 0; i < n; i++)

@@ -51,13 +51,12 @@ static void shape(const group *g, const object *o)
 /* One method's row: tau, t0, the origin of the shadow rays, the order, and what each light gives. */
 static void row(const tracer *k, int id, workspace *v, const char *label)
 {
-    static const char *const codes[] = {"none", "0", "1", "2", "2+", "iter", "march"};
     trace_group(k, id, v);
     const group *g = &v->g;
     const int asked = k->scene->object[id].bump ? method_code(k->shadow) : -1;
     bs_vec3 o = lane_at(&g->x, 0, g->t[0] + g->tau[0]);
     printf("%-10s %13.6g %13.6g  %11.6g %11.6g %11.6g  %-6s", label, (double)g->tau[0], (double)(g->t[0] + g->tau[0]),
-           (double)o.x, (double)o.y, (double)o.z, g->order[0] == asked ? "" : codes[g->order[0] + 1]);
+           (double)o.x, (double)o.y, (double)o.z, g->order[0] == asked ? "" : method_code_name(g->order[0]));
     for (int l = 0; l < k->scene->lights; l++)
         printf(" %-9s", v->visibility[l][0] > 0 ? "lit" : "shadow");
     printf("  %.4f %.4f %.4f\n", (double)g->rgb.x[0], (double)g->rgb.y[0], (double)g->rgb.z[0]);
@@ -72,7 +71,7 @@ static void table(const scene *s, int id, workspace *v)
         printf(" %-9.9s", s->light[l].name);
     printf("  red    green  blue\n");
     for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
-        tracer x = {s, {METHOD_NONE, 0}, true, true};
+        tracer x = {.scene = s, .guard = true, .layers = true};
         char label[32];
         method_parse(names[k], &x.shadow);
         row(&x, id, v, names[k]);
@@ -103,7 +102,7 @@ static int print_pixel(const scene *s, int x, int y)
         return EXIT_OUTPUT;
     }
     /* 2+ asks every surface and bump for all of its partials */
-    tracer k = {s, {METHOD_ORDER, 3}, true, true};
+    tracer k = {.scene = s, .shadow = {METHOD_ORDER, 3}, .guard = true, .layers = true};
     render_ray(&s->camera, s->width, s->height, x + 0.5, y + 0.5, v, 0);
     const int32_t id = trace_nearest(&k, 1, v);
     printf("pixel      %d,%d\n", x, y);

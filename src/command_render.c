@@ -64,7 +64,6 @@ static bool write_output(const char *path, const scene *s, const arguments *a, c
 
 static void print_stats(const stats *t, const scene *s, double seconds, double output, double count)
 {
-    static const char *const codes[ORDER_CODES] = {"none", "0", "1", "2", "2+", "iter", "march"};
     double sum = 0, n = count;
     for (int k = 0; k < STAGES; k++)
         sum += t->seconds[k];
@@ -82,9 +81,11 @@ static void print_stats(const stats *t, const scene *s, double seconds, double o
         printf(", fell back %ld (%.3f %%); by order", t->fell_back, 100.0 * (double)t->fell_back / (double)t->bumped);
         for (int k = 0; k < ORDER_CODES; k++)
             if (t->orders[k])
-                printf("  %s: %ld", codes[k], t->orders[k]);
+                printf("  %s: %ld", method_code_name(k - 1), t->orders[k]);
     }
     printf("\n");
+    if (t->uncertain)
+        printf("hits of displaced surfaces that Newton's iteration did not confirm: %ld\n", t->uncertain);
 }
 
 /* Ctrl-C while files are written takes effect between two of them: each is whole or not there. */
@@ -138,7 +139,8 @@ static int render_outputs(const scene *s, const arguments *a, const char *const 
 
     stats t;
     progress p;
-    tracer k = {s, s->shadow, s->guard, layers};
+    tracer k = {.scene = s, .shadow = s->shadow, .guard = s->guard, .layers = layers, .displaced = s->displaced,
+                .self_shadow = s->self_shadow};
     const double count = (double)(part.x1 - part.x0) * (part.y1 - part.y0) * s->aa * s->aa;
     progress_start(&p, a->quiet, base_name(s->path), (long)(part.x1 - part.x0) * (part.y1 - part.y0));
     render_options o = {s->aa, a->threads, a->stats, p.on ? progress_show : NULL, &p};
@@ -157,6 +159,9 @@ static int render_outputs(const scene *s, const arguments *a, const char *const 
             fprintf(stderr, "%s %s", i ? "," : ";", output[i]);
         fprintf(stderr, "\n");
     }
+    if (t.uncertain && !a->quiet)
+        fprintf(stderr, "%s: %ld hits of displaced surfaces are not confirmed to the last digits\n", base_name(s->path),
+                t.uncertain);
     if (a->stats)
         print_stats(&t, s, rendered - start, written - rendered, count);
     return 0;

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-const char method_expected[] = "none, 0, 1, 2, 2+, iter:K or march:N";
+const char method_expected[] = "none, 0, 1, 2, 2+, iter:K, march:N or exact";
 
 const method_help method_helps[] = {
     {"none", "the smooth hit: what renderers with bump mapping do"},
@@ -14,6 +14,7 @@ const method_help method_helps[] = {
     {"2+", "order 2 with the cross term and the smooth surface's curvature (ours)"},
     {"iter:K", "order 0 K times, the height looked up again at each place (ours)"},
     {"march:N", "N steps through the slab between lowest and highest P, one secant step (ours)"},
+    {"exact", "the first hit of the displaced surface, for the shadow's origin alone (ours)"},
 };
 const int method_help_count = sizeof method_helps / sizeof *method_helps;
 
@@ -31,8 +32,8 @@ static bool steps(const char *text, const char *prefix, int *n)
 bool method_parse(const char *text, method *m)
 {
     static const char *const orders[] = {"0", "1", "2", "2+"};
-    if (strcmp(text, "none") == 0) {
-        *m = (method){METHOD_NONE, 0};
+    if (strcmp(text, "none") == 0 || strcmp(text, "exact") == 0) {
+        *m = (method){*text == 'n' ? METHOD_NONE : METHOD_EXACT, 0};
         return true;
     }
     for (int k = 0; k < 4; k++)
@@ -65,6 +66,9 @@ void method_name(method m, char name[METHOD_NAME_SIZE])
     case METHOD_MARCH:
         snprintf(name, METHOD_NAME_SIZE, "march:%d", m.n);
         break;
+    case METHOD_EXACT:
+        snprintf(name, METHOD_NAME_SIZE, "exact");
+        break;
     }
 }
 
@@ -77,5 +81,12 @@ bool method_bends(method m)
 
 int method_code(method m)
 {
-    return m.kind == METHOD_NONE ? -1 : m.kind == METHOD_ORDER ? m.n : m.kind == METHOD_ITER ? 4 : 5;
+    static const int codes[] = {-1, 0, 4, 5, ORDER_EXACT};
+    return m.kind == METHOD_ORDER ? m.n : codes[m.kind];
+}
+
+const char *method_code_name(int code)
+{
+    static const char *const names[ORDER_CODES] = {"none", "0", "1", "2", "2+", "iter", "march", "exact"};
+    return names[code + 1];
 }

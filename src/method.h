@@ -9,6 +9,7 @@ typedef enum method_kind {
     METHOD_ORDER, /* n = 0, 1, 2: the paper's; 3: 2+ */
     METHOD_ITER,  /* n times order 0 */
     METHOD_MARCH, /* n steps through the slab */
+    METHOD_EXACT, /* at the first hit of the displaced surface (displace.h) */
 } method_kind;
 
 typedef struct method {
@@ -18,7 +19,7 @@ typedef struct method {
 
 enum { METHOD_STEPS_MAX = 1024, METHOD_NAME_SIZE = 16 };
 
-/* Read a method's name: none 0 1 2 2+ iter:K march:N, with K and N in 1..METHOD_STEPS_MAX. False where text is none. */
+/* Read a method's name: none 0 1 2 2+ iter:K march:N exact, with K and N in 1..METHOD_STEPS_MAX. False where text is none. */
 bool method_parse(const char *text, method *m);
 
 /* Write its name. */
@@ -31,8 +32,12 @@ int method_order(method m);
 bool method_bends(method m);
 
 /* How its order is written in the layer `order` and counted in the statistics, if it does not fall back:
- * METHOD_NONE -1; 0, 1, 2; 2+ 3; iter 4; march 5. */
+ * METHOD_NONE -1; 0, 1, 2; 2+ 3; iter 4; march 5; exact 6. */
 int method_code(method m);
+enum { ORDER_EXACT = 6, ORDER_CODES = 8 /* from none on */ };
+
+/* The name of what a code stands for. */
+const char *method_code_name(int code);
 
 /* What may be written for a method, for messages. */
 extern const char method_expected[];

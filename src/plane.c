@@ -1,4 +1,5 @@
 /* Plane and rectangle: Q(u,w) = O + u U + w W, also skewed or scaled. */
+#include "clip.h"
 #include "surface.h"
 
 #include <stdlib.h>
@@ -98,6 +99,71 @@ STAGE static void plane_occlude(const surface *base, int n, const rays *x, real 
 
 STAGE static void rectangle_occlude(const surface *base, int n, const rays *x, real *lit) { occlude(base, 1, n, x, lit); }
 
+/* ---- for true displacement ---- */
+
+static inline void shell(const surface *base, int bounded, int n, const rays *x, const real *end, real Pmin, real Pmax,
+                         real *restrict t0, real *restrict t1)
+{
+    const plane f = *(const plane *)base;
+    for (int i = 0; i < n; i++) {
+        real rx = x->r.x[i] - f.O[0], ry = x->r.y[i] - f.O[1], rz = x->r.z[i] - f.O[2];
+        real sx = x->s.x[i], sy = x->s.y[i], sz = x->s.z[i];
+        real from = 0, to = end[i];
+        clip(rx * f.N[0] + ry * f.N[1] + rz * f.N[2], sx * f.N[0] + sy * f.N[1] + sz * f.N[2], Pmin, Pmax, &from, &to);
+        if (bounded) {
+            clip(rx * f.Du[0] + ry * f.Du[1] + rz * f.Du[2], sx * f.Du[0] + sy * f.Du[1] + sz * f.Du[2], 0, 1, &from, &to);
+            clip(rx * f.Dw[0] + ry * f.Dw[1] + rz * f.Dw[2], sx * f.Dw[0] + sy * f.Dw[1] + sz * f.Dw[2], 0, 1, &from, &to);
+        }
+        t0[i] = from;
+        t1[i] = to;
+    }
+}
+
+static void plane_shell(const surface *base, int part, int n, const rays *x, const real *end, real Pmin, real Pmax, real *t0,
+                        real *t1)
+{
+    (void)part;
+    shell(base, 0, n, x, end, Pmin, Pmax, t0, t1);
+}
+
+static void rectangle_shell(const surface *base, int part, int n, const rays *x, const real *end, real Pmin, real Pmax,
+                            real *t0, real *t1)
+{
+    (void)part;
+    shell(base, 1, n, x, end, Pmin, Pmax, t0, t1);
+}
+
+/* The dual basis is in the plane, so Du.(X - O) is u of the foot. */
+STAGE static void plane_foot(const surface *base, int part, int n, const rays *x, const real *restrict t, feet *restrict p)
+{
+    const plane f = *(const plane *)base;
+    (void)part;
+    for (int i = 0; i < n; i++) {
+        real px = x->r.x[i] + x->s.x[i] * t[i], py = x->r.y[i] + x->s.y[i] * t[i], pz = x->r.z[i] + x->s.z[i] * t[i];
+        p->u[i] = plane_coord(&f, f.Du, px, py, pz);
+        p->w[i] = plane_coord(&f, f.Dw, px, py, pz);
+        p->h[i] = plane_coord(&f, f.N, px, py, pz);
+    }
+    vec3s_fill(&p->gu, n, f.Du[0], f.Du[1], f.Du[2]);
+    vec3s_fill(&p->gw, n, f.Dw[0], f.Dw[1], f.Dw[2]);
+    vec3s_fill(&p->gh, n, f.N[0], f.N[1], f.N[2]);
+}
+
+/* u, w and the height are linear along a ray, so the rate holds for all of it. */
+STAGE static void plane_steep(const surface *base, int part, int n, const rays *x, const feet *p, real Pu_max, real Pw_max,
+                              real *restrict rate, real *restrict reach)
+{
+    const plane f = *(const plane *)base;
+    (void)part;
+    (void)p;
+    for (int i = 0; i < n; i++) {
+        real sx = x->s.x[i], sy = x->s.y[i], sz = x->s.z[i];
+        real u = sx * f.Du[0] + sy * f.Du[1] + sz * f.Du[2], w = sx * f.Dw[0] + sy * f.Dw[1] + sz * f.Dw[2];
+        rate[i] = real_abs(sx * f.N[0] + sy * f.N[1] + sz * f.N[2]) + real_abs(u) * Pu_max + real_abs(w) * Pw_max;
+        reach[i] = REAL_FAR;
+    }
+}
+
 static void plane_extent(const surface *base, double u[2], double w[2])
 {
     (void)base;
@@ -113,11 +179,13 @@ static void rectangle_extent(const surface *base, double u[2], double w[2])
 }
 
 static const surface_methods plane_methods = {
-    "plane", plane_hit, plane_locate, plane_eval, plane_occlude, NULL, plane_extent,
+    "plane", plane_hit,    plane_locate, plane_eval, plane_occlude, NULL, plane_extent,
+    1,       plane_shell, plane_foot,   plane_steep,
 };
 
 static const surface_methods rectangle_methods = {
-    "rectangle", rectangle_hit, plane_locate, plane_eval, rectangle_occlude, NULL, rectangle_extent,
+    "rectangle", rectangle_hit,   plane_locate, plane_eval, rectangle_occlude, NULL, rectangle_extent,
+    1,           rectangle_shell, plane_foot,   plane_steep,
 };
 
 static void store(real to[3], vec3 v)

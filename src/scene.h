@@ -1,4 +1,4 @@
-/* A scene, as the tracer needs it. Read from a file by scene_read.c; owns all it points to. */
+/* A scene, as the tracer needs it. Read from a file by scene_read.c and scene_objects.c; owns all it points to. */
 #ifndef KAGE_SCENE_H
 #define KAGE_SCENE_H
 
@@ -18,6 +18,12 @@ typedef struct camera {
 /* A camera at `from` that looks at `at`; fov is the horizontal angle of the picture in degrees. False where the
  * directions have no sense: at = from, or up along the view. */
 bool camera_look(camera *c, vec3 from, vec3 at, vec3 up, double fov, int width, int height);
+
+/* The same as the file said it, for exports. */
+typedef struct camera_view {
+    vec3 at, up;
+    double fov;
+} camera_view;
 
 typedef struct light {
     char *name;
@@ -41,9 +47,27 @@ typedef struct map_note {
     double low, high; /* of the samples, before scale and zero */
 } map_note;
 
+/* A shape as the file said it, for exports. */
+typedef enum shape_kind { SHAPE_PLANE, SHAPE_RECTANGLE, SHAPE_BOX, SHAPE_SPHERE } shape_kind;
+
+typedef struct shape_spec {
+    shape_kind kind;
+    vec3 a, u, w;  /* plane, rectangle: origin, u, w; box: a and u are opposite corners; sphere: a is the centre */
+    double radius;
+} shape_spec;
+
+/* A bump likewise: a function's text and scale, or where a map's samples lie (how many: map_note). */
+typedef struct bump_spec {
+    char *function; /* NULL: a map, or no bump */
+    double scale;
+    map_layout layout;
+} bump_spec;
+
 typedef struct object {
     char *name;
     surface *shape;
+    shape_spec shape_said;
+    bump_spec bump_said;
     perturb *bump; /* NULL: smooth */
     int material;
     map_note map;
@@ -55,8 +79,11 @@ typedef struct scene {
     int width, height;
     vec3 background;
     camera camera;
+    camera_view view;
     method shadow;
     bool guard;
+    bool displaced;   /* render.surface: bumped objects as what they stand for */
+    bool self_shadow; /* and with the shadows that these cast */
     int aa;
     light *light;
     int lights;

@@ -1,4 +1,5 @@
 /* The scene reader's objects: their surfaces, and the bumps on them. */
+#include "displace.h"
 #include "scene_reader.h"
 
 #include "image.h"
@@ -11,7 +12,7 @@
 
 /* ---- surfaces ---- */
 
-static surface *read_plane(reader *r, node *at, const char *kind, bool bounded)
+static surface *read_plane(reader *r, node *at, const char *kind, bool bounded, shape_spec *said)
 {
     vec3 O = {0, 0, 0}, U = {0, 0, 0}, W = {0, 0, 0};
     if (!yaml_map(r->y, at, kind, "origin u w"))
@@ -26,13 +27,14 @@ static surface *read_plane(reader *r, node *at, const char *kind, bool bounded)
         yaml_error(r->y, yaml_get(at, vec3_length(U) < SMALL ? "u" : "w"), "no direction, expected an edge with a length");
         return NULL;
     }
+    *said = (shape_spec){.kind = bounded ? SHAPE_RECTANGLE : SHAPE_PLANE, .a = O, .u = U, .w = W};
     surface *f = plane_new(O, U, W, bounded);
     if (!f)
         yaml_error(r->y, at, "u and w are parallel, expected two directions");
     return f;
 }
 
-static surface *read_box(reader *r, node *at)
+static surface *read_box(reader *r, node *at, shape_spec *said)
 {
     vec3 from = {0, 0, 0}, to = {0, 0, 0};
     if (!yaml_map(r->y, at, "box", "from to"))
@@ -40,13 +42,14 @@ static surface *read_box(reader *r, node *at)
     bool good = yaml_need(r->y, at, "from", "box") && yaml_need(r->y, at, "to", "box");
     good = reader_vector(r, at, "from", "a corner [x, y, z]", &from) && good;
     good = reader_vector(r, at, "to", "the opposite corner [x, y, z]", &to) && good;
+    *said = (shape_spec){.kind = SHAPE_BOX, .a = from, .u = to};
     surface *f = good ? box_new(from, to) : NULL;
     if (good && !f)
         yaml_error(r->y, yaml_get(at, "to"), "a box without thickness, expected 'to' apart from 'from' along x, y and z");
     return f;
 }
 
-static surface *read_sphere(reader *r, node *at)
+static surface *read_sphere(reader *r, node *at, shape_spec *said)
 {
     vec3 c = {0, 0, 0};
     double radius = 1;
@@ -55,10 +58,11 @@ static surface *read_sphere(reader *r, node *at)
     bool good = yaml_need(r->y, at, "center", "sphere") && yaml_need(r->y, at, "radius", "sphere");
     good = reader_vector(r, at, "center", "a place [x, y, z]", &c) && good;
     good = reader_number(r, at, "radius", SMALL, false, BIG, "a length from 1e-6 to 1e6", &radius) && good;
+    *said = (shape_spec){.kind = SHAPE_SPHERE, .a = c, .radius = radius};
     return good ? sphere_new(c, radius) : NULL;
 }
 
-static surface *read_surface(reader *r, node *at)
+static surface *read_surface(reader *r, node *at, shape_spec *said)
 {
     static const char *const kinds[] = {"plane", "rectangle", "box", "sphere"};
     node *shape = NULL;
@@ -78,7 +82,9 @@ static surface *read_surface(reader *r, node *at)
         yaml_error(r->y, at, "an object lacks its shape, expected one of: plane rectangle box sphere");
         return NULL;
     }
-    return kind < 2 ? read_plane(r, shape, kinds[kind], kind == 1) : kind == 2 ? read_box(r, shape) : read_sphere(r, shape);
+    if (kind < 2)
+        return read_plane(r, shape, kinds[kind], kind == 1, said);
+    return kind == 2 ? read_box(r, shape, said) : read_sphere(r, shape, said);
 }
 
 /* ---- bumps ---- */
@@ -168,7 +174,7 @@ static bool read_samples(reader *r, node *at, image *out, map_note *note)
 }
 
 /* Scale, zero level and sign: without them a map is no height, so none has a default. */
-static perturb *read_map(reader *r, node *at, const double u[2], const double w[2], map_note *note)
+static perturb *read_map(reader *r, node *at, const double u[2], const double w[2], map_note *note, bump_spec *said)
 {
     image samples;
     map_layout l = {.size = {1, 1}};
@@ -187,6 +193,7 @@ static perturb *read_map(reader *r, node *at, const double u[2], const double w[
     if (good && fmax(fabs(low), fabs(high)) > BIG)
         good = yaml_error(r->y, scale, "heights from %.4g to %.4g, expected them within 1000000 scene units", fmin(low, high),
                           fmax(low, high));
+    said->layout = l;
     perturb *p = good ? perturb_map(&samples, &l) : NULL;
     if (good && !p)
         errors_add(r->e, "out of memory");
@@ -194,7 +201,7 @@ static perturb *read_map(reader *r, node *at, const double u[2], const double w[
     return p;
 }
 
-static perturb *read_function(reader *r, node *at, const double u[2], const double w[2])
+static perturb *read_function(reader *r, node *at, const double u[2], const double w[2], bump_spec *said)
 {
     double scale = 1;
     bool good = yaml_map(r->y, at, "a bump with a function", "function scale");
@@ -209,13 +216,15 @@ static perturb *read_function(reader *r, node *at, const double u[2], const doub
         expr_free(e);
         return NULL;
     }
+    said->function = reader_copy(r, text);
+    said->scale = scale;
     perturb *p = perturb_function(e, scale, u, w);
     if (!p)
         errors_add(r->e, "out of memory");
     return p;
 }
 
-static perturb *read_bump(reader *r, node *at, const surface *f, map_note *note)
+static perturb *read_bump(reader *r, node *at, const surface *f, map_note *note, bump_spec *said)
 {
     double u[2], w[2];
     if (!yaml_map(r->y, at, "bump", NULL))
@@ -226,7 +235,7 @@ static perturb *read_bump(reader *r, node *at, const surface *f, map_note *note)
         return NULL;
     }
     f->is->extent(f, u, w);
-    return map ? read_map(r, at, u, w, note) : read_function(r, at, u, w);
+    return map ? read_map(r, at, u, w, note, said) : read_function(r, at, u, w, said);
 }
 
 /* ---- objects ---- */
@@ -264,10 +273,14 @@ void reader_objects(reader *r)
         o->name = reader_name(r, at, key);
         if (!yaml_map(r->y, v, "an object", "plane rectangle box sphere material bump"))
             continue;
-        o->shape = read_surface(r, v);
+        o->shape = read_surface(r, v, &o->shape_said);
         if ((m = yaml_need(r->y, v, "material", "an object")))
             o->material = find_material(r, m);
         if ((bump = yaml_get(v, "bump")) && o->shape)
-            o->bump = read_bump(r, bump, o->shape, &o->map);
+            o->bump = read_bump(r, bump, o->shape, &o->map, &o->bump_said);
+        if (o->bump && (s->displaced || s->shadow.kind == METHOD_EXACT) && !displace_possible(o->bump))
+            yaml_error(r->y, bump, "no bounds of P or of its slope are known, expected them for %s: a function that is bounded, "
+                                   "without jumps, over the whole surface",
+                       s->displaced ? "surface displaced" : "shadow exact");
     }
 }

@@ -121,6 +121,7 @@ static void read_camera(reader *r)
     good = reader_number(r, at, "fov", 0, true, 175, "the horizontal angle in degrees, above 0 and up to 175", &fov) && good;
     if (!good)
         return;
+    r->s->view = (camera_view){to, up, fov};
     if (vec3_length(vec3_sub(to, from)) < SMALL)
         yaml_error(r->y, yaml_get(at, "at"), "the camera looks at its own place, expected 'at' apart from 'from'");
     else if (vec3_length(up) < SMALL)
@@ -137,7 +138,8 @@ static void read_render(reader *r)
     s->shadow = (method){METHOD_ORDER, 0};
     s->guard = true;
     s->aa = 1;
-    if (!at || !yaml_map(r->y, at, "render", "shadow guard aa"))
+    s->self_shadow = true;
+    if (!at || !yaml_map(r->y, at, "render", "shadow guard aa surface self_shadow"))
         return;
     if ((k = yaml_get(at, "shadow"))) {
         const char *text = yaml_text(r->y, k, method_expected);
@@ -148,6 +150,10 @@ static void read_render(reader *r)
         yaml_bool(r->y, k, "true or false", &s->guard);
     if ((k = yaml_get(at, "aa")))
         yaml_whole(r->y, k, 1, SCENE_MAX_AA, "samples along a pixel's side, 1 to 16", &s->aa);
+    if ((k = yaml_get(at, "surface")))
+        s->displaced = yaml_word(r->y, k, "smooth displaced", "smooth or displaced") == 1;
+    if ((k = yaml_get(at, "self_shadow")))
+        yaml_bool(r->y, k, "true or false", &s->self_shadow);
 }
 
 /* ---- lights and materials ---- */
@@ -211,8 +217,8 @@ scene *scene_read(const char *path, int sets, char *const *set, errors *e)
         }
         yaml_close(r.y);
     }
-    if (!r.s)
-        errors_add(e, "out of memory");
+    if (!r.y && e->count == before)
+        errors_add(e, "%s: out of memory", path);
     if (e->count == before)
         return r.s;
     scene_free(r.s);
@@ -232,6 +238,7 @@ void scene_free(scene *s)
         free(o->name);
         surface_free(o->shape);
         perturb_free(o->bump);
+        free(o->bump_said.function);
         free(o->map.file);
     }
     free(s->light);

@@ -112,6 +112,70 @@ STAGE static void sphere_occlude_own(const surface *base, int n, const rays *x, 
     }
 }
 
+/* ---- for true displacement ---- */
+
+/* The outer sphere's stretch, up to where the inner one is met. */
+STAGE static void sphere_shell(const surface *base, int part, int n, const rays *x, const real *restrict end, real Pmin,
+                               real Pmax, real *restrict t0, real *restrict t1)
+{
+    sphere outer = *(const sphere *)base, inner = outer;
+    (void)part;
+    outer.R += Pmax;
+    inner.R = real_max(inner.R + Pmin, 0);
+    for (int i = 0; i < n; i++) {
+        real a, b, c, d, rx = x->r.x[i], ry = x->r.y[i], rz = x->r.z[i], sx = x->s.x[i], sy = x->s.y[i], sz = x->s.z[i];
+        int in = sphere_roots(&outer, rx, ry, rz, sx, sy, sz, &a, &b);
+        int core = sphere_roots(&inner, rx, ry, rz, sx, sy, sz, &c, &d);
+        real from = real_max(a, 0);
+        /* from outside the core up to it; from within it, the shell begins at its far side */
+        real to = core & (c > from) ? c : b;
+        from = core & (c <= from) & (d > from) ? d : from;
+        to = real_min(to, end[i]);
+        t0[i] = in ? from : R(1);
+        t1[i] = in ? to : R(-1);
+    }
+}
+
+STAGE static void sphere_foot(const surface *base, int part, int n, const rays *x, const real *restrict t, feet *restrict p)
+{
+    const sphere f = *(const sphere *)base;
+    (void)part;
+    for (int i = 0; i < n; i++) {
+        real px = x->r.x[i] + x->s.x[i] * t[i] - f.C[0];
+        real py = x->r.y[i] + x->s.y[i] * t[i] - f.C[1];
+        real pz = x->r.z[i] + x->s.z[i] * t[i] - f.C[2];
+        real d2 = px * px + pz * pz, d = real_sqrt(d2), l = real_sqrt(d2 + py * py);
+        real id2 = 1 / real_max(d2, R(1e-30)), id = 1 / real_max(d, R(1e-15)), il = 1 / real_max(l, R(1e-15));
+        p->u[i] = (real)km_atan2((double)pz, (double)px);
+        p->w[i] = (real)km_atan2((double)d, (double)py);
+        p->h[i] = l - f.R;
+        p->gh.x[i] = px * il;
+        p->gh.y[i] = py * il;
+        p->gh.z[i] = pz * il;
+        p->gu.x[i] = -pz * id2;
+        p->gu.y[i] = 0;
+        p->gu.z[i] = px * id2;
+        p->gw.x[i] = py * px * id * il * il;
+        p->gw.y[i] = -d * il * il;
+        p->gw.z[i] = py * pz * id * il * il;
+    }
+}
+
+/* |grad u| is 1/(distance to the axis), |grad w| 1/(distance to the centre): within half of either they at most double. */
+STAGE static void sphere_steep(const surface *base, int part, int n, const rays *x, const feet *p, real Pu_max, real Pw_max,
+                               real *restrict rate, real *restrict reach)
+{
+    (void)base;
+    (void)part;
+    for (int i = 0; i < n; i++) {
+        real sx = x->s.x[i], sy = x->s.y[i], sz = x->s.z[i], s = real_sqrt(sx * sx + sy * sy + sz * sz);
+        real gu = real_sqrt(p->gu.x[i] * p->gu.x[i] + p->gu.z[i] * p->gu.z[i]);
+        real gw = real_sqrt(p->gw.x[i] * p->gw.x[i] + p->gw.y[i] * p->gw.y[i] + p->gw.z[i] * p->gw.z[i]);
+        rate[i] = s * (1 + 2 * (gu * Pu_max + gw * Pw_max));
+        reach[i] = R(0.5) / (real_max(gu, gw) * s);
+    }
+}
+
 static void sphere_extent(const surface *base, double u[2], double w[2])
 {
     const double pi = 3.14159265358979323846;
@@ -123,7 +187,8 @@ static void sphere_extent(const surface *base, double u[2], double w[2])
 }
 
 static const surface_methods sphere_methods = {
-    "sphere", sphere_hit, sphere_locate, sphere_eval, sphere_occlude, sphere_occlude_own, sphere_extent,
+    "sphere", sphere_hit,   sphere_locate, sphere_eval, sphere_occlude, sphere_occlude_own, sphere_extent,
+    1,        sphere_shell, sphere_foot,   sphere_steep,
 };
 
 surface *sphere_new(vec3 centre, double radius)

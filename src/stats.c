@@ -32,6 +32,7 @@ void stats_add(stats *sum, const stats *part)
     sum->rays += part->rays;
     sum->shadow_rays += part->shadow_rays;
     sum->heights += part->heights;
+    sum->uncertain += part->uncertain;
     sum->bumped += part->bumped;
     sum->fell_back += part->fell_back;
     for (int k = 0; k < ORDER_CODES; k++)

@@ -2,6 +2,8 @@
 #ifndef KAGE_STATS_H
 #define KAGE_STATS_H
 
+#include "method.h"
+
 #include <stdbool.h>
 #include <stdint.h>
 
@@ -20,12 +22,12 @@ enum stage {
 };
 extern const char *const stage_names[STAGES];
 
-enum { ORDER_CODES = 7 }; /* method_code + 1 */
 
 /* The parts of one thread are added up in the end. */
 typedef struct stats {
     long rays, shadow_rays, heights;       /* camera rays, shadow rays, looks at a P */
     long orders[ORDER_CODES];              /* bumped samples by the order really used, from none on */
+    long uncertain;                        /* true hits that could not be confirmed (displace.h) */
     long bumped, fell_back;                /* bumped samples, and those among them with another order than asked for */
     double seconds[STAGES];                /* in the tiles that were timed */
     bool timing;                           /* this tile is */

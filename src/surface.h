@@ -37,6 +37,22 @@ typedef struct surface_methods {
 
     /* The range of (u,w). Ends are infinite where the surface has none. */
     void (*extent)(const surface *f, double u[2], double w[2]);
+
+    /* For true displacement (displace.c), with `part` of the surface in 0..parts-1 taken as if it alone were there. */
+    int parts;
+
+    /* The stretch t0 <= t <= t1 of each ray, within 0..end[i], that may meet Q + P n/|n| for Pmin <= P <= Pmax: all such places
+     * are in it. t0 > t1: there is none. */
+    void (*shell)(const surface *f, int part, int n, const rays *x, const real *end, real Pmin, real Pmax, real *t0, real *t1);
+
+    /* The foot of the perpendicular from each r + s t to the surface: (u,w), the height over it, and how these change in space
+     * (gradients). (u,w) may lie outside the extent. */
+    void (*foot)(const surface *f, int part, int n, const rays *x, const real *t, feet *p);
+
+    /* Bounds along each ray from r + s t on, for a P that changes by at most Pu_max and Pw_max per u and w: how fast
+     * height - P can change with t, and how far in t that holds. */
+    void (*steep)(const surface *f, int part, int n, const rays *x, const feet *p, real Pu_max, real Pw_max, real *rate,
+                  real *reach);
 } surface_methods;
 
 struct surface {

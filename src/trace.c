@@ -6,6 +6,7 @@
  */
 #include "trace.h"
 
+#include "displace.h"
 #include "lane.h"
 #include "shade.h"
 #include "shift.h"
@@ -26,37 +27,49 @@ STAGE static void aim(group *restrict g, const light *l, int shifted)
     }
 }
 
-static void shadow(const scene *sc, int id, const light *l, group *g, stats *st)
+/* Whether an object is taken for its displaced surface. */
+static bool is_rough(const tracer *k, const object *o) { return k->displaced && o->bump; }
+
+/* The receiver's own shadow on itself. */
+static void shadow_own(const tracer *k, const object *o, const light *l, group *g, stats *st)
 {
-    const surface *own = sc->object[id].shape;
+    if (is_rough(k, o)) {
+        if (k->self_shadow) {
+            aim(g, l, 0);
+            displace_occlude(o->shape, o->bump, g->n, &g->to_light, DISPLACE_ON, g->lit, &st->uncertain);
+        }
+    } else if (o->shape->is->occlude_own) {
+        aim(g, l, 0);
+        o->shape->is->occlude_own(o->shape, g->n, &g->to_light, g->part, g->lit);
+    }
+}
+
+static void shadow(const tracer *k, int id, const light *l, group *g, stats *st)
+{
+    const scene *sc = k->scene;
     for (int i = 0; i < g->n; i++)
         g->lit[i] = 1;
-    if (own->is->occlude_own) {
-        aim(g, l, 0);
-        own->is->occlude_own(own, g->n, &g->to_light, g->part, g->lit);
-    }
+    shadow_own(k, &sc->object[id], l, g, st);
     aim(g, l, 1);
-    for (int k = 0; k < sc->objects; k++)
-        if (k != id) {
-            const surface *f = sc->object[k].shape;
-            f->is->occlude(f, g->n, &g->to_light, g->lit);
-        }
+    for (int j = 0; j < sc->objects; j++) {
+        const object *o = &sc->object[j];
+        if (j == id)
+            continue;
+        if (!is_rough(k, o))
+            o->shape->is->occlude(o->shape, g->n, &g->to_light, g->lit);
+        else if (k->self_shadow)
+            displace_occlude(o->shape, o->bump, g->n, &g->to_light, DISPLACE_AWAY, g->lit, &st->uncertain);
+    }
     st->shadow_rays += g->n;
 }
 
-void trace_group(const tracer *k, int id, workspace *v)
+/* Where a group's lanes are on their surface, P there, n and n', and how far the shadow rays' origin is shifted. */
+static void shape_and_shift(const tracer *k, const object *o, group *g, stats *st)
 {
-    const scene *sc = k->scene;
-    const object *o = &sc->object[id];
     const surface *f = o->shape;
     const perturb *P = o->bump;
-    const material *m = &sc->material[o->material];
-    const bool bends = P && method_bends(k->shadow);
-    group *g = &v->g;
-    stats *st = &v->stats;
-
     f->is->locate(f, g->n, &g->x, g->t, g->part, g->u, g->w);
-    f->is->eval(f, g->n, g->part, g->u, g->w, bends ? 2 : 1, &g->q);
+    f->is->eval(f, g->n, g->part, g->u, g->w, P && method_bends(k->shadow) ? 2 : 1, &g->q);
     stats_stage(st, STAGE_SURFACE);
     if (P) {
         P->is->eval(P, g->n, g->u, g->w, method_order(k->shadow), &g->h);
@@ -65,27 +78,50 @@ void trace_group(const tracer *k, int id, workspace *v)
     stats_stage(st, STAGE_BUMP);
     shift_normals(g, P);
     stats_stage(st, STAGE_NORMAL);
-    st->heights += shift_group(g, P, k->shadow, k->guard);
+    if (P && k->shadow.kind == METHOD_EXACT)
+        displace_shift(f, P, g, &st->uncertain);
+    else
+        st->heights += shift_group(g, P, k->shadow, k->guard);
     stats_stage(st, STAGE_SHIFT);
+}
+
+void trace_group(const tracer *k, int id, workspace *v)
+{
+    const scene *sc = k->scene;
+    const object *o = &sc->object[id];
+    const material *m = &sc->material[o->material];
+    group *g = &v->g;
+    stats *st = &v->stats;
+
+    if (is_rough(k, o)) {
+        displace_shape(o->shape, o->bump, g);
+        stats_stage(st, STAGE_SURFACE);
+    } else
+        shape_and_shift(k, o, g, st);
     shade_ambient(g, m);
     for (int l = 0; l < sc->lights; l++) {
-        shadow(sc, id, &sc->light[l], g, st);
+        shadow(k, id, &sc->light[l], g, st);
         stats_stage(st, STAGE_SHADOW);
         shade_light(g, m, &sc->light[l]);
         stats_stage(st, STAGE_SHADE);
         if (k->layers)
             wave_scatter_visibility(g, v->visibility[l]);
     }
-    if (P)
-        stats_orders(st, g->n, g->order, method_code(k->shadow));
+    if (o->bump)
+        stats_orders(st, g->n, g->order, is_rough(k, o) ? ORDER_EXACT : method_code(k->shadow));
 }
 
 int32_t trace_nearest(const tracer *k, int n, workspace *v)
 {
     const scene *sc = k->scene;
     wave_start(n, &v->h);
-    for (int32_t id = 0; id < sc->objects; id++)
-        sc->object[id].shape->is->hit(sc->object[id].shape, n, &v->x, id, &v->h);
+    for (int32_t id = 0; id < sc->objects; id++) {
+        const object *o = &sc->object[id];
+        if (is_rough(k, o))
+            displace_hit(o->shape, o->bump, n, &v->x, id, &v->h, &v->stats.uncertain);
+        else
+            o->shape->is->hit(o->shape, n, &v->x, id, &v->h);
+    }
     v->stats.rays += n;
     stats_stage(&v->stats, STAGE_HIT);
     return wave_next_group(n, &v->x, &v->h, &v->g);

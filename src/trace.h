@@ -11,7 +11,9 @@ typedef struct tracer {
     const scene *scene;
     method shadow;
     bool guard;
-    bool layers; /* also the layers beside the picture */
+    bool displaced;   /* bumped objects are met, and shaded, where their displaced surface is; the method is not used */
+    bool self_shadow; /* then they cast shadows too, on themselves and on others */
+    bool layers;      /* also the layers beside the picture */
 } tracer;
 
 /* What a wave finds out for each of its lanes. The layers are those of film.h. */

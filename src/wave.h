@@ -33,7 +33,8 @@ typedef struct rays {
 /* Where each ray has met a smooth surface first. id < 0: nowhere, and then t is REAL_FAR. */
 typedef struct hits {
     real t[LANES];
-    int32_t id[LANES]; /* index of the object in the scene */
+    int32_t id[LANES];   /* index of the object in the scene */
+    int32_t part[LANES]; /* of its surface; told by displaced surfaces alone, others find it in `locate` */
 } hits;
 
 /* Q(u,w) and its partial derivatives. */
@@ -45,5 +46,12 @@ typedef struct partials {
 typedef struct heights {
     real P[LANES], Pu[LANES], Pw[LANES], Puu[LANES], Puw[LANES], Pww[LANES];
 } heights;
+
+/* Places in space as seen from a surface: the foot of the perpendicular (u,w), the height over it along n/|n|, and the
+ * gradients of the three. */
+typedef struct feet {
+    real u[LANES], w[LANES], h[LANES];
+    vec3s gu, gw, gh;
+} feet;
 
 #endif

@@ -11,8 +11,10 @@ STAGE static void fill(int n, real *v, real x)
 void wave_start(int n, hits *h)
 {
     fill(n, h->t, REAL_FAR);
-    for (int i = 0; i < n; i++)
+    for (int i = 0; i < n; i++) {
         h->id[i] = -1;
+        h->part[i] = 0;
+    }
 }
 
 void wave_background(int n, vec3 color, int lights, workspace *v)
@@ -78,6 +80,8 @@ int32_t wave_next_group(int n, const rays *x, hits *h, group *g)
     for (int i = 0; i < g->n; i++)
         h->id[g->whole ? i : g->lane[i]] = -1;
     pick(g, h->t, g->t);
+    for (int i = 0; i < g->n; i++)
+        g->part[i] = h->part[g->whole ? i : g->lane[i]];
     pick3(g, &x->r, &g->x.r);
     pick3(g, &x->s, &g->x.s);
     return id;

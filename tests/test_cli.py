@@ -57,7 +57,7 @@ def test_help_and_version(kage: Kage) -> None:
 
 def test_methods(kage: Kage) -> None:
     names = [line.split()[0] for line in kage.good("methods").splitlines()]
-    assert names == ["none", "0", "1", "2", "2+", "iter:K", "march:N"]
+    assert names == ["none", "0", "1", "2", "2+", "iter:K", "march:N", "exact"]
 
 
 @pytest.mark.skipif(not os.path.exists("/dev/full"), reason="no /dev/full on this system")

@@ -1,0 +1,271 @@
+#include "displace.h"
+
+#include "lane.h"
+#include "method.h"
+
+#include <string.h>
+
+#ifdef KAGE_DOUBLE
+#define ROUNDING R(4e-16)
+#else
+#define ROUNDING R(2.4e-7)
+#endif
+
+enum {
+    STEPS = 4096, /* of a search along one ray */
+    REFINE = 64,  /* halvings at most: more than a real has digits */
+    COMPACT = 4,  /* after so many steps the rays that have ended are dropped from the wave */
+};
+
+/* What is known of the rays that are still searched, side by side. */
+typedef struct search {
+    int n;
+    int32_t lane[LANES]; /* whose ray it is */
+    rays x;
+    real t[LANES], gap[LANES], end[LANES], shortest[LANES], tolerance[LANES];
+    real side[LANES]; /* 1: the ray comes from above the rough surface; -1: from below; 0: not known yet */
+    int32_t open[LANES];
+    feet p;
+    heights h;
+    real rate[LANES], reach[LANES];
+} search;
+
+/* The gap at t, and its derivative along the ray. */
+STAGE static void gaps(search *restrict s, real *restrict slope)
+{
+    for (int i = 0; i < s->n; i++) {
+        bs_vec3 d = lane_get(&s->x.s, i);
+        s->gap[i] = s->p.h[i] - s->h.P[i];
+        slope[i] = bs_dot(d, lane_get(&s->p.gh, i)) - s->h.Pu[i] * bs_dot(d, lane_get(&s->p.gu, i)) -
+                   s->h.Pw[i] * bs_dot(d, lane_get(&s->p.gw, i));
+    }
+}
+
+static void look(const surface *f, const perturb *P, int part, search *s, real *slope)
+{
+    f->is->foot(f, part, s->n, &s->x, s->t, &s->p);
+    P->is->eval(P, s->n, s->p.u, s->p.w, 1, &s->h);
+    gaps(s, slope);
+}
+
+static void keep(search *s, int from, int to)
+{
+    s->lane[to] = s->lane[from];
+    lane_set(&s->x.r, to, lane_get(&s->x.r, from));
+    lane_set(&s->x.s, to, lane_get(&s->x.s, from));
+    s->t[to] = s->t[from];
+    s->end[to] = s->end[from];
+    s->shortest[to] = s->shortest[from];
+    s->tolerance[to] = s->tolerance[from];
+    s->side[to] = s->side[from];
+    s->open[to] = s->open[from];
+}
+
+static void compact(search *s)
+{
+    int n = 0;
+    for (int i = 0; i < s->n; i++)
+        if (s->open[i])
+            keep(s, i, n++);
+    s->n = n;
+}
+
+/* A crossing between a and b, the gap's sign changing: Newton's steps from b, or halvings where they leave the bracket or
+ * do not pay. Returns the confirmed t in *t. */
+static displace_end refine(const surface *f, const perturb *P, int part, const search *s, int i, real a, real b, real *t)
+{
+    search one; /* its first lane alone is used */
+    real slope[LANES], best = b, least = REAL_FAR, before = REAL_FAR;
+    one.n = 1;
+    lane_set(&one.x.r, 0, lane_get(&s->x.r, i));
+    lane_set(&one.x.s, 0, lane_get(&s->x.s, i));
+    one.t[0] = b;
+    for (int k = 0; k < REFINE; k++) {
+        look(f, P, part, &one, slope);
+        real gap = s->side[i] * one.gap[0], size = real_abs(gap);
+        if (size < least) {
+            least = size;
+            best = one.t[0];
+        }
+        if (gap > 0)
+            a = one.t[0];
+        else
+            b = one.t[0];
+        real next = one.t[0] - one.gap[0] / slope[0];
+        if (!(next > a && next < b) || size > R(0.5) * before)
+            next = a + (b - a) * R(0.5);
+        before = size;
+        if (gap == 0 || next == one.t[0] || !(next > a && next < b))
+            break;
+        one.t[0] = next;
+    }
+    *t = best;
+    return least <= s->tolerance[i] ? DISPLACE_HIT : DISPLACE_UNCERTAIN;
+}
+
+/* Open the search on the rays whose shell is not empty. */
+static void begin(const surface *f, const perturb *P, int part, int n, const rays *x, const real *end, displace_start start,
+                  search *s)
+{
+    real t0[LANES], t1[LANES];
+    f->is->shell(f, part, n, x, end, P->Pmin, P->Pmax, t0, t1);
+    s->n = 0;
+    for (int i = 0; i < n; i++) {
+        if (!(t0[i] <= t1[i]))
+            continue;
+        const int k = s->n++;
+        bs_vec3 r = lane_get(&x->r, i), d = lane_get(&x->s, i), far = lane_at(x, i, t1[i]);
+        /* the last digits of a place on the ray: of its coordinates, and of what they were summed from */
+        real size = real_sqrt(bs_dot(r, r)) + real_sqrt(bs_dot(far, far)) + real_abs(P->Pmax - P->Pmin);
+        s->lane[k] = i;
+        lane_set(&s->x.r, k, r);
+        lane_set(&s->x.s, k, d);
+        s->t[k] = t0[i];
+        s->end[k] = t1[i];
+        s->tolerance[k] = 8 * ROUNDING * size;
+        s->shortest[k] = real_max((t1[i] - t0[i]) / STEPS, s->tolerance[k] / real_sqrt(bs_dot(d, d)));
+        s->side[k] = start == DISPLACE_ON ? 1 : 0;
+        s->open[k] = 1;
+    }
+}
+
+void displace_search(const surface *f, const perturb *P, int part, int n, const rays *x, const real *end, displace_start start,
+                     real *t, int32_t *found)
+{
+    search s;
+    real slope[LANES];
+    for (int i = 0; i < n; i++)
+        found[i] = DISPLACE_MISSED;
+    begin(f, P, part, n, x, end, start, &s);
+    for (int step = 0; step < STEPS && s.n; step++) {
+        look(f, P, part, &s, slope);
+        f->is->steep(f, part, s.n, &s.x, &s.p, P->Pu_max, P->Pw_max, s.rate, s.reach);
+        for (int i = 0; i < s.n; i++) {
+            if (!s.open[i])
+                continue;
+            /* On its way from the surface itself a ray is above it until it is clearly below. */
+            real least = start == DISPLACE_ON ? s.tolerance[i] : 0;
+            if (s.side[i] == 0)
+                s.side[i] = real_abs(s.gap[i]) <= s.tolerance[i] ? (slope[i] < 0 ? R(1) : R(-1)) : s.gap[i] > 0 ? R(1) : R(-1);
+            real above = s.side[i] * s.gap[i];
+            /* At the end of the shell, P = Pmin below it, rounding must not let the ray slip through. */
+            bool last = s.t[i] >= s.end[i], touches = last && above <= s.tolerance[i] && s.side[i] * slope[i] < 0;
+            if (above <= -least || (touches && start != DISPLACE_ON)) {
+                /* no step goes past a crossing by more than the shortest does */
+                real from = real_max(s.t[i] - s.shortest[i], 0);
+                found[s.lane[i]] = refine(f, P, part, &s, i, from, s.t[i], &t[s.lane[i]]);
+                s.open[i] = 0;
+                continue;
+            }
+            if (last) {
+                s.open[i] = 0;
+                continue;
+            }
+            real safe = real_min(above / s.rate[i], s.reach[i]);
+            s.t[i] = real_min(s.t[i] + real_max(safe, s.shortest[i]), s.end[i]);
+        }
+        if (step % COMPACT == COMPACT - 1)
+            compact(&s);
+    }
+    compact(&s);
+    for (int i = 0; i < s.n; i++) {
+        t[s.lane[i]] = s.t[i];
+        found[s.lane[i]] = DISPLACE_UNCERTAIN;
+    }
+}
+
+void displace_hit(const surface *f, const perturb *P, int n, const rays *x, int32_t id, hits *h, long *uncertain)
+{
+    real t[LANES];
+    int32_t found[LANES];
+    for (int part = 0; part < f->is->parts; part++) {
+        displace_search(f, P, part, n, x, h->t, DISPLACE_AWAY, t, found);
+        for (int i = 0; i < n; i++)
+            if (found[i] != DISPLACE_MISSED && t[i] > 0 && t[i] < h->t[i]) {
+                h->t[i] = t[i];
+                h->id[i] = id;
+                h->part[i] = part;
+                *uncertain += found[i] == DISPLACE_UNCERTAIN;
+            }
+    }
+}
+
+void displace_occlude(const surface *f, const perturb *P, int n, const rays *x, displace_start start, real *lit,
+                      long *uncertain)
+{
+    real t[LANES], end[LANES];
+    int32_t found[LANES];
+    for (int i = 0; i < n; i++)
+        end[i] = lit[i] > 0 ? R(1) : R(-1); /* what is dark already need not be searched */
+    for (int part = 0; part < f->is->parts; part++) {
+        displace_search(f, P, part, n, x, end, start, t, found);
+        for (int i = 0; i < n; i++)
+            if (found[i] != DISPLACE_MISSED) {
+                lit[i] = 0;
+                *uncertain += found[i] == DISPLACE_UNCERTAIN;
+            }
+    }
+}
+
+/* The feet of a group's hits, each on its own part. */
+static void group_feet(const surface *f, const group *g, feet *all)
+{
+    f->is->foot(f, 0, g->n, &g->x, g->t, all);
+    for (int part = 1; part < f->is->parts; part++) {
+        feet p;
+        f->is->foot(f, part, g->n, &g->x, g->t, &p);
+        for (int i = 0; i < g->n; i++)
+            if (g->part[i] == part) {
+                all->u[i] = p.u[i];
+                all->w[i] = p.w[i];
+                lane_set(&all->gu, i, lane_get(&p.gu, i));
+                lane_set(&all->gw, i, lane_get(&p.gw, i));
+                lane_set(&all->gh, i, lane_get(&p.gh, i));
+            }
+    }
+}
+
+void displace_shape(const surface *f, const perturb *P, group *g)
+{
+    feet p;
+    group_feet(f, g, &p);
+    memcpy(g->u, p.u, sizeof g->u);
+    memcpy(g->w, p.w, sizeof g->w);
+    P->is->eval(P, g->n, g->u, g->w, 1, &g->h);
+    f->is->eval(f, g->n, g->part, g->u, g->w, 1, &g->q);
+    /* the rough surface is where height - P = 0: its normal is the gradient of that */
+    for (int i = 0; i < g->n; i++) {
+        bs_vec3 h = lane_get(&p.gh, i), u = lane_get(&p.gu, i), w = lane_get(&p.gw, i);
+        bs_vec3 n = {h.x - g->h.Pu[i] * u.x - g->h.Pw[i] * w.x, h.y - g->h.Pu[i] * u.y - g->h.Pw[i] * w.y,
+                     h.z - g->h.Pu[i] * u.z - g->h.Pw[i] * w.z};
+        n = lane_unit(n);
+        lane_set(&g->n_smooth, i, n);
+        lane_set(&g->n_bump, i, n);
+        lane_set(&g->q.Q, i, lane_at(&g->x, i, g->t[i]));
+        g->tau[i] = 0;
+        g->order[i] = ORDER_EXACT;
+    }
+}
+
+void displace_shift(const surface *f, const perturb *P, group *g, long *uncertain)
+{
+    hits h;
+    for (int i = 0; i < g->n; i++) {
+        h.t[i] = REAL_FAR;
+        h.id[i] = -1;
+    }
+    displace_hit(f, P, g->n, &g->x, 0, &h, uncertain);
+    for (int i = 0; i < g->n; i++) {
+        bs_vec3 n = lane_get(&g->n_smooth, i), Qu = lane_get(&g->q.Qu, i), Qw = lane_get(&g->q.Qw, i);
+        bs_real sn = bs_dot(lane_get(&g->x.s, i), n) / real_sqrt(bs_dot(n, n));
+        bs_view v = {sn, 0, 0};
+        real order_0 = bs_regular(n, Qu, Qw) ? bs_tau0(v, g->h.P[i]) : 0;
+        g->tau[i] = h.id[i] == 0 ? h.t[i] - g->t[i] : order_0;
+        g->order[i] = h.id[i] == 0 ? ORDER_EXACT : 0;
+    }
+}
+
+bool displace_possible(const perturb *P)
+{
+    return P->Pmax - P->Pmin < REAL_FAR && P->Pu_max < REAL_FAR && P->Pw_max < REAL_FAR;
+}
