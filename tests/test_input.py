@@ -23,7 +23,7 @@ REPLACED = [
     ("camera-key", "fov: 40", "fvo: 40", "1:58: camera has no 'fvo', did you mean 'fov'?"),
     ("camera-key-far", "fov: 40", "lens: 40", "1:58: camera has no 'lens', expected one of: from at up fov"),
     ("image-key", "size: [40, 30]", "sise: [40, 30]", "2:9: image has no 'sise', did you mean 'size'?"),
-    ("render-key", "aa: 1", "antialias: 1", "3:34: render has no 'antialias', expected one of: shadow guard aa"),
+    ("render-key", "aa: 1", "antialias: 1", "3:34: render has no 'antialias', expected one of: shadow guard aa surface self_shadow"),
     ("light-key", "color: [1, 1, 1]", "colour: [1, 1, 1]", "5:27: a light has no 'colour', did you mean 'color'?"),
     ("material-key", "diffuse: 0.8", "difuse: 0.8", "7:48: a material has no 'difuse', did you mean 'diffuse'?"),
     ("object-key", "    box: {", "    cube: {",
@@ -120,9 +120,9 @@ REPLACED = [
      "2:15: 1073741824 pixels, expected at most 268435456"),
     ("size-one", "size: [40, 30]", "size: 40",
      "2:15: a single value, expected [width, height] in pixels, from 1 to 32768"),
-    ("shadow", "shadow: 0", "shadow: 3", "3:18: '3' is no method, expected none, 0, 1, 2, 2+, iter:K or march:N"),
+    ("shadow", "shadow: 0", "shadow: 3", "3:18: '3' is no method, expected none, 0, 1, 2, 2+, iter:K, march:N or exact"),
     ("shadow-iter", "shadow: 0", "shadow: 'iter:0'",
-     "3:19: 'iter:0' is no method, expected none, 0, 1, 2, 2+, iter:K or march:N"),
+     "3:19: 'iter:0' is no method, expected none, 0, 1, 2, 2+, iter:K, march:N or exact"),
     ("guard", "guard: true", "guard: yes", "3:28: 'yes' is unknown, expected true or false"),
     ("aa-zero", "aa: 1", "aa: 0", "3:38: 0 is less than 1, expected samples along a pixel's side, 1 to 16"),
     ("aa-fraction", "aa: 1", "aa: 1.5",
@@ -526,7 +526,7 @@ def test_set_in_a_map_that_the_scene_lacks(bench: Kage) -> None:
     assert errors_in(lines) == [
         "--set:1:12: no '0' here: what stands before it is a single value, expected a map or a list",
         "--set:1:12: a single value, expected [width, height] in pixels, from 1 to 32768",
-        "--set:1:8: render has no 'foo', expected one of: shadow guard aa",
+        "--set:1:8: render has no 'foo', expected one of: shadow guard aa surface self_shadow",
     ]
     assert lines[-1] == "3 errors"
 
@@ -565,9 +565,9 @@ COMMAND = [
     ("ending-alone", ["render", "scene.yaml", "-o", ".png"],
      "-o .png: no such kind of picture, expected a name that ends in .png or .exr"),
     ("shadow", ["render", "scene.yaml", "--shadow", "3"],
-     "--shadow 3: no such method, expected none, 0, 1, 2, 2+, iter:K or march:N"),
+     "--shadow 3: no such method, expected none, 0, 1, 2, 2+, iter:K, march:N or exact"),
     ("shadow-steps", ["render", "scene.yaml", "--shadow", "march:0"],
-     "--shadow march:0: no such method, expected none, 0, 1, 2, 2+, iter:K or march:N"),
+     "--shadow march:0: no such method, expected none, 0, 1, 2, 2+, iter:K, march:N or exact"),
     *[(f"size-{size}", ["render", "scene.yaml", "--size", size], f"--size {size}: expected WIDTHxHEIGHT, each from 1 to 32768")
       for size in ("640", "640x", "640x480x2", "0x480", "-1x5", "640X480", "1e2x5", "32769x1", "99999999999x1", "")],
     *[(f"aa-{aa}", ["render", "scene.yaml", "--aa", aa], f"--aa {aa}: expected the samples along a pixel's side, 1 to 16")
