@@ -123,6 +123,8 @@ REPLACED = [
     ("shadow", "shadow: 0", "shadow: 3", "3:18: '3' is no method, expected none, 0, 1, 2, 2+, iter:K, march:N or exact"),
     ("shadow-iter", "shadow: 0", "shadow: 'iter:0'",
      "3:19: 'iter:0' is no method, expected none, 0, 1, 2, 2+, iter:K, march:N or exact"),
+    ("surface", "shadow: 0", "shadow: 0, surface: rough", "3:30: 'rough' is unknown, expected smooth or displaced"),
+    ("self-shadow", "shadow: 0", "shadow: 0, self_shadow: 1", "3:34: '1' is unknown, expected true or false"),
     ("guard", "guard: true", "guard: yes", "3:28: 'yes' is unknown, expected true or false"),
     ("aa-zero", "aa: 1", "aa: 0", "3:38: 0 is less than 1, expected samples along a pixel's side, 1 to 16"),
     ("aa-fraction", "aa: 1", "aa: 1.5",
@@ -529,6 +531,16 @@ def test_set_in_a_map_that_the_scene_lacks(bench: Kage) -> None:
         "--set:1:8: render has no 'foo', expected one of: shadow guard aa surface self_shadow",
     ]
     assert lines[-1] == "3 errors"
+
+
+@pytest.mark.parametrize("setting", ["render.shadow=exact", "render.surface=displaced"])
+@pytest.mark.parametrize("function", ["u", "floor(u)", "1/u"])
+def test_truth_needs_bounds(bench: Kage, setting: str, function: str) -> None:
+    lines = refused_scene(bench, SCENE.replace("0.1 * sin(u)", function), "--set", setting)
+    assert lines[0] == (
+        "scene.yaml:13:7: no bounds of P or of its slope are known, expected them for "
+        f"{setting.split('.')[1].replace('=', ' ')}: a function that is bounded, without jumps, over the whole surface"
+    )
 
 
 def test_set_mistakes_are_told_one_by_one(bench: Kage) -> None:
