@@ -3,6 +3,8 @@
  *     wave -> nearest hit with the smooth surfaces -> for the lanes on each surface:
  *     Q and its partials -> P and its partials -> n' -> the shift tau (none, 0, 1, 2 ...)
  *     -> shadow rays from r + s t0 -> light at Q with n'
+ *
+ * For comparison, rough surfaces can be met where they really are (displace.h) in place of the smooth ones.
  */
 #include "trace.h"
 

@@ -13,6 +13,7 @@
 #include "displace.h"
 #include "lane.h"
 #include "method.h"
+#include "random_in.h"
 
 /* The agreement asked for, in scene units; the scenes are about 6 wide. */
 #ifdef KAGE_DOUBLE
@@ -22,15 +23,6 @@
 #endif
 
 typedef long double wide;
-
-static double random_in(double lo, double hi)
-{
-    static uint64_t state = 88172645463325252u;
-    state ^= state << 13;
-    state ^= state >> 7;
-    state ^= state << 17;
-    return lo + (hi - lo) * (double)(state >> 11) / 9007199254740992.0;
-}
 
 /* ---- an independent reading of the surfaces and bumps, in long double ---- */
 

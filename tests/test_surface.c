@@ -11,6 +11,7 @@
 #include <cmocka.h>
 
 #include "lane.h"
+#include "random_in.h"
 #include "surface.h"
 
 /* Digits of a place a few units from the origin. */
@@ -19,15 +20,6 @@
 #else
 #define EPS 1.2e-7
 #endif
-
-static double random_in(double lo, double hi)
-{
-    static uint64_t state = 88172645463325252u;
-    state ^= state << 13;
-    state ^= state >> 7;
-    state ^= state << 17;
-    return lo + (hi - lo) * (double)(state >> 11) / 9007199254740992.0;
-}
 
 enum { KINDS = 4 };
 
