@@ -5,12 +5,14 @@
 #   SANITIZE=address,undefined
 #   CLONES=no             without the AVX2 copies of the stages
 #   BUILD=DIR             where the objects and the program go
+#   V=1                   print the whole commands
 
 REAL     ?= float
 SANITIZE ?=
 CLONES   ?= yes
 BUILD    ?= build/$(REAL)
 PREFIX   ?= /usr/local
+Q         = $(if $(V),,@)
 
 PKGS      = libpng libfyaml OpenEXR
 WARNINGS  = -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wdouble-promotion -Wmissing-prototypes \
@@ -37,7 +39,7 @@ override CFLAGS  += $(STANDARD) $(OPTIMISE) -fopenmp $(WARNINGS) $(DEFINES) $(SA
 override LDFLAGS += -fopenmp $(SANITIZER)
 LIBS       = $(PKG_LIBS) -lm
 
-PROGRAM   = main arguments progress command_render command_check command_pixel
+PROGRAM   = main arguments progress command_render command_check command_pixel command_pov
 SOURCES   = $(patsubst src/%.c,%,$(wildcard src/*.c))
 LIBRARY   = $(filter-out $(PROGRAM),$(SOURCES))
 UNITS     = $(patsubst tests/%.c,%,$(wildcard tests/test_*.c))
@@ -45,7 +47,7 @@ UNITS     = $(patsubst tests/%.c,%,$(wildcard tests/test_*.c))
 FIGURES   = figure4 figure5 figure6 figure7 figure8-none figure8 terrain-none terrain
 PICTURES  = $(FIGURES:%=out/%.png)
 
-.PHONY: all render test unit-tests program-tests check-variants install clean help bootstrap FORCE
+.PHONY: all render reference accept test unit-tests program-tests check-variants install clean help bootstrap FORCE
 all: bootstrap
 	@$(MAKE) --no-print-directory $(BUILD)/kage
 
@@ -53,9 +55,11 @@ help:
 	@echo 'make            build the tracer, $(BUILD)/kage'
 	@echo 'make render     the pictures of the paper, into out/'
 	@echo 'make test       all tests'
+	@echo 'make accept     look at pictures that have changed, and keep them (tests/regression/)'
+	@echo 'make reference  what POV-Ray makes of the scenes, where that is stale, into reference/'
 	@echo 'make install    to PREFIX ($(PREFIX)), under DESTDIR: the program, and bumpshadow.h'
 	@echo 'make clean      remove build/ and out/'
-	@echo 'Settings: REAL=float|double CC=gcc|clang CLONES=no SANITIZE=address,undefined BOOTSTRAP=no'
+	@echo 'Settings: REAL=float|double CC=gcc|clang CLONES=no SANITIZE=address,undefined BOOTSTRAP=no V=1'
 
 # What is missing is installed (scripts/bootstrap); where nothing is, this costs a quarter of a second.
 bootstrap:
@@ -95,7 +99,8 @@ out/figures.png: $(PICTURES) scripts/contact_sheet.py
 # ---- the program ----
 
 $(BUILD)/kage: $(PROGRAM:%=$(BUILD)/%.o) $(LIBRARY:%=$(BUILD)/%.o)
-	$(CC) $(LDFLAGS) -o $@ $^ $(LIBS)
+	@echo '  LD  $@'
+	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(LIBS)
 
 # Objects depend on the flags that made them.
 $(BUILD)/flags: FORCE
@@ -103,13 +108,16 @@ $(BUILD)/flags: FORCE
 	@echo '$(CC) $(CFLAGS) $(LDFLAGS)' | cmp -s - $@ || echo '$(CC) $(CFLAGS) $(LDFLAGS)' > $@
 
 $(BUILD)/%.o: src/%.c $(BUILD)/flags
-	$(CC) $(CFLAGS) -c -o $@ $<
+	@echo '  CC  $@'
+	$(Q)$(CC) $(CFLAGS) -c -o $@ $<
 
 $(BUILD)/%.o: tests/%.c $(BUILD)/flags
-	$(CC) $(CFLAGS) -Isrc -Itests -DKAGE_TESTS_DIR='"tests"' -c -o $@ $<
+	@echo '  CC  $@'
+	$(Q)$(CC) $(CFLAGS) -Isrc -Itests -DKAGE_TESTS_DIR='"tests"' -c -o $@ $<
 
 $(BUILD)/test_%: $(BUILD)/test_%.o $(LIBRARY:%=$(BUILD)/%.o)
-	$(CC) $(LDFLAGS) -o $@ $^ -lcmocka $(LIBS)
+	@echo '  LD  $@'
+	$(Q)$(CC) $(LDFLAGS) -o $@ $^ -lcmocka $(LIBS)
 
 # ---- tests ----
 
@@ -126,6 +134,15 @@ unit-tests: $(UNITS:%=$(BUILD)/%)
 program-tests: $(BUILD)/kage
 	@$(MAKE) --no-print-directory REAL=double build/double/kage
 	scripts/venv python -m pytest -q tests
+
+# Only what is stale is made again.
+reference: all
+	@CC='$(CC)' scripts/bootstrap python povray
+	scripts/venv python reference/render.py --kage $(BUILD)/kage
+
+accept: all
+	@CC='$(CC)' scripts/bootstrap python
+	@KAGE=$(BUILD)/kage scripts/venv python tests/regression/accept.py
 
 install: all
 	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/include

@@ -64,7 +64,12 @@ static bool option(arguments *a, const char *name, const char *v)
     int x[4];
     method m;
     if (strcmp(name, "-o") == 0) {
-        if (!has_ending(v, ".png") && !has_ending(v, ".exr"))
+        if (strcmp(a->command, "pov") == 0) {
+            if (!has_ending(v, ".pov"))
+                return usage_error("-o %s: expected a name that ends in .pov", v);
+            if (a->outputs)
+                return usage_error("-o %s: a second output, expected one", v);
+        } else if (!has_ending(v, ".png") && !has_ending(v, ".exr"))
             return usage_error("-o %s: no such kind of picture, expected a name that ends in .png or .exr", v);
         if (a->outputs == MAX_OUTPUTS)
             return usage_error("more than %d outputs", MAX_OUTPUTS);
@@ -115,7 +120,9 @@ static bool flag(arguments *a, const char *name)
         return add_set(a, "render.self_shadow=false");
     if (strcmp(name, "--no-guard") == 0)
         return add_set(a, "render.guard=false");
-    if (strcmp(name, "--stats") == 0)
+    if (strcmp(name, "--no-cast") == 0)
+        a->no_cast = true;
+    else if (strcmp(name, "--stats") == 0)
         a->stats = true;
     else
         a->quiet = true;
@@ -136,12 +143,15 @@ bool arguments_read(arguments *a, int argc, char **argv)
     static const char *const render_values[] = {"-o",     "--shadow",  "--surface", "--size", "--aa", "--crop",
                                                 "--set",  "--threads", "--bits", NULL};
     static const char *const render_flags[] = {"--no-guard", "--no-self-shadow", "--stats", "--quiet", NULL};
+    static const char *const pov_values[] = {"-o", "--surface", "--size", "--set", NULL};
+    static const char *const pov_flags[] = {"--no-self-shadow", "--no-cast", NULL};
     static const char *const other_values[] = {"--set", "--size", NULL};
     static const char *const no_flags[] = {NULL};
     *a = (arguments){.command = argv[1], .bits = 8};
-    const bool renders = strcmp(a->command, "render") == 0;
+    const bool renders = strcmp(a->command, "render") == 0, exports = strcmp(a->command, "pov") == 0;
     const int operands = strcmp(a->command, "pixel") == 0 ? 2 : 1;
-    const char *const *values = renders ? render_values : other_values, *const *flags = renders ? render_flags : no_flags;
+    const char *const *values = renders ? render_values : exports ? pov_values : other_values;
+    const char *const *flags = renders ? render_flags : exports ? pov_flags : no_flags;
     for (int k = 2; k < argc; k++) {
         char *arg = argv[k], *equals = strncmp(arg, "--", 2) == 0 ? strchr(arg, '=') : NULL;
         if (arg[0] != '-' || !arg[1]) {

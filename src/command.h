@@ -20,7 +20,7 @@ typedef struct arguments {
     int sets;
     window crop; /* x1 == 0: none */
     int threads, bits;
-    bool stats, quiet;
+    bool stats, quiet, no_cast;
 } arguments;
 
 /* Read the options of a command; tells what is wrong and returns false. arguments_free in either case. */
@@ -30,6 +30,7 @@ void arguments_free(arguments *a);
 int command_render(const arguments *a);
 int command_check(const arguments *a);
 int command_pixel(const arguments *a);
+int command_pov(const arguments *a);
 
 /* The scene of a command line, or NULL with the errors told. */
 scene *command_scene(const arguments *a);

@@ -12,6 +12,7 @@ static const char help[] =
     "  kage render SCENE [options]      make the picture of a scene\n"
     "  kage check SCENE [options]       say what is in a scene, and how steep its bumps are\n"
     "  kage pixel SCENE X,Y [options]   every value on the way of one pixel, method by method\n"
+    "  kage pov SCENE -o FILE [options] write the scene for POV-Ray 3.7\n"
     "  kage methods                     list the methods\n"
     "  kage --help, kage --version\n"
     "\n"
@@ -33,7 +34,14 @@ static const char help[] =
     "  --stats              time and count each stage\n"
     "  --quiet              no progress bar, no closing line\n"
     "\n"
-    "Scene files are described in docs/scene.md, the method in docs/method.md.\n"
+    "Options of pov:\n"
+    "  -o FILE              where to, a name that ends in .pov\n"
+    "  --surface KIND       smooth (without the bumps), or displaced: bumped surfaces as what they stand for\n"
+    "  --no-self-shadow     displaced objects cast no shadows\n"
+    "  --no-cast            all other objects cast none\n"
+    "\n"
+    "Scene files are described in docs/scene.md, the method in docs/method.md, the way to POV-Ray in\n"
+    "docs/povray.md.\n"
     "Exit status: 0; 1 where a picture can't be written; 2 for bad input.\n";
 
 int command_fail(errors *e, int status)
@@ -78,7 +86,7 @@ int main(int argc, char **argv)
     static const struct {
         const char *name;
         int (*run)(const arguments *a);
-    } commands[] = {{"render", command_render}, {"check", command_check}, {"pixel", command_pixel}};
+    } commands[] = {{"render", command_render}, {"check", command_check}, {"pixel", command_pixel}, {"pov", command_pov}};
     if (argc < 2) {
         fputs(help, stderr);
         return EXIT_INPUT;
@@ -101,6 +109,6 @@ int main(int argc, char **argv)
             arguments_free(&a);
             return finish(status);
         }
-    usage_error("no command '%s', expected render, check, pixel or methods; see kage --help", argv[1]);
+    usage_error("no command '%s', expected render, check, pixel, pov or methods; see kage --help", argv[1]);
     return EXIT_INPUT;
 }

@@ -1,0 +1,141 @@
+/* Displaced objects as isosurfaces: height over the smooth surface less P is 0 on the rough one.
+ *
+ * max_gradient is a bound, not a guess: from P's Lipschitz constants on flat surfaces, from interval arithmetic on a sphere. POV-Ray
+ * drops a stretch of a ray in which the function could not reach 0 by this bound, so too low a one makes holes.
+ */
+#include "pov_parts.h"
+
+#include "expr_pov.h"
+
+#include <stdlib.h>
+
+#define STEEPEST 30.0 /* a bound above this makes an isosurface slower than a mesh */
+
+bool pov_function(pov_text *t, const object *o, const char *name)
+{
+    expr_error wrong;
+    expr *e = expr_parse(o->bump_said.function, &wrong);
+    char *text = e ? expr_pov(e) : NULL;
+    expr_free(e);
+    if (text && o->bump_said.scale == 1)
+        pov_print(t, "#declare %s = function(u, w) { %s }\n", name, text);
+    else if (text)
+        pov_print(t, "#declare %s = function(u, w) { %s*(%s) }\n", name, pov_exact(o->bump_said.scale).text, text);
+    free(text);
+    return text;
+}
+
+/* ---- the bound of the gradient ---- */
+
+static double of_flat(const object *o, int part)
+{
+    pov_flat p = pov_flat_of(&o->shape_said, part);
+    double x = (double)o->bump->Pu_max / vec3_length(p.U), z = (double)o->bump->Pw_max / vec3_length(p.W);
+    return sqrt(1 + x * x + z * z);
+}
+
+/* The steepest place between two latitudes: |grad u| = 1/(r sin w), |grad w| = 1/r. */
+static double of_zone(const expr *e, double scale, double r, double w0, double w1)
+{
+    enum { CELLS = 64 };
+    const double pi = 3.14159265358979323846, sine = fmin(sin(w0), sin(w1));
+    double worst = 0;
+    for (int i = 0; i < CELLS; i++) {
+        expr_bounds b;
+        expr_range_gradient(e, pi * (2.0 * i / CELLS - 1), pi * (2.0 * (i + 1) / CELLS - 1), w0, w1, &b);
+        double x = fmax(fabs(b.u[0]), fabs(b.u[1])) / (r * sine), z = fmax(fabs(b.w[0]), fabs(b.w[1])) / r;
+        worst = fmax(worst, sqrt(1 + scale * scale * (x * x + z * z)));
+    }
+    return worst;
+}
+
+/* u turns about the poles ever faster, and the gradient is infinite there unless P does not depend on u. Zones that narrow
+ * towards the poles bound it up to a cap of CAP radians, which is left out: a thousandth of the radius is less than a pixel. */
+static double of_sphere(const object *o)
+{
+    const double CAP = 1e-3, GROWTH = 1.05, WIDEST = 0.05, half = 3.14159265358979323846 / 2;
+    double r = o->shape_said.radius + (double)o->bump->Pmin, scale = fabs(o->bump_said.scale), worst = 0;
+    expr_error wrong;
+    expr *e = r > 0 ? expr_parse(o->bump_said.function, &wrong) : NULL;
+    if (!e)
+        return HUGE_VAL;
+    for (double w = CAP; w < half && worst < STEEPEST;) {
+        double next = fmin(fmin(w * GROWTH, w + WIDEST), half);
+        worst = fmax(worst, fmax(of_zone(e, scale, r, w, next), of_zone(e, scale, r, 2 * half - next, 2 * half - w)));
+        w = next;
+    }
+    expr_free(e);
+    return worst;
+}
+
+double pov_isosurface_gradient(const object *o, int part)
+{
+    if (!o->bump_said.function)
+        return HUGE_VAL;
+    double g = pov_is_flat(&o->shape_said) ? of_flat(o, part) : of_sphere(o);
+    return g < STEEPEST ? g * (1 + 1e-6) : HUGE_VAL;
+}
+
+/* ---- writing ---- */
+
+static double accuracy(const scene *s) { return 1e-7 * vec3_length(vec3_sub(s->view.at, s->camera.from)); }
+
+/* P's range with some air: a container must hold all of the surface. */
+static void levels(const object *o, double y[2])
+{
+    double air = 1e-3 * ((double)o->bump->Pmax - (double)o->bump->Pmin) + 1e-6;
+    y[0] = (double)o->bump->Pmin - air;
+    y[1] = (double)o->bump->Pmax + air;
+}
+
+static void put_over(pov_text *t, const char *x, double length)
+{
+    pov_print(t, length == 1 ? "%s" : "%s/%s", x, pov_exact(length).text);
+}
+
+static void put_flat(pov_text *t, const scene *s, const object *o, int part, const char *name)
+{
+    const pov_flat p = pov_flat_of(&o->shape_said, part);
+    const double lu = vec3_length(p.U), lw = vec3_length(p.W);
+    double u[2] = {0, 1}, w[2] = {0, 1}, y[2];
+    levels(o, y);
+    if (o->shape_said.kind == SHAPE_PLANE) {
+        pov_plane_region(s, o, u, w);
+        pov_print(t, "// The plane has no end; here it is cut to what the camera sees and what can shade that.\n");
+    }
+    pov_print(t, "isosurface {\n  function { y - %s(", name);
+    put_over(t, "x", lu);
+    pov_print(t, ", ");
+    put_over(t, "z", lw);
+    pov_print(t, ") }\n  contained_by { box { <%g, %g, %g>, <%g, %g, %g> } }\n", u[0] * lu, y[0], w[0] * lw, u[1] * lu, y[1],
+              w[1] * lw);
+    pov_print(t, "  open\n  accuracy %g\n  max_gradient %g // a bound: none is steeper\n", accuracy(s),
+              pov_isosurface_gradient(o, part));
+    pov_print(t, "  matrix <%g, %g, %g,  %g, %g, %g,  %g, %g, %g,  %g, %g, %g> // x along u, y the height, z along w, origin\n",
+              p.x.x, p.x.y, p.x.z, p.y.x, p.y.y, p.y.z, p.z.x, p.z.y, p.z.z, p.O.x, p.O.y, p.O.z);
+}
+
+static void put_sphere(pov_text *t, const scene *s, const object *o, const char *name)
+{
+    double y[2], radius = o->shape_said.radius;
+    levels(o, y);
+    pov_print(t, "isosurface {\n  function {\n    sqrt(x*x + y*y + z*z) - %s\n    - %s(atan2(z, x), atan2(sqrt(x*x + z*z), y))\n  }\n",
+              pov_exact(radius).text, name);
+    pov_print(t, "  contained_by { sphere { 0, %g } }\n  accuracy %g\n", radius + y[1], accuracy(s));
+    pov_print(t, "  max_gradient %g // a bound but for 0.001 radians around the poles\n  translate %v\n",
+              pov_isosurface_gradient(o, 0), o->shape_said.a);
+}
+
+void pov_isosurface(pov_text *t, const scene *s, const object *o, const char *name)
+{
+    if (o->shape_said.kind == SHAPE_SPHERE)
+        put_sphere(t, s, o, name);
+    else if (o->shape_said.kind == SHAPE_BOX) {
+        pov_print(t, "union {\n");
+        for (int part = 0; part < 6; part++) {
+            put_flat(t, s, o, part, name);
+            pov_print(t, "}\n");
+        }
+    } else
+        put_flat(t, s, o, 0, name);
+}

@@ -1,0 +1,38 @@
+/* What the parts of the POV-Ray writer share. Private to pov_*.c. */
+#ifndef KAGE_POV_PARTS_H
+#define KAGE_POV_PARTS_H
+
+#include "pov.h"
+#include "pov_text.h"
+
+/* A flat surface in a frame of its own: Q = O + u U + w W; x runs along U, z along W, both in scene units, and y is the height
+ * over it, so that U and W need not be at a right angle. */
+typedef struct pov_flat {
+    vec3 O, U, W;
+    vec3 x, y, z; /* unit */
+} pov_flat;
+
+pov_flat pov_flat_of(const shape_spec *f, int part);
+
+/* Whether part of an object's shape is flat. */
+bool pov_is_flat(const shape_spec *f);
+
+/* The part of an unbounded plane that matters for the picture, as ranges of u and w: what the camera sees of the rough surface,
+ * and what of it can shade that. */
+void pov_plane_region(const scene *s, const object *o, double u[2], double w[2]);
+
+/* P as a POV-Ray function of u and w, named by `name`. False where there is none. */
+bool pov_function(pov_text *t, const object *o, const char *name);
+
+/* The displaced object as isosurfaces that call the function `name`. pov_isosurface_gradient: the bound of its gradient, infinite
+ * where none is known or none serves. */
+double pov_isosurface_gradient(const object *o, int part);
+void pov_isosurface(pov_text *t, const scene *s, const object *o, const char *name);
+
+/* The displaced object as one mesh. False: out of memory. */
+bool pov_mesh(pov_text *t, const scene *s, const object *o, pov_report *report);
+
+/* The end of an object: its material, its shadow, the brace. */
+void pov_object_end(pov_text *t, const scene *s, const pov_options *how, const object *o);
+
+#endif

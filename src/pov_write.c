@@ -1,0 +1,135 @@
+/* The POV-Ray file as a whole: camera, lights, materials, objects. Displaced objects are in pov_isosurface.c and pov_mesh.c. */
+#include "pov_parts.h"
+
+#include <string.h>
+
+/* The name of a thing of the scene as an identifier of POV-Ray, which has no '-'; `index` keeps a-b and a_b apart. */
+typedef struct identifier {
+    char text[96];
+} identifier;
+
+static identifier identify(const char *kind, const char *name, int index)
+{
+    identifier d;
+    if (strchr(name, '-'))
+        snprintf(d.text, sizeof d.text, "%s%d_%s", kind, index, name);
+    else
+        snprintf(d.text, sizeof d.text, "%s_%s", kind, name);
+    for (char *c = d.text; *c; c++)
+        *c = *c == '-' ? '_' : *c;
+    return d;
+}
+
+static identifier material_name(const scene *s, int k) { return identify("Material", s->material[k].name, k); }
+
+/* The base name: a file says nothing of the machine that made it. */
+static void put_head(pov_text *t, const scene *s, const pov_options *o)
+{
+    const char *slash = strrchr(s->path, '/');
+    char name[256];
+    snprintf(name, sizeof name, "%s", slash ? slash + 1 : s->path);
+    for (char *c = name; *c; c++)
+        *c = (unsigned char)*c < 0x20 ? '?' : *c;
+    pov_print(t, "// %s, %s, for POV-Ray 3.7\n", name, s->displaced ? "with its bumps truly displaced" : "without bumps");
+    pov_print(t, "// made by: %s\n", o->command);
+    pov_print(t, "// render:  povray +I<this file> +O<picture>.exr +FE +W%d +H%d -A -D\n\n", s->width, s->height);
+    pov_print(t, "#version 3.7;\n"
+                 "global_settings { assumed_gamma 1 ambient_light rgb 1 }\n\n");
+}
+
+static void put_camera(pov_text *t, const scene *s)
+{
+    const camera_view *v = &s->view;
+    pov_print(t, "camera {\n  perspective\n  location %v\n  sky %v\n  right x*image_width/image_height\n  up y\n"
+                 "  angle %g // horizontal\n  look_at %v\n}\n\nbackground { color rgb %v }\n\n",
+              s->camera.from, v->up, v->fov, v->at, s->background);
+}
+
+static void put_lights(pov_text *t, const scene *s)
+{
+    for (int k = 0; k < s->lights; k++)
+        pov_print(t, "light_source { %v color rgb %v } // %s\n", s->light[k].at, s->light[k].color, s->light[k].name);
+    pov_print(t, "\n");
+}
+
+static void put_materials(pov_text *t, const scene *s)
+{
+    for (int k = 0; k < s->materials; k++) {
+        const material *m = &s->material[k];
+        pov_print(t, "#declare %s = texture {\n  pigment { color rgb %v }\n  finish {\n    ambient %g\n    diffuse %g\n"
+                     "    phong %g phong_size %g\n    specular %g roughness %g\n  }\n}\n\n",
+                  material_name(s, k).text, m->color, m->ambient, m->diffuse, m->phong, m->phong_size, m->specular, m->roughness);
+    }
+}
+
+void pov_object_end(pov_text *t, const scene *s, const pov_options *how, const object *o)
+{
+    bool displaced = s->displaced && o->bump;
+    pov_print(t, "  texture { %s }\n", material_name(s, o->material).text);
+    if ((displaced && !s->self_shadow) || (!o->bump && how->no_cast))
+        pov_print(t, "  no_shadow\n");
+    pov_print(t, "}\n\n");
+}
+
+static void put_smooth(pov_text *t, const object *o)
+{
+    const shape_spec *f = &o->shape_said;
+    switch (f->kind) {
+    case SHAPE_PLANE: {
+        vec3 n = vec3_unit(vec3_cross(f->u, f->w));
+        pov_print(t, "plane {\n  %v, %g\n", n, vec3_dot(n, f->a));
+        break;
+    }
+    case SHAPE_RECTANGLE: {
+        vec3 n = vec3_unit(vec3_cross(f->u, f->w));
+        pov_print(t, "polygon {\n  5, <0, 0>, <1, 0>, <1, 1>, <0, 1>, <0, 0>\n"
+                     "  matrix <%g, %g, %g,  %g, %g, %g,  %g, %g, %g,  %g, %g, %g> // u, w, n, origin\n",
+                  f->u.x, f->u.y, f->u.z, f->w.x, f->w.y, f->w.z, n.x, n.y, n.z, f->a.x, f->a.y, f->a.z);
+        break;
+    }
+    case SHAPE_BOX:
+        pov_print(t, "box {\n  %v, %v\n", f->a, f->u);
+        break;
+    case SHAPE_SPHERE:
+        pov_print(t, "sphere {\n  %v, %g\n", f->a, f->radius);
+        break;
+    }
+}
+
+static bool put_displaced(pov_text *t, const scene *s, int k, pov_report *report)
+{
+    const object *o = &s->object[k];
+    identifier P = identify("P", o->name, k);
+    double gradient = 0;
+    for (int part = 0; part < o->shape->is->parts; part++)
+        gradient = fmax(gradient, pov_isosurface_gradient(o, part));
+    if (gradient < HUGE_VAL && pov_function(t, o, P.text)) {
+        pov_isosurface(t, s, o, P.text);
+        return true;
+    }
+    return pov_mesh(t, s, o, report);
+}
+
+bool pov_write(const scene *s, const pov_options *how, const char *path, pov_report *report, errors *e)
+{
+    pov_text t;
+    bool good = true;
+    *report = (pov_report){0};
+    if (!pov_begin(&t, path, e))
+        return false;
+    put_head(&t, s, how);
+    put_camera(&t, s);
+    put_lights(&t, s);
+    put_materials(&t, s);
+    for (int k = 0; good && k < s->objects; k++) {
+        const object *o = &s->object[k];
+        pov_print(&t, "// object %s: %s%s%s\n", o->name, o->shape->is->kind, o->bump ? ", bump by " : "",
+                  o->bump ? o->bump->is->kind : "");
+        if (s->displaced && o->bump)
+            good = put_displaced(&t, s, k, report);
+        else
+            put_smooth(&t, o);
+        pov_object_end(&t, s, how, o);
+    }
+    return pov_end(&t, good ? NULL : "out of memory", e);
+}

@@ -1,0 +1,341 @@
+"""The export to POV-Ray: the same picture there as here, the same functions, and files that POV-Ray reads without a warning.
+
+POV-Ray's EXR is half float, and the pictures are compared in linear light.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+import re
+import shutil
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import OpenEXR
+import pytest
+from conftest import Kage
+from PIL import Image
+
+POVRAY = shutil.which("povray")
+STEP = 1 / 255
+SIZE = (200, 150)
+
+needs_povray = pytest.mark.skipif(not POVRAY and not os.environ.get("CI"), reason="no povray")
+
+HEAD = """\
+camera: {camera}
+image: {{size: [200, 150], background: [0.05, 0.1, 0.2]}}
+lights: {lights}
+materials:
+  clay: {{color: [0.82, 0.72, 0.58], ambient: 0.12, diffuse: 0.8}}
+  shiny: {{color: [0.15, 0.3, 0.6], ambient: 0.2, diffuse: 0.5, phong: 0.6, phong_size: 30}}
+  glaze: {{color: [0.6, 0.2, 0.15], diffuse: 0.6, specular: 0.7, roughness: 0.02}}
+objects:
+"""
+CAMERA = "{from: [0.3, 2.9, -5.2], at: [0, 0.5, 0], fov: 40}"
+LIGHTS = "{lamp: {at: [-4.5, 5.2, -2.2], color: [1.1, 1.08, 1]}}"
+FLOOR = "  floor: {plane: {origin: [0, 0, 0], u: [0, 0, 1], w: [1, 0, 0]}, material: clay}\n"
+BALL = "  ball: {sphere: {center: [0, 1, 0], radius: 0.8}, material: MATERIAL}\n"
+BOX = "  block: {box: {from: [-0.6, 0.55, -0.6], to: [0.6, 1.75, 0.6]}, material: MATERIAL}\n"
+SHEET = "  sheet: {rectangle: {origin: [-1, 0.5, 0.2], u: [2, 0.4, 0.3], w: [0.5, 1.2, 0.4]}, material: MATERIAL}\n"
+TILTED = "  floor: {plane: {origin: [0, -1, 0], u: [2, 0.5, 0.3], w: [0.4, 0.2, -3]}, material: MATERIAL}\n"
+
+#: name: (camera, lights, objects)
+SMOOTH = {
+    "plane": (CAMERA, LIGHTS, TILTED.replace("MATERIAL", "clay") + BALL.replace("MATERIAL", "clay")),
+    "rectangle": (CAMERA, LIGHTS, FLOOR + SHEET.replace("MATERIAL", "clay")),
+    "box": (CAMERA, LIGHTS, FLOOR + BOX.replace("MATERIAL", "clay")),
+    "sphere": (CAMERA, LIGHTS, FLOOR + BALL.replace("MATERIAL", "clay")),
+    "phong plane": (CAMERA, LIGHTS, TILTED.replace("MATERIAL", "shiny")),
+    "phong rectangle": (CAMERA, LIGHTS, FLOOR + SHEET.replace("MATERIAL", "shiny")),
+    "phong box": (CAMERA, LIGHTS, FLOOR + BOX.replace("MATERIAL", "shiny")),
+    "phong sphere": (CAMERA, LIGHTS, FLOOR + BALL.replace("MATERIAL", "shiny")),
+    "specular plane": (CAMERA, LIGHTS, TILTED.replace("MATERIAL", "glaze")),
+    "specular rectangle": (CAMERA, LIGHTS, FLOOR + SHEET.replace("MATERIAL", "glaze")),
+    "specular box": (CAMERA, LIGHTS, FLOOR + BOX.replace("MATERIAL", "glaze")),
+    "specular sphere": (CAMERA, LIGHTS, FLOOR + BALL.replace("MATERIAL", "glaze")),
+    "three lights": (
+        CAMERA,
+        "{a: {at: [-4, 5, -2]}, b: {at: [5, 3, -3], color: [0.5, 0.1, 0.1]}, c: {at: [0, 2, 6], color: [0.1, 0.2, 0.7]}}",
+        FLOOR + BALL.replace("MATERIAL", "shiny") + SHEET.replace("MATERIAL", "glaze"),
+    ),
+    "no light": (CAMERA, "{}", FLOOR + BALL.replace("MATERIAL", "shiny")),
+    "up tilted": (
+        "{from: [2, 2.9, -4], at: [0, 0.5, 0], up: [0.4, 1, -0.3], fov: 45}", LIGHTS, FLOOR + BOX.replace("MATERIAL", "shiny"),
+    ),
+    "aim off-centre": ("{from: [-1, 1.5, -4], at: [1.5, 0.2, 1], fov: 60}", LIGHTS, FLOOR + BALL.replace("MATERIAL", "glaze")),
+    "straight down": ("{from: [0, 6, 0], at: [0, 0, 0], up: [1, 0, 1]}", LIGHTS, FLOOR + BOX.replace("MATERIAL", "clay")),
+    "fov 10": ("{from: [3, 9, -20], at: [0, 0.7, 0], fov: 10}", LIGHTS, FLOOR + BALL.replace("MATERIAL", "shiny")),
+    "fov 120": ("{from: [0.3, 1.9, -2], at: [0, 0.5, 0], fov: 120}", LIGHTS, FLOOR + BOX.replace("MATERIAL", "glaze")),
+    "horizon": ("{from: [0, 1.2, -5], at: [0, 1.2, 0], fov: 70}", LIGHTS, FLOOR + BALL.replace("MATERIAL", "clay")),
+    "from below": ("{from: [0, -2, -4], at: [0, 0, 0], fov: 50}", "{a: {at: [1, -6, -3]}}", FLOOR + BALL.replace("MATERIAL", "clay")),
+    "eye within": ("{from: [0, 1.1, 0], at: [0.3, 0.4, 1], fov: 90}", "{a: {at: [0.2, 1.4, 0.1]}}", BOX.replace("MATERIAL", "shiny")),
+}
+
+
+def povray(scene: Path, size: tuple[int, int] = SIZE, *options: str) -> tuple[np.ndarray, str]:
+    """The picture, and all warnings."""
+    assert POVRAY, "povray is not there"
+    out, words = scene.with_suffix(".pov.exr"), scene.with_suffix(".words")
+    done = subprocess.run(
+        [POVRAY, f"+I{scene.name}", f"+O{out.name}", "+FE", f"+W{size[0]}", f"+H{size[1]}", "-D", "-A", "+WT2", "-V",
+         f"+GW{words.name}", *options],
+        cwd=scene.parent, capture_output=True, text=True, timeout=600,
+    )
+    assert done.returncode == 0, done.stderr[-2000:]
+    with OpenEXR.File(str(out), separate_channels=True) as file:
+        channels = file.channels()
+        rgb = np.stack([channels[name].pixels.astype(float) for name in "RGB"], axis=-1)
+    return rgb, ADVICE.sub("", words.read_text()) if words.exists() else ""
+
+
+#: A bound can be above what one picture has met of it: this advice is none to follow, and no warning.
+ADVICE = re.compile(r"(File: \S+\s+Line: \d+\s*)?Shutdown Warning: The maximum gradient found was[^!]*?faster\s+rendering\s+of\s+the\s+isosurface\.\s*")
+
+
+def layers(path: Path) -> dict[str, np.ndarray]:
+    with OpenEXR.File(str(path), separate_channels=True) as file:
+        return {name: channel.pixels.astype(float) for name, channel in file.channels().items()}
+
+
+def near(mask: np.ndarray) -> np.ndarray:
+    """Within one pixel of a pixel of the mask."""
+    wide = np.pad(mask, 1)
+    rows, columns = mask.shape
+    return np.any([wide[y : y + rows, x : x + columns] for y in range(3) for x in range(3)], axis=0)
+
+
+def edges(of: np.ndarray) -> np.ndarray:
+    """Pixels that differ from their neighbour to the right or below, both of each pair."""
+    found = np.zeros(of.shape[:2], bool)
+    across, down = of[:, 1:] != of[:, :-1], of[1:] != of[:-1]
+    found[:, 1:] |= across
+    found[:, :-1] |= across
+    found[1:] |= down
+    found[:-1] |= down
+    return found
+
+
+def borders(kage: Kage, scene: Path, picture: dict[str, np.ndarray]) -> np.ndarray:
+    """Within one pixel of silhouettes, of the edges between objects and faces, and of shadows."""
+    found = edges(np.isfinite(picture["Z"]) & (picture["Z"] < 1e6))
+    normal = np.stack([picture[f"N.{axis}"] for axis in "XYZ"], axis=-1)
+    for y, x in ((0, 1), (1, 0)):
+        a, b = normal[: normal.shape[0] - y, : normal.shape[1] - x], normal[y:, x:]
+        turn = ~(np.sum(a * b, axis=-1) > 0.7)
+        found[: turn.shape[0], : turn.shape[1]] |= turn
+        found[y:, x:] |= turn
+    for name, values in picture.items():
+        if name.startswith("visibility"):
+            found |= edges(values)
+    return near(found)
+
+
+@needs_povray
+def test_smooth_parity(kage: Kage, capsys: pytest.CaptureFixture[str]) -> None:
+    table, wrong = [f"{'scene':20} within 1/255   worst   off edges"], []
+    for name, (camera, lights, objects) in SMOOTH.items():
+        scene = kage.folder / f"{name.replace(' ', '-')}.yaml"
+        scene.write_text(HEAD.format(camera=camera, lights=lights) + objects)
+        kage.good("pov", scene, "-o", scene.with_suffix(".pov"), "--surface", "smooth")
+        kage.good("render", scene, "-o", scene.with_suffix(".exr"), "--quiet")
+        picture = layers(scene.with_suffix(".exr"))
+        theirs, words = povray(scene.with_suffix(".pov"))
+        ours = np.stack([picture[channel] for channel in "RGB"], axis=-1)
+        off = np.abs(ours - theirs).max(axis=-1)
+        # half float has 11 bits: above 2 its own step counts
+        bad = off > np.maximum(STEP, np.abs(theirs).max(axis=-1) * 2.0**-10)
+        stray = int((bad & ~borders(kage, scene, picture)).sum())
+        share = 1 - bad.mean()
+        table.append(f"{name:20} {100 * share:10.4f} % {off.max():8.4f} {stray:6d}")
+        if share < 0.999 or stray or words.strip():
+            wrong.append((name, share, stray, words))
+    with capsys.disabled():
+        print("\n" + "\n".join(table))
+    assert not wrong
+
+
+# ---- displaced ----
+
+FUNCTION = "{function: '0.03*(sin(6*u)*cos(5.4*w) + 0.5*sin(10.2*u + 6.6*w))'}"
+NOISE = "{function: '0.05*noise(4*u, 4*w)'}"
+ROUND = "{function: '0.05*sin(8*u)*sin(8*w)*sin(w)^2'}"
+MAP = "{map: {file: map.png}, scale: 0.1, zero: 0.5, sign: up, size: [2, 2]}"
+PLANE = "plane: {origin: [0, 0, 0], u: [0, 0, 1], w: [1, 0, 0]}"
+SKEWED = "rectangle: {origin: [-2, 0.1, -2], u: [4, 0.4, 0], w: [1, 0, 5]}"
+GLOBE = "sphere: {center: [0.1, 1, 0], radius: 1}"
+CUBE = "box: {from: [-1, 0, -1], to: [1, 1.2, 1]}"
+
+DISPLACED = {
+    "plane": (PLANE, FUNCTION, "isosurface"),
+    "skewed rectangle": (SKEWED, "{function: '0.1*sin(9*u)*sin(11*w)', scale: -0.8}", "isosurface"),
+    "box": (CUBE, "{function: '0.04*sin(12*u)*sin(10*w)'}", "isosurface"),
+    "sphere": (GLOBE, ROUND, "isosurface"),
+    "sphere, steep at its poles": (GLOBE, "{function: '0.04*sin(8*u)*sin(6*w)'}", "isosurface"),
+    "sphere, torn at its poles": (GLOBE, "{function: '0.04*sin(8*u)'}", "mesh2"),
+    "plane, noise": (PLANE, NOISE, "mesh2"),
+    "plane, map": (PLANE, MAP, "mesh2"),
+    "rectangle, map": (SKEWED, MAP.replace("[2, 2]", "[0.5, 0.4]"), "mesh2"),
+    "box, map": (CUBE, MAP.replace("[2, 2]", "[1, 1]"), "mesh2"),
+    "sphere, map": (GLOBE, MAP.replace("[2, 2]", "[0.8, 0.7]"), "mesh2"),
+}
+
+
+def write_displaced(kage: Kage, name: str, camera: str = CAMERA) -> Path:
+    shape, bump, _ = DISPLACED[name]
+    scene = kage.folder / "rough.yaml"
+    scene.write_text(
+        HEAD.format(camera=camera, lights=LIGHTS).replace("[200, 150]", "[100, 75]")
+        + f"  rough:\n    {shape}\n    material: clay\n    bump: {bump}\n"
+        + "  above: {sphere: {center: [0.4, 2.4, -0.6], radius: 0.3}, material: shiny}\n"
+    )
+    x, y = np.meshgrid(np.arange(16), np.arange(16))
+    heights = 32768 + 20000 * np.sin(x * math.pi / 4) * np.cos(y * math.pi / 8)
+    Image.fromarray(heights.astype(np.uint16)).save(kage.folder / "map.png")
+    return scene
+
+
+@needs_povray
+@pytest.mark.parametrize("name", DISPLACED)
+def test_displaced_without_warnings(kage: Kage, name: str) -> None:
+    """Not one about a gradient, above all: that would be holes."""
+    scene = write_displaced(kage, name)
+    kage.good("pov", scene, "-o", "rough.pov", "--surface", "displaced")
+    assert DISPLACED[name][2] + " {" in (kage.folder / "rough.pov").read_text()
+    picture, words = povray(kage.folder / "rough.pov", (100, 75))
+    assert not words.strip()
+    assert picture.std() > 0.02
+
+
+@needs_povray
+def test_a_warning_of_holes_is_seen(kage: Kage) -> None:
+    """The test above can fail."""
+    scene = write_displaced(kage, "plane")
+    kage.good("pov", scene, "-o", "rough.pov", "--surface", "displaced")
+    text = (kage.folder / "rough.pov").read_text()
+    (kage.folder / "low.pov").write_text(re.sub(r"max_gradient \S+", "max_gradient 0.5", text))
+    assert "holes" in povray(kage.folder / "low.pov", (100, 75))[1]
+
+
+@needs_povray
+@pytest.mark.parametrize("name", ["plane", "plane, map", "plane, noise"])
+def test_a_plane_reaches_the_edges_of_the_picture(kage: Kage, name: str) -> None:
+    """Where the plane was cut too short the background (blue) would be seen."""
+    scene = write_displaced(kage, name, "{from: [0, 2, -3], at: [0.5, 0, 0], up: [0.3, 1, 0], fov: 50}")
+    kage.good("pov", scene, "-o", "rough.pov", "--surface", "displaced", "--set", "image.background=[0, 0, 9]")
+    picture, _ = povray(kage.folder / "rough.pov", (100, 75))
+    assert picture[..., 2].max() < 2
+
+
+def test_horizon(kage: Kage) -> None:
+    """An unbounded plane up to the horizon is a file of a bearable size."""
+    scene = write_displaced(kage, "plane, map", "{from: [0, 1.2, -5], at: [0, 1.2, 0], fov: 70}")
+    kage("pov", scene, "-o", "rough.pov", "--surface", "displaced")
+    assert 1e5 < (kage.folder / "rough.pov").stat().st_size < 4e8
+
+
+#: The least share of pixels within 1/255 of POV-Ray's, without and with the bumps' own shadows.
+PARITY = {False: 0.998, True: 0.995}
+
+
+@needs_povray
+def test_displaced_parity(kage: Kage, capsys: pytest.CaptureFixture[str]) -> None:
+    """kage's own true displacement against POV-Ray's."""
+    size = (120, 90)
+    table, wrong = [f"{'displaced':28} without  with own shadows"], []
+    for name in DISPLACED:
+        scene, row = write_displaced(kage, name), []
+        for self_shadow in (False, True):
+            options = ["--surface", "displaced", "--size", "120x90", *([] if self_shadow else ["--no-self-shadow"])]
+            kage.good("pov", scene, "-o", "rough.pov", *options)
+            kage.good("render", scene, "-o", "rough.exr", "--quiet", *options)
+            picture = layers(kage.folder / "rough.exr")
+            theirs, words = povray(kage.folder / "rough.pov", size)
+            off = np.abs(np.stack([picture[channel] for channel in "RGB"], axis=-1) - theirs).max(axis=-1)
+            row.append(float((off <= np.maximum(STEP, np.abs(theirs).max(axis=-1) * 2.0**-10)).mean()))
+            if words.strip() or row[-1] < PARITY[self_shadow]:
+                wrong.append((name, self_shadow, row[-1], words))
+        table.append(f"{name:28} {100 * row[0]:.3f} %  {100 * row[1]:.3f} %")
+    with capsys.disabled():
+        print("\n" + "\n".join(table))
+    assert not wrong
+
+
+# ---- the file ----
+
+
+def test_file(kage: Kage) -> None:
+    scene = write_displaced(kage, "plane")
+    kage.good("pov", scene, "-o", "a.pov", "--surface", "displaced", "--set", "objects.rough.bump.scale=0.5")
+    text = (kage.folder / "a.pov").read_text()
+    lines = text.splitlines()
+    assert lines[0] == "// rough.yaml, with its bumps truly displaced, for POV-Ray 3.7"
+    assert lines[1].startswith("// made by: kage pov rough.yaml --set 'render.surface=displaced'")
+    assert str(kage.folder) not in text and "\t" not in text
+    assert "#version 3.7;\nglobal_settings { assumed_gamma 1" in text
+    assert "#declare P_rough = function(u, w) { 0.5*(0.03*(sin(6*u)*cos(5.4*w) + 0.5*sin(10.2*u + 6.6*w))) }" in text
+    assert "#declare Material_clay = texture {" in text
+    kage.good("pov", scene, "-o", "b.pov", "--surface", "displaced", "--set", "objects.rough.bump.scale=0.5")
+    assert (kage.folder / "b.pov").read_text() == text
+    assert kage.files() == {"rough.yaml", "map.png", "a.pov", "b.pov"}
+
+
+def test_shadows(kage: Kage) -> None:
+    scene = write_displaced(kage, "plane")
+
+    def without(*options: str) -> list[bool]:
+        kage.good("pov", scene, "-o", "a.pov", *options)
+        parts = (kage.folder / "a.pov").read_text().split("// object ")[1:]
+        return ["no_shadow" in part for part in parts]
+
+    assert without("--surface", "displaced") == [False, False]
+    assert without("--surface", "displaced", "--no-self-shadow") == [True, False]
+    assert without("--surface", "displaced", "--no-cast") == [False, True]
+    assert without("--surface", "smooth", "--no-self-shadow", "--no-cast") == [False, True]
+
+
+def test_names(kage: Kage) -> None:
+    """POV-Ray has no '-' in names, and two names must not become one."""
+    scene = write_displaced(kage, "plane")
+    text = scene.read_text().replace("  clay:", "  a-b: {}\n  a_b: {}\n  clay:")
+    scene.write_text(text.replace("rough:", "rough-one:").replace("material: shiny", "material: a-b"))
+    kage.good("pov", scene, "-o", "a.pov", "--surface", "displaced")
+    text = (kage.folder / "a.pov").read_text()
+    names = re.findall(r"#declare (\S+) =", text)
+    assert len(set(names)) == len(names) == 6 and not any("-" in name for name in names)
+    if POVRAY:
+        povray(kage.folder / "a.pov", (40, 30))
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message", "status"),
+    [
+        (["pov", "rough.yaml"], "kage: 'kage pov' lacks -o FILE.pov; see kage --help\n", 2),
+        (["pov", "rough.yaml", "-o", "a.png"], "kage: -o a.png: expected a name that ends in .pov\n", 2),
+        (["pov", "rough.yaml", "-o", "a.pov", "-o", "b.pov"], "kage: -o b.pov: a second output, expected one\n", 2),
+        (["pov", "rough.yaml", "-o", "a.pov", "--surface", "rough"], "kage: --surface rough: expected smooth or displaced\n", 2),
+        (["pov", "rough.yaml", "-o", "a.pov", "--aa", "2"], "kage: --aa: no option of 'kage pov'; see kage --help\n", 2),
+        (["pov", "-o", "a.pov"], "kage: 'kage pov' lacks a scene; see kage --help\n", 2),
+        (["pov", "rough.yaml", "-o", "none/a.pov"], "No such file or directory", 1),
+        (["pov", "rough.yaml", "-o", "/dev/full/a.pov"], "Not a directory", 1),
+        (["pov", "rough.yaml", "-o", "folder.pov"], "Is a directory", 1),
+        (["pov", "none.yaml", "-o", "a.pov"], "none.yaml", 2),
+    ],
+)
+def test_errors(kage: Kage, arguments: list[str], message: str, status: int) -> None:
+    write_displaced(kage, "plane")
+    (kage.folder / "folder.pov").mkdir()
+    before = kage.files()
+    done = kage(*arguments)
+    assert done.returncode == status and message in done.stderr and not done.stdout
+    assert kage.files() == before
+
+
+def test_without_bounds(kage: Kage) -> None:
+    scene = write_displaced(kage, "plane")
+    done = kage("pov", scene, "-o", "a.pov", "--surface", "displaced", "--set", "objects.rough.bump.function='0.1*floor(u)'")
+    assert done.returncode == 2 and "no bounds" in done.stderr
+    assert not (kage.folder / "a.pov").exists()
+    kage.good("pov", scene, "-o", "a.pov", "--surface", "smooth", "--set", "objects.rough.bump.function='0.1*floor(u)'")
