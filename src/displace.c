@@ -24,7 +24,7 @@ typedef struct search {
     rays x;
     real t[LANES], gap[LANES], end[LANES], shortest[LANES], tolerance[LANES];
     real side[LANES]; /* 1: the ray comes from above the rough surface; -1: from below; 0: not known yet */
-    int32_t open[LANES];
+    int32_t own[LANES], open[LANES]; /* starts on this part; is still searched */
     feet p;
     heights h;
     real rate[LANES], reach[LANES];
@@ -58,6 +58,7 @@ static void keep(search *s, int from, int to)
     s->shortest[to] = s->shortest[from];
     s->tolerance[to] = s->tolerance[from];
     s->side[to] = s->side[from];
+    s->own[to] = s->own[from];
     s->open[to] = s->open[from];
 }
 
@@ -104,7 +105,7 @@ static displace_end refine(const surface *f, const perturb *P, int part, const s
 }
 
 /* Open the search on the rays whose shell is not empty. */
-static void begin(const surface *f, const perturb *P, int part, int n, const rays *x, const real *end, displace_start start,
+static void begin(const surface *f, const perturb *P, int part, int n, const rays *x, const real *end, const int32_t *on,
                   search *s)
 {
     real t0[LANES], t1[LANES];
@@ -124,33 +125,43 @@ static void begin(const surface *f, const perturb *P, int part, int n, const ray
         s->end[k] = t1[i];
         s->tolerance[k] = 8 * ROUNDING * size;
         s->shortest[k] = real_max((t1[i] - t0[i]) / STEPS, s->tolerance[k] / real_sqrt(bs_dot(d, d)));
-        s->side[k] = start == DISPLACE_ON ? 1 : 0;
+        s->side[k] = 0;
+        s->own[k] = on && on[i] == part;
         s->open[k] = 1;
     }
 }
 
-void displace_search(const surface *f, const perturb *P, int part, int n, const rays *x, const real *end, displace_start start,
+/* The side on which a ray begins. Where the gap does not tell, because it is 0 there: a ray that starts on the surface is on the side
+ * that it leaves to, any other on the one that it comes from. */
+static real side_of(const search *s, int i, real slope)
+{
+    if (real_abs(s->gap[i]) > s->tolerance[i] && !s->own[i])
+        return s->gap[i] > 0 ? R(1) : R(-1);
+    return (slope > 0) == (s->own[i] != 0) ? R(1) : R(-1);
+}
+
+void displace_search(const surface *f, const perturb *P, int part, int n, const rays *x, const real *end, const int32_t *on,
                      real *t, int32_t *found)
 {
     search s;
     real slope[LANES];
     for (int i = 0; i < n; i++)
         found[i] = DISPLACE_MISSED;
-    begin(f, P, part, n, x, end, start, &s);
+    begin(f, P, part, n, x, end, on, &s);
     for (int step = 0; step < STEPS && s.n; step++) {
         look(f, P, part, &s, slope);
         f->is->steep(f, part, s.n, &s.x, &s.p, P->Pu_max, P->Pw_max, s.rate, s.reach);
         for (int i = 0; i < s.n; i++) {
             if (!s.open[i])
                 continue;
-            /* On its way from the surface itself a ray is above it until it is clearly below. */
-            real least = start == DISPLACE_ON ? s.tolerance[i] : 0;
+            /* On its way from the surface itself a ray is on its side until it is clearly on the other. */
+            real least = s.own[i] ? s.tolerance[i] : 0;
             if (s.side[i] == 0)
-                s.side[i] = real_abs(s.gap[i]) <= s.tolerance[i] ? (slope[i] < 0 ? R(1) : R(-1)) : s.gap[i] > 0 ? R(1) : R(-1);
+                s.side[i] = side_of(&s, i, slope[i]);
             real above = s.side[i] * s.gap[i];
             /* At the end of the shell, P = Pmin below it, rounding must not let the ray slip through. */
             bool last = s.t[i] >= s.end[i], touches = last && above <= s.tolerance[i] && s.side[i] * slope[i] < 0;
-            if (above <= -least || (touches && start != DISPLACE_ON)) {
+            if (above <= -least || (touches && !s.own[i])) {
                 /* no step goes past a crossing by more than the shortest does */
                 real from = real_max(s.t[i] - s.shortest[i], 0);
                 found[s.lane[i]] = refine(f, P, part, &s, i, from, s.t[i], &t[s.lane[i]]);
@@ -179,7 +190,7 @@ void displace_hit(const surface *f, const perturb *P, int n, const rays *x, int3
     real t[LANES];
     int32_t found[LANES];
     for (int part = 0; part < f->is->parts; part++) {
-        displace_search(f, P, part, n, x, h->t, DISPLACE_AWAY, t, found);
+        displace_search(f, P, part, n, x, h->t, NULL, t, found);
         for (int i = 0; i < n; i++)
             if (found[i] != DISPLACE_MISSED && t[i] > 0 && t[i] < h->t[i]) {
                 h->t[i] = t[i];
@@ -190,15 +201,14 @@ void displace_hit(const surface *f, const perturb *P, int n, const rays *x, int3
     }
 }
 
-void displace_occlude(const surface *f, const perturb *P, int n, const rays *x, displace_start start, real *lit,
-                      long *uncertain)
+void displace_occlude(const surface *f, const perturb *P, int n, const rays *x, const int32_t *on, real *lit, long *uncertain)
 {
     real t[LANES], end[LANES];
     int32_t found[LANES];
     for (int i = 0; i < n; i++)
         end[i] = lit[i] > 0 ? R(1) : R(-1); /* what is dark already need not be searched */
     for (int part = 0; part < f->is->parts; part++) {
-        displace_search(f, P, part, n, x, end, start, t, found);
+        displace_search(f, P, part, n, x, end, on, t, found);
         for (int i = 0; i < n; i++)
             if (found[i] != DISPLACE_MISSED) {
                 lit[i] = 0;

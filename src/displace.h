@@ -19,23 +19,18 @@ typedef enum displace_end {
     DISPLACE_UNCERTAIN, /* a crossing that Newton could not confirm, or a search that did not end */
 } displace_end;
 
-/* Where rays start. */
-typedef enum displace_start {
-    DISPLACE_AWAY, /* anywhere else */
-    DISPLACE_ON,   /* on this rough surface, whose hit at t = 0 does not count */
-} displace_start;
-
 /* The first hits with 0 < t < end[i] on one part of the surface: t[i], where found[i] is DISPLACE_HIT (or DISPLACE_UNCERTAIN: then
- * the best there is). P must have bounds of value and gradient (displace_possible). */
-void displace_search(const surface *f, const perturb *P, int part, int n, const rays *x, const real *end, displace_start start,
+ * the best there is). on: the part on whose rough surface each ray starts, so that this hit at t = 0 does not count; NULL: they
+ * start elsewhere. P must have bounds of value and gradient (displace_possible). */
+void displace_search(const surface *f, const perturb *P, int part, int n, const rays *x, const real *end, const int32_t *on,
                      real *t, int32_t *found);
 
 /* The nearest hit over all parts, like surface_methods.hit; h->part too. Adds the uncertain ones to *uncertain. */
 void displace_hit(const surface *f, const perturb *P, int n, const rays *x, int32_t id, hits *h, long *uncertain);
 
-/* lit[i] = 0 where the rough surface lies across r + s t, 0 < t < 1. */
-void displace_occlude(const surface *f, const perturb *P, int n, const rays *x, displace_start start, real *lit,
-                      long *uncertain);
+/* lit[i] = 0 where the rough surface lies across r + s t, 0 < t < 1. on: as above; such a ray is to leave to the side that is
+ * seen. */
+void displace_occlude(const surface *f, const perturb *P, int n, const rays *x, const int32_t *on, real *lit, long *uncertain);
 
 /* A group that has met the rough surface itself, at g->t on g->part: (u,w), P and its gradient, the partials of Q at the foot,
  * in q.Q the hit, and in n_bump and n_smooth alike the unit normal of the rough surface. No shift. */

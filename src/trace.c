@@ -32,14 +32,24 @@ STAGE static void aim(group *restrict g, const light *l, int shifted)
 /* Whether an object is taken for its displaced surface. */
 static bool is_rough(const tracer *k, const object *o) { return k->displaced && o->bump; }
 
+/* A rough surface that is turned away from the light is dark; from where it is not, the way to the light is searched. */
+static void shadow_rough(const object *o, const light *l, group *g, stats *st)
+{
+    aim(g, l, 0);
+    for (int i = 0; i < g->n; i++) {
+        bs_vec3 n = lane_get(&g->n_smooth, i);
+        bool lit = bs_dot(n, lane_get(&g->to_light.s, i)) * bs_dot(n, lane_get(&g->x.s, i)) < 0;
+        g->lit[i] = lit ? g->lit[i] : 0;
+    }
+    displace_occlude(o->shape, o->bump, g->n, &g->to_light, g->part, g->lit, &st->uncertain);
+}
+
 /* The receiver's own shadow on itself. */
 static void shadow_own(const tracer *k, const object *o, const light *l, group *g, stats *st)
 {
     if (is_rough(k, o)) {
-        if (k->self_shadow) {
-            aim(g, l, 0);
-            displace_occlude(o->shape, o->bump, g->n, &g->to_light, DISPLACE_ON, g->lit, &st->uncertain);
-        }
+        if (k->self_shadow)
+            shadow_rough(o, l, g, st);
     } else if (o->shape->is->occlude_own) {
         aim(g, l, 0);
         o->shape->is->occlude_own(o->shape, g->n, &g->to_light, g->part, g->lit);
@@ -60,7 +70,7 @@ static void shadow(const tracer *k, int id, const light *l, group *g, stats *st)
         if (!is_rough(k, o))
             o->shape->is->occlude(o->shape, g->n, &g->to_light, g->lit);
         else if (k->self_shadow)
-            displace_occlude(o->shape, o->bump, g->n, &g->to_light, DISPLACE_AWAY, g->lit, &st->uncertain);
+            displace_occlude(o->shape, o->bump, g->n, &g->to_light, NULL, g->lit, &st->uncertain);
     }
     st->shadow_rays += g->n;
 }

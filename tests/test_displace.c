@@ -299,6 +299,7 @@ static void own_shadows(void **state)
         static hits h;
         long uncertain = 0;
         int dark = 0, lights = 0, wrong = 0, n = 0;
+        int32_t on[LANES];
         wide r[LANES][3], s[LANES][3];
         real lit[LANES];
         for (int i = 0; i < LANES; i++) {
@@ -312,9 +313,12 @@ static void own_shadows(void **state)
                 bs_vec3 X = lane_at(&x, i, h.t[i]), d = {R(-5) - X.x, R(1.2) - X.y, R(-3) - X.z};
                 lane_set(&up.r, n, X);
                 lane_set(&up.s, n, d);
-                lit[n++] = 1;
+                wide near_by[3] = {(wide)X.x + (wide)d.x * 1e-4L, (wide)X.y + (wide)d.y * 1e-4L, (wide)X.z + (wide)d.z * 1e-4L};
+                int in;
+                on[n] = h.part[i];
+                lit[n++] = gap_at(kind, MAP_BUMP, h.part[i], near_by, &in) > 0 ? R(1) : R(0); /* turned to the light */
             }
-        displace_occlude(f, P, n, &up, DISPLACE_ON, lit, &uncertain);
+        displace_occlude(f, P, n, &up, on, lit, &uncertain);
         for (int i = 0; i < n; i++) {
             bs_vec3 X = lane_get(&up.r, i), D = lane_get(&up.s, i);
             wide o[3] = {(wide)X.x, (wide)X.y, (wide)X.z}, d[3] = {(wide)D.x, (wide)D.y, (wide)D.z};
