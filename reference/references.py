@@ -1,0 +1,133 @@
+"""The references: what POV-Ray made of each scene with its bumps truly displaced, as the project keeps it.
+
+For a scene NAME this folder holds
+
+    NAME.exr        two pictures in linear light, half floats: `self.R` and so on, where rough surfaces cast shadows too,
+                    and `cast.R` and so on, where only the other objects do (the method's case)
+    NAME.mask.png   for each pixel, what it shows: one of the levels below
+    manifest.json   what these were made from, by which commands, and digests of their pixels
+
+The rest of the project reads them through this file alone; reference/render.py makes them.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import OpenEXR
+from PIL import Image
+
+TOP = Path(__file__).resolve().parent.parent
+FOLDER = TOP / "reference"
+SCENES = ("cube", "sphere", "terrain", "waves")
+
+PICTURES = ("self", "cast")
+
+# The levels of a mask, chosen so that the PNG can be looked at.
+ELSEWHERE = 0  # another object, or the background
+AWAY = 85  # the receiver, where its rough surface is turned away from the light: no shadow can be seen there
+SHADOW = 170  # the receiver in the shadow of another object
+LIT = 255  # the receiver in the light
+
+Manifest = dict[str, dict[str, object]]
+
+
+class ReferenceError(Exception):
+    """What is wrong with a reference, in one line."""
+
+
+@dataclass(frozen=True)
+class Reference:
+    """POV-Ray's pictures of a scene, height x width x 3 in linear light, and its mask, which may have another size."""
+
+    pictures: dict[str, np.ndarray]
+    mask: np.ndarray
+
+    def digest(self) -> str:
+        """Of the pixels alone: a file's bytes may also tell of the library that wrote it."""
+        sha = hashlib.sha256()
+        for array in (*(self.pictures[name].astype("<f2") for name in PICTURES), self.mask):
+            sha.update(repr(array.shape).encode() + array.tobytes())
+        return sha.hexdigest()
+
+
+def read_exr(path: Path) -> dict[str, np.ndarray]:
+    with OpenEXR.File(str(path), separate_channels=True) as file:
+        return {name: channel.pixels.copy() for name, channel in file.channels().items()}
+
+
+def write_exr(path: Path, channels: dict[str, np.ndarray]) -> None:
+    """As half floats. ZIP packs rows of all channels together, so that what two pictures share costs little."""
+    header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
+    OpenEXR.File(header, {name: plane.astype(np.float16) for name, plane in channels.items()}).write(str(path))
+
+
+def stack(layers: dict[str, np.ndarray], prefix: str = "") -> np.ndarray:
+    """The picture among the layers: height x width x 3."""
+    return np.stack([layers[prefix + c].astype(np.float32) for c in "RGB"], axis=-1)
+
+
+def files(name: str) -> tuple[str, str]:
+    return f"{name}.exr", f"{name}.mask.png"
+
+
+def load(name: str, folder: Path = FOLDER) -> Reference:
+    exr, png = (folder / file for file in files(name))
+    try:
+        layers = read_exr(exr)
+        with Image.open(png) as image:
+            mask = np.array(image)
+        pictures = {kind: stack(layers, f"{kind}.") for kind in PICTURES}
+    except (OSError, RuntimeError, SyntaxError, KeyError) as error:
+        raise ReferenceError(f"{exr} or {png.name} can't be read ({error}): `make reference` makes them") from error
+    return Reference(pictures, mask)
+
+
+def save(name: str, reference: Reference, folder: Path) -> None:
+    exr, png = (folder / file for file in files(name))
+    write_exr(exr, {f"{kind}.{c}": reference.pictures[kind][..., i] for kind in PICTURES for i, c in enumerate("RGB")})
+    Image.fromarray(reference.mask).save(png, optimize=True)
+
+
+def scene_digest(scene: Path) -> str:
+    """Of all that a scene is made of: its text, and the maps it names."""
+    text = scene.read_text(encoding="utf-8")
+    sha = hashlib.sha256(text.encode())
+    for name in re.findall(r"\bfile:\s*([^\s,}]+)", text):
+        sha.update((scene.parent / name).read_bytes())
+    return sha.hexdigest()
+
+
+def read_manifest(folder: Path = FOLDER) -> Manifest:
+    """By scene; empty where there is none, or one that was broken by hand."""
+    try:
+        content = json.loads((folder / "manifest.json").read_text())
+    except (OSError, ValueError):
+        return {}
+    return content if isinstance(content, dict) else {}
+
+
+def write_manifest(manifest: Manifest, folder: Path) -> None:
+    aside = folder / "manifest.json.new"
+    aside.write_text(json.dumps(manifest, indent=1, sort_keys=True) + "\n")
+    aside.replace(folder / "manifest.json")
+
+
+def why_stale(name: str, wanted: dict[str, object], folder: Path = FOLDER) -> str:
+    """Why a reference must be made again; empty where it is good. `wanted` is what its entry in the manifest must say."""
+    entry = read_manifest(folder).get(name)
+    if entry is None:
+        return "not in the manifest"
+    for key, value in wanted.items():
+        if entry.get(key) != value:
+            return f"another {key}"
+    try:
+        digest = load(name, folder).digest()
+    except ReferenceError:
+        return "files missing or broken"
+    return "" if digest == entry.get("pixels") else "other pixels than the manifest's"

@@ -1,0 +1,296 @@
+"""Make the references: each scene with its bumps truly displaced, as POV-Ray renders it.
+
+`kage pov` writes the scene for POV-Ray; POV-Ray renders it five times, without antialiasing, into out/reference/:
+
+    self     every object casts shadows, rough surfaces too
+    cast     rough surfaces cast none: the shadows of other objects, which the method is about
+    cast, nocast, dark (larger), for the mask
+             where `cast` and `nocast` (no object casts a shadow) differ is the shadow; where `nocast` and `dark` (no
+             light) do not, the surface is turned away from the light; and in `dark` each object has its own flat colour
+
+A reference is good while its scene, its maps, what `kage pov` writes for it, the commands and the version of POV-Ray are
+those of reference/manifest.json, and its pixels too (pixels, not bytes: POV-Ray's files carry their date). The others are
+stale, and only they are made again. Files are written aside and renamed, the manifest last: what an interruption leaves
+behind is a good reference or a stale one, never a bad one that passes for good.
+
+status: 0 all references are good, 1 some are stale (--check) or can't be made, 2 wrong usage, 130 interrupted
+"""
+
+from __future__ import annotations
+
+import argparse
+import hashlib
+import os
+import re
+import shlex
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import references
+from references import AWAY, ELSEWHERE, FOLDER, LIT, SHADOW, TOP, Reference, ReferenceError
+
+PICTURE_SIZE = (320, 240)
+MASK_SIZE = (640, 480)  # the scenes' own
+WORK = Path("out") / "reference"  # from TOP, where all commands run: so they are the same everywhere
+FLAGS = ("+FE", "-A", "-D", "-P", "-V")  # EXR, no antialiasing, no window, no waiting, no count of lines
+HALF_ULP = 2.0**-11  # POV-Ray writes half floats: a relative step
+
+
+@dataclass(frozen=True)
+class Shot:
+    """One render by POV-Ray: its name, its size, and what `kage pov` is told."""
+
+    name: str
+    size: tuple[int, int]
+    options: tuple[str, ...]
+
+
+def shots(lights: Sequence[str]) -> tuple[Shot, ...]:
+    dark = tuple(word for light in lights for word in ("--set", f"lights.{light}.color=[0, 0, 0]"))
+    return (
+        Shot("self", PICTURE_SIZE, ()),
+        Shot("cast", PICTURE_SIZE, ("--no-self-shadow",)),
+        Shot("mask-cast", MASK_SIZE, ("--no-self-shadow",)),
+        Shot("mask-nocast", MASK_SIZE, ("--no-self-shadow", "--no-cast")),
+        Shot("mask-dark", MASK_SIZE, ("--no-self-shadow", *dark)),
+    )
+
+
+# What kage and POV-Ray are told ---------------------------------------------------------------------
+
+
+def run(command: Sequence[str | Path]) -> str:
+    """What the command prints, on both streams."""
+    try:
+        done = subprocess.run(command, cwd=TOP, env=os.environ | {"LC_ALL": "C"}, stdin=subprocess.DEVNULL, check=False,
+                              capture_output=True, text=True, errors="replace")
+    except OSError as error:
+        raise ReferenceError(f"{command[0]}: {error.strerror}") from error
+    text = done.stdout + done.stderr
+    if done.returncode:
+        how = f"killed by signal {-done.returncode}" if done.returncode < 0 else f"status {done.returncode}"
+        raise ReferenceError(f"{shlex.join(map(str, command))}: {how}\n{text[-1500:].strip()}")
+    return text
+
+
+def lights_of(kage: Path, scene: str) -> list[str]:
+    return re.findall(r"^light (\S+) at ", run([kage, "check", scene]), re.MULTILINE)
+
+
+def scene_path(name: str) -> str:
+    return f"scenes/{name}.yaml"
+
+
+def export_command(name: str, shot: Shot) -> list[str]:
+    size = f"{shot.size[0]}x{shot.size[1]}"
+    return ["pov", scene_path(name), "--surface", "displaced", *shot.options, "--size", size,
+            "-o", str(WORK / f"{name}-{shot.name}.pov")]
+
+
+def povray_command(name: str, shot: Shot) -> list[str]:
+    base = WORK / f"{name}-{shot.name}"
+    return ["povray", f"+I{base}.pov", f"+O{base}.exr", f"+W{shot.size[0]}", f"+H{shot.size[1]}", *FLAGS]
+
+
+def commands(name: str, plan: Sequence[Shot]) -> list[str]:
+    """As they stand in the manifest; to be typed in TOP."""
+    return [shlex.join(command) for shot in plan
+            for command in (["build/float/kage", *export_command(name, shot)], povray_command(name, shot))]
+
+
+def export(kage: Path, name: str, shot: Shot) -> Path:
+    """Write the scene for POV-Ray."""
+    path = TOP / WORK / f"{name}-{shot.name}.pov"
+    path.parent.mkdir(parents=True, exist_ok=True)
+    words = run([kage, *export_command(name, shot)])
+    if words:
+        print(f"{name}, {shot.name}: {words.strip()}", flush=True)
+    return path
+
+
+def export_digest(kage: Path, name: str, shot: Shot) -> str:
+    """Of what kage writes for one shot; the others differ from it by options, and a mesh's fineness."""
+    path = export(kage, name, shot)
+    digest = hashlib.sha256(path.read_bytes()).hexdigest()
+    path.unlink()
+    return digest
+
+
+def povray_version() -> str:
+    if not shutil.which("povray"):
+        raise ReferenceError("POV-Ray is missing: `scripts/bootstrap povray` installs it (Debian: povray)")
+    found = re.search(r"POV-Ray \d\S*", run(["povray", "--version"]))
+    if not found:
+        raise ReferenceError("`povray --version` does not tell its version: is that POV-Ray?")
+    return found[0]
+
+
+def shoot(kage: Path, name: str, shot: Shot) -> np.ndarray:
+    """Render; the picture. An old file must not pass for a new one, so it goes first."""
+    scene = export(kage, name, shot)
+    path = scene.with_suffix(".exr")
+    path.unlink(missing_ok=True)
+    command = povray_command(name, shot)
+    text = run(command)
+    path.with_suffix(".log").write_text(text)
+    # An isosurface whose max_gradient is too low has holes, and POV-Ray only warns; one whose max_gradient is higher
+    # than need be is slower, and POV-Ray warns of that too.
+    if "contain holes" in text:
+        raise ReferenceError(f"{shlex.join(command)}: POV-Ray found max_gradient too low, the surface may have holes; "
+                             f"its words are in {WORK / f'{name}-{shot.name}.log'}")
+    try:
+        picture = references.stack(references.read_exr(path))
+    except (OSError, RuntimeError, KeyError) as error:
+        raise ReferenceError(f"{shlex.join(command)}: no good picture came out: {error}") from error
+    if picture.shape != (shot.size[1], shot.size[0], 3) or not np.isfinite(picture).all():
+        raise ReferenceError(f"{shlex.join(command)}: a picture of another size, or with values that are no numbers")
+    scene.unlink()  # a mesh takes a hundred megabytes; where something failed it stays, to be looked at
+    return picture
+
+
+# The mask -------------------------------------------------------------------------------------------
+
+
+def receiver(dark: np.ndarray, colors: Sequence[np.ndarray]) -> np.ndarray:
+    """Where the picture without light shows one of the ambient colours."""
+    return np.any([(np.abs(dark - c) <= HALF_ULP * np.maximum(c, HALF_ULP)).all(axis=-1) for c in colors], axis=0)
+
+
+def make_mask(cast: np.ndarray, nocast: np.ndarray, dark: np.ndarray, colors: Sequence[np.ndarray]) -> np.ndarray:
+    """Three renders by one program: what is the same in them is so to the bit."""
+    mask = np.full(dark.shape[:2], LIT, dtype=np.uint8)
+    mask[(nocast != cast).any(axis=-1)] = SHADOW
+    mask[(nocast == dark).all(axis=-1)] = AWAY
+    mask[~receiver(dark, colors)] = ELSEWHERE
+    return mask
+
+
+def receiver_colors(kage: Path, name: str, lights: Sequence[str]) -> list[np.ndarray]:
+    """What bumped objects look like without light, from kage's own picture: there a layer tells them apart."""
+    dark = [word for light in lights for word in ("--set", f"lights.{light}.color=[0, 0, 0]")]
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "dark.exr"
+        run([kage, "render", scene_path(name), "--shadow", "0", "--size", "64x48", *dark, "--quiet", "-o", path])
+        layers = references.read_exr(path)
+    picture = references.stack(layers)
+    seen, others = (np.unique(picture[where], axis=0) for where in (layers["order"] >= 0, layers["order"] < 0))
+    if any((np.abs(a - b) <= HALF_ULP).all() for a in seen for b in others):
+        raise ReferenceError(f"{scene_path(name)}: a bumped object and another thing have the same ambient colour: "
+                             "the mask can't tell them apart")
+    return list(seen)
+
+
+# References -----------------------------------------------------------------------------------------
+
+
+def make(kage: Path, name: str, plan: Sequence[Shot], lights: Sequence[str]) -> Reference:
+    pictures = {shot.name: shoot(kage, name, shot) for shot in plan}
+    mask = make_mask(pictures["mask-cast"], pictures["mask-nocast"], pictures["mask-dark"],
+                     receiver_colors(kage, name, lights))
+    if not ((mask == SHADOW).any() and (mask == LIT).any()):
+        raise ReferenceError(f"{scene_path(name)}: POV-Ray's pictures show no shadow on the receiver, or nothing else")
+    return Reference({kind: pictures[kind] for kind in references.PICTURES}, mask)
+
+
+def keep(name: str, reference: Reference, entry: dict[str, object], folder: Path) -> None:
+    """Put a reference and its entry in their place. Between two renames its pixels are not the manifest's: stale."""
+    with tempfile.TemporaryDirectory(dir=folder, prefix=".new-") as aside:
+        references.save(name, reference, Path(aside))
+        for file in references.files(name):
+            (Path(aside) / file).replace(folder / file)
+    digest = references.load(name, folder).digest()
+    manifest = references.read_manifest(folder)
+    manifest[name] = entry | {"pixels": digest}
+    references.write_manifest(manifest, folder)
+
+
+def update(options: argparse.Namespace, name: str, version: str) -> bool:
+    """Look at one reference, and make it where it is stale and this is no mere check. Whether it is good then."""
+    lights = lights_of(options.kage, scene_path(name))
+    plan = shots(lights)
+    wanted: dict[str, object] = {
+        "scene": references.scene_digest(TOP / scene_path(name)),
+        "commands": commands(name, plan),
+        "export": export_digest(options.kage, name, plan[0]),
+    }
+    if version:
+        wanted["povray"] = version
+    reason = "--all" if options.all else references.why_stale(name, wanted, options.folder)
+    if not reason:
+        print(f"{name}: good")
+        return True
+    print(f"{name}: stale ({reason})", flush=True)
+    if options.check:
+        return False
+    keep(name, make(options.kage, name, plan, lights), wanted, options.folder)
+    print(f"{name}: made")
+    return True
+
+
+def update_all(options: argparse.Namespace) -> int:
+    """Each by itself: what one scene lacks is no reason to leave the others stale."""
+    try:
+        version = povray_version()
+    except ReferenceError as error:
+        if not options.check:
+            raise
+        print(f"{error}\nits version is not compared")
+        version = ""
+    bad = 0
+    for name in options.scenes or references.SCENES:
+        try:
+            bad += not update(options, name, version)
+        except ReferenceError as error:
+            print(f"render.py: {name}: {error}", file=sys.stderr)
+            bad += 1
+    return 1 if bad else 0
+
+
+# The command line -----------------------------------------------------------------------------------
+
+
+def parse_arguments(arguments: Sequence[str] | None) -> argparse.Namespace:
+    about, _, status = (__doc__ or "").partition("\nstatus:")
+    parser = argparse.ArgumentParser(prog="render.py", description=about, epilog="status:" + status,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("scenes", nargs="*", metavar="SCENE", help=f"{', '.join(references.SCENES)} (all)")
+    parser.add_argument("--check", action="store_true", help="only tell which are stale")
+    parser.add_argument("--all", action="store_true", help="make the good ones again, too")
+    parser.add_argument("--kage", type=Path, default=TOP / "build" / "float" / "kage", metavar="FILE",
+                        help="the program that writes the scenes for POV-Ray (the project's build/float/kage)")
+    parser.add_argument("--folder", type=Path, default=FOLDER, metavar="DIR", help="where the references are (reference/)")
+    options = parser.parse_args(arguments)
+    for name in options.scenes:
+        if name not in references.SCENES:
+            parser.error(f"'{name}' is none of the scenes {', '.join(references.SCENES)}")
+    if options.check and options.all:
+        parser.error("--check makes nothing: it can't go with --all")
+    options.kage, options.folder = options.kage.resolve(), options.folder.resolve()
+    if not os.access(options.kage, os.X_OK):
+        parser.error(f"{options.kage} is not there, or no program: `make build/float/kage` makes it")
+    return options
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    options = parse_arguments(arguments)
+    signal.signal(signal.SIGTERM, signal.default_int_handler)  # so that POV-Ray ends with this program
+    try:
+        options.folder.mkdir(parents=True, exist_ok=True)
+        return update_all(options)
+    except (ReferenceError, OSError) as error:
+        print(f"render.py: {error}", file=sys.stderr)
+        return 1
+    except KeyboardInterrupt:
+        print("render.py: interrupted; what is not made stays stale", file=sys.stderr)
+        return 130
+
+
+if __name__ == "__main__":
+    sys.exit(main())
