@@ -164,7 +164,7 @@ void displace_search(const surface *f, const perturb *P, int part, int n, const 
             if (above <= -least || (touches && !s.own[i])) {
                 /* no step goes past a crossing by more than the shortest does */
                 real from = real_max(s.t[i] - s.shortest[i], 0);
-                found[s.lane[i]] = refine(f, P, part, &s, i, from, s.t[i], &t[s.lane[i]]);
+                found[s.lane[i]] = (int32_t)refine(f, P, part, &s, i, from, s.t[i], &t[s.lane[i]]);
                 s.open[i] = 0;
                 continue;
             }

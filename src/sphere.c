@@ -128,8 +128,8 @@ STAGE static void sphere_shell(const surface *base, int part, int n, const rays 
         int core = sphere_roots(&inner, rx, ry, rz, sx, sy, sz, &c, &d);
         real from = real_max(a, 0);
         /* from outside the core up to it; from within it, the shell begins at its far side */
-        real to = core & (c > from) ? c : b;
-        from = core & (c <= from) & (d > from) ? d : from;
+        real to = (core & (c > from)) ? c : b;
+        from = (core & (c <= from) & (d > from)) ? d : from;
         to = real_min(to, end[i]);
         t0[i] = in ? from : R(1);
         t1[i] = in ? to : R(-1);

@@ -66,7 +66,7 @@ static void golden(void **state)
     struct fy_document *d = golden_open(KAGE_TESTS_DIR "/golden/method.json");
     struct fy_node *cases = golden_get(fy_document_root(d), "cases");
     const int n = fy_node_sequence_item_count(cases);
-    const bs_slab all = {-INFINITY, INFINITY};
+    const bs_slab all = {(bs_real)-INFINITY, (bs_real)INFINITY};
     int plain = 0;
     (void)state;
     assert_int_equal(n, 240);
