@@ -143,7 +143,7 @@ void trace(const tracer *k, int n, workspace *v)
 {
     const scene *sc = k->scene;
     int32_t id = trace_nearest(k, n, v);
-    wave_background(n, sc->background, k->layers ? sc->lights : 0, v);
+    wave_background(n, sc->background, k->layers, sc->lights, v);
     for (; id >= 0; id = wave_next_group(n, &v->x, &v->h, &v->g)) {
         stats_stage(&v->stats, STAGE_SORT);
         trace_group(k, id, v);

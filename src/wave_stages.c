@@ -17,11 +17,11 @@ void wave_start(int n, hits *h)
     }
 }
 
-void wave_background(int n, vec3 color, int lights, workspace *v)
+void wave_background(int n, vec3 color, bool layers, int lights, workspace *v)
 {
     samples *o = &v->out;
     vec3s_fill(&o->rgb, n, (real)color.x, (real)color.y, (real)color.z);
-    if (!lights)
+    if (!layers)
         return;
     fill(n, o->depth, (real)HUGE_VAL);
     vec3s_fill(&o->position, n, 0, 0, 0);
@@ -35,6 +35,9 @@ void wave_background(int n, vec3 color, int lights, workspace *v)
     for (int l = 0; l < lights; l++)
         fill(n, v->visibility[l], 0);
 }
+
+/* The place in the wave of a group's lane. */
+static inline int place(const group *g, int i) { return g->whole ? i : g->lane[i]; }
 
 STAGE static void pick(const group *restrict g, const real *restrict from, real *restrict to)
 {
@@ -78,10 +81,10 @@ int32_t wave_next_group(int n, const rays *x, hits *h, group *g)
             m += h->id[i] == id;
         }
     for (int i = 0; i < g->n; i++)
-        h->id[g->whole ? i : g->lane[i]] = -1;
+        h->id[place(g, i)] = -1;
     pick(g, h->t, g->t);
     for (int i = 0; i < g->n; i++)
-        g->part[i] = h->part[g->whole ? i : g->lane[i]];
+        g->part[i] = h->part[place(g, i)];
     pick3(g, &x->r, &g->x.r);
     pick3(g, &x->s, &g->x.s);
     return id;
@@ -120,5 +123,5 @@ void wave_scatter(const group *g, bool layers, bool bumped, samples *o)
         put(g, g->h.P, o->height);
     put(g, g->tau, o->tau);
     for (int i = 0; i < g->n; i++)
-        o->order[g->whole ? i : g->lane[i]] = g->order[i];
+        o->order[place(g, i)] = g->order[i];
 }

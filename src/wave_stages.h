@@ -7,8 +7,8 @@
 /* No hits yet. */
 void wave_start(int n, hits *h);
 
-/* The samples of rays that meet nothing; `lights` of their visibilities. */
-void wave_background(int n, vec3 color, int lights, workspace *v);
+/* The samples of rays that meet nothing, their layers too where asked for, with the visibilities of `lights`. */
+void wave_background(int n, vec3 color, bool layers, int lights, workspace *v);
 
 /* Take the lanes of one object out of the hits and put them into the group, side by side and in order. Returns the
  * object's id, -1 where no lane is left. */

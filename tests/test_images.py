@@ -101,6 +101,20 @@ def test_no_bump_at_all(tmp_path: Path) -> None:
                     ), (method, guard, name)
 
 
+def test_layers_without_lights(tmp_path: Path) -> None:
+    """A scene without lights has its layers, too: empty where nothing is met, and where nothing is bumped."""
+    dark = SCENE.format(ground="sphere: {center: [0, 0, 0], radius: 0.6}", bump=', bump: {function: "0.05"}')
+    dark = dark[: dark.index("lights:")] + "lights: {}\n" + dark[dark.index("materials:") :]
+    got = render(tmp_path, dark)
+    nothing = ~np.isfinite(got["Z"])
+    assert 1000 < nothing.sum() < nothing.size - 1000
+    for name in ("P.X", "P.Y", "P.Z", "N.X", "N.Y", "N.Z", "uw.u", "uw.w", "height", "tau"):
+        assert not got[name][nothing].any(), name
+    assert (got["order"][nothing] == -1).all()
+    assert set(np.unique(got["height"])) == {0, np.float32(0.05)}
+    assert not any(name.startswith("visibility") for name in got)
+
+
 FUNCTION = ', bump: {function: "0.05*sin(7*u)*cos(5*w) + 0.02*noise(3*u, 3*w) + 0.01*exp(-u^2)*tanh(w)"}'
 
 
