@@ -47,7 +47,7 @@ UNITS     = $(patsubst tests/%.c,%,$(wildcard tests/test_*.c))
 FIGURES   = figure4 figure5 figure6 figure7 figure8-none figure8 terrain-none terrain
 PICTURES  = $(FIGURES:%=out/%.png)
 
-.PHONY: all render reference accept test unit-tests program-tests check-variants install clean help bootstrap FORCE
+.PHONY: all render reference accept test unit-tests program-tests install clean help bootstrap FORCE
 all: bootstrap
 	@$(MAKE) --no-print-directory $(BUILD)/kage
 

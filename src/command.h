@@ -35,6 +35,9 @@ int command_pov(const arguments *a);
 /* The scene of a command line, or NULL with the errors told. */
 scene *command_scene(const arguments *a);
 
+/* A path's last name: what pictures and exports tell of it, so that they do not depend on the folder. */
+const char *base_name(const char *path);
+
 /* Print a list of errors. Returns `status`. */
 int command_fail(errors *e, int status);
 

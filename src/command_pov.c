@@ -9,7 +9,7 @@
 /* The command as the file tells it: the scene's base name, the options, no other path. NULL: out of memory. */
 static char *command_text(const arguments *a)
 {
-    const char *slash = strrchr(a->operand[0], '/'), *name = slash ? slash + 1 : a->operand[0];
+    const char *name = base_name(a->operand[0]);
     size_t size = strlen(name) + 64;
     for (int k = 0; k < a->sets; k++)
         size += strlen(a->set[k]) + 16;

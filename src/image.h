@@ -1,4 +1,4 @@
-/* Image files: height maps in, pictures out. Only image_png.c includes libpng, only image_exr.c OpenEXR.
+/* Image files: height maps in, pictures out. Only image_png.c includes libpng, only image_exr_*.c OpenEXR.
  * Rows run from top to bottom everywhere.
  */
 #ifndef KAGE_IMAGE_H

@@ -44,6 +44,12 @@ static const char help[] =
     "docs/povray.md.\n"
     "Exit status: 0; 1 where a picture can't be written; 2 for bad input.\n";
 
+const char *base_name(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
 int command_fail(errors *e, int status)
 {
     if (e->text)

@@ -28,9 +28,8 @@ typedef float real;
 #define REAL_FAR ((real)1e30)
 
 /* Put before the definition of a stage, a static function that is one plain loop over lanes (static, as clang 14 exports
- * clones under another name): it is compiled
- * once for any x86-64, once for AVX2 and once for AVX-512 (gcc), and the loader takes the one that fits. All give
- * the same bytes, because nothing is contracted (-ffp-contract=off) and every operation used is exact
+ * clones under another name): it is compiled once for any x86-64, once for AVX2 and once for AVX-512 (gcc), and the loader
+ * takes the one that fits. All give the same bytes, because nothing is contracted (-ffp-contract=off) and every operation used is exact
  * by IEEE 754 (+ - * / sqrt, comparisons, conversions); no stage calls libm for anything else.
  * Processors other than x86-64 build the same source without clones. */
 #if defined(__x86_64__) && defined(__gnu_linux__) && !defined(KAGE_NO_CLONES)

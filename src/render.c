@@ -28,7 +28,7 @@ void workspace_free(workspace *v)
     free(v);
 }
 
-/* A tile of the picture, and the sample (i,j) of aa x aa in each of its pixels. */
+/* A tile of the picture. */
 typedef struct tile {
     int x0, y0, width, height;
 } tile;
@@ -58,8 +58,8 @@ void render_ray(const camera *c, int width, int height, double x, double y, work
 {
     vec3s one;
     real sx = screen(x, width), sy = -screen(y, height);
-    camera_eye(c, LANES, &v->x.r);
     camera_rays(c, 1, &sx, &sy, &one);
+    v->x.r.x[lane] = (real)c->from.x, v->x.r.y[lane] = (real)c->from.y, v->x.r.z[lane] = (real)c->from.z;
     v->x.s.x[lane] = one.x[0], v->x.s.y[lane] = one.y[0], v->x.s.z[lane] = one.z[0];
 }
 
