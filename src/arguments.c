@@ -103,6 +103,10 @@ static bool option(arguments *a, const char *name, const char *v)
         a->threads = x[0];
         return true;
     }
+    if (strcmp(name, "--layers") == 0) {
+        a->layers = v;
+        return true;
+    }
     if (strcmp(name, "--bits") == 0) {
         if (!whole_numbers(v, 0, 1, x) || (x[0] != 8 && x[0] != 16))
             return usage_error("--bits %s: expected 8 or 16", v);
@@ -141,7 +145,7 @@ static const char *find(const char *const *names, const char *arg)
 bool arguments_read(arguments *a, int argc, char **argv)
 {
     static const char *const render_values[] = {"-o",     "--shadow",  "--surface", "--size", "--aa", "--crop",
-                                                "--set",  "--threads", "--bits", NULL};
+                                                "--set",  "--threads", "--bits",    "--layers", NULL};
     static const char *const render_flags[] = {"--no-guard", "--no-self-shadow", "--stats", "--quiet", NULL};
     static const char *const pov_values[] = {"-o", "--surface", "--size", "--set", NULL};
     static const char *const pov_flags[] = {"--no-self-shadow", "--no-cast", NULL};

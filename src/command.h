@@ -19,6 +19,7 @@ typedef struct arguments {
     char *set[MAX_SETS]; /* --set's, and those options that are changes of the scene; owned */
     int sets;
     window crop; /* x1 == 0: none */
+    const char *layers; /* of an EXR; NULL: all */
     int threads, bits;
     bool stats, quiet, no_cast;
 } arguments;

@@ -30,6 +30,45 @@ static char *joined_sets(const arguments *a)
     return text;
 }
 
+/* Whether a word of a list, up to its comma, names a channel: as it is called, or what stands before its dot (N for N.X), or
+ * color for R, G and B. */
+static bool names_channel(const char *word, const char *channel)
+{
+    const size_t n = strcspn(word, ",");
+    if (n == 5 && strncmp(word, "color", n) == 0)
+        return strlen(channel) == 1 && strchr("RGB", *channel);
+    return n > 0 && strncmp(word, channel, n) == 0 && (!channel[n] || channel[n] == '.');
+}
+
+/* The word after this one, or NULL. */
+static const char *next_word(const char *word)
+{
+    const char *comma = strchr(word, ',');
+    return comma ? comma + 1 : NULL;
+}
+
+static bool is_wanted(const char *layers, const char *channel)
+{
+    const char *word = layers;
+    while (word && !names_channel(word, channel))
+        word = next_word(word);
+    return !layers || word;
+}
+
+/* Every word of --layers names something that the film has. */
+static bool check_layers(const char *layers, const film *f)
+{
+    for (const char *word = layers; word; word = next_word(word)) {
+        int k = 0;
+        while (k < f->planes && !names_channel(word, f->name[k]))
+            k++;
+        if (k == f->planes)
+            return usage_error("--layers %.*s: no such layer, expected color, Z, P, N, uw, height, tau, order or visibility, or the "
+                               "name of a channel, with commas between them", (int)strcspn(word, ","), word);
+    }
+    return true;
+}
+
 /* All that the picture is made from, but for the maps: so that it can be made again from itself. No clock, no path, no
  * number of threads: the same picture has the same bytes. */
 static bool write_output(const char *path, const scene *s, const arguments *a, const film *f, const char *sets, errors *e)
@@ -49,9 +88,11 @@ static bool write_output(const char *path, const scene *s, const arguments *a, c
     image_channel *channel = malloc((size_t)f->planes * sizeof *channel);
     if (!channel)
         return errors_add(e, "%s: out of memory", path);
+    int channels = 0;
     for (int k = 0; k < f->planes; k++)
-        channel[k] = (image_channel){f->name[k], f->plane[k]};
-    bool good = image_write_exr(path, width, height, f->planes, channel, texts, text, e);
+        if (is_wanted(a->layers, f->name[k]))
+            channel[channels++] = (image_channel){f->name[k], f->plane[k]};
+    bool good = image_write_exr(path, width, height, channels, channel, texts, text, e);
     free(channel);
     return good;
 }
@@ -127,9 +168,17 @@ static int render_outputs(const scene *s, const arguments *a, const char *const 
     bool layers = false;
     for (int k = 0; k < outputs; k++)
         layers |= strcmp(output[k] + strlen(output[k]) - 4, ".exr") == 0;
+    if (a->layers && !layers) {
+        usage_error("--layers %s: only an EXR has layers, expected -o with a name that ends in .exr", a->layers);
+        return EXIT_INPUT;
+    }
     film *f = film_new(s, part, layers, &e);
     if (!f)
         return command_fail(&e, EXIT_OUTPUT);
+    if (layers && !check_layers(a->layers, f)) {
+        film_free(f);
+        return EXIT_INPUT;
+    }
 
     stats t;
     progress p;

@@ -29,6 +29,7 @@ static const char help[] =
     "  --no-guard           the paper's bare formulas, also where they leave the slab between Pmin and Pmax\n"
     "  --aa N               N x N samples a pixel\n"
     "  --crop X0,Y0,X1,Y1   only this part of the picture, in pixels from the top left, X1 and Y1 exclusive\n"
+    "  --layers A,B,...     of an EXR: color, Z, P, N, uw, height, tau, order, visibility (all)\n"
     "  --bits 8|16          of a PNG (8)\n"
     "  --threads N          (as many as there are processors)\n"
     "  --stats              time and count each stage\n"

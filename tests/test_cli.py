@@ -48,7 +48,7 @@ def same(a: dict[str, np.ndarray], b: dict[str, np.ndarray]) -> bool:
 def test_help_and_version(kage: Kage) -> None:
     text = kage.good("--help")
     for word in ("render", "check", "pixel", "methods", "--set", "--size", "-o", "--shadow", "--no-guard", "--aa", "--crop",
-                 "--bits", "--threads", "--stats", "--quiet"):
+                 "--layers", "--bits", "--threads", "--stats", "--quiet"):
         assert word in text
     assert max(map(len, text.splitlines())) <= 120
     assert kage.good("-h") == text == kage.good("render", "--help")
@@ -120,6 +120,28 @@ def test_bits_of_a_png(kage: Kage) -> None:
     assert np.abs(png(kage.folder / "a.png") - srgb * 255).max() <= 0.501
     # Pillow gives the high bytes of 16 bits
     assert np.abs(png(kage.folder / "b.png").astype(float) * 257 - srgb * 65535).max() <= 65535 / 200
+
+
+def test_some_layers_of_an_exr(kage: Kage) -> None:
+    kage.good("render", CUBE, *SMALL, "-o", "all.exr")
+    kage.good("render", CUBE, *SMALL, "-o", "some.exr", "--layers", "visibility,color,N.X,uw")
+    every, some = exr(kage.folder / "all.exr"), exr(kage.folder / "some.exr")
+    assert some.keys() == {"visibility.lamp", "R", "G", "B", "N.X", "uw.u", "uw.w"}
+    assert all(some[name].tobytes() == every[name].tobytes() for name in some)
+
+
+@pytest.mark.parametrize("layers", ["nothing", "", "N,", "visibility.sun", "NX"])
+def test_no_such_layer(kage: Kage, layers: str) -> None:
+    done = kage("render", CUBE, *SMALL, "-o", "a.exr", "--layers", layers)
+    assert done.returncode == 2
+    assert "no such layer, expected color, Z, P, N" in done.stderr
+    assert kage.files() == set()
+
+
+def test_layers_without_an_exr(kage: Kage) -> None:
+    done = kage("render", CUBE, *SMALL, "-o", "a.png", "--layers", "N")
+    assert (done.returncode, kage.files()) == (2, set())
+    assert "only an EXR has layers" in done.stderr
 
 
 def test_layers_of_an_exr(kage: Kage) -> None:
