@@ -108,7 +108,8 @@ static void print_stats(const stats *t, const scene *s, double seconds, double o
         printf("  %-8s%9.2f ms  %8.2f ns a sample  %5.1f %%\n", stage_names[k], seconds * 1e3 * t->seconds[k] / sum,
                seconds * 1e9 / n * t->seconds[k] / sum, 100 * t->seconds[k] / sum);
     printf("output    %9.2f ms\n", output * 1e3);
-    printf("camera rays %ld, shadow rays %ld, height look-ups %ld\n", t->rays, t->shadow_rays, t->heights);
+    printf("camera rays %ld, shadow rays %ld, height look-ups %ld\n", t->rays, t->shadow_rays,
+           t->heights + t->displaced.heights);
     char name[METHOD_NAME_SIZE];
     method_name(s->shadow, name);
     printf("bumped samples %ld by method %s", t->bumped, name);
@@ -119,8 +120,8 @@ static void print_stats(const stats *t, const scene *s, double seconds, double o
                 printf("  %s: %ld", method_code_name(k - 1), t->orders[k]);
     }
     printf("\n");
-    if (t->uncertain)
-        printf("hits of displaced surfaces that Newton's iteration did not confirm: %ld\n", t->uncertain);
+    if (t->displaced.uncertain)
+        printf("hits of displaced surfaces that Newton's iteration did not confirm: %ld\n", t->displaced.uncertain);
 }
 
 /* Ctrl-C while files are written takes effect between two of them: each is whole or not there. */
@@ -202,9 +203,9 @@ static int render_outputs(const scene *s, const arguments *a, const char *const 
             fprintf(stderr, "%s %s", i ? "," : ";", output[i]);
         fprintf(stderr, "\n");
     }
-    if (t.uncertain && !a->quiet)
+    if (t.displaced.uncertain && !a->quiet)
         fprintf(stderr, "%s: %ld hits of displaced surfaces are not confirmed to the last digits\n", base_name(s->path),
-                t.uncertain);
+                t.displaced.uncertain);
     if (a->stats)
         print_stats(&t, s, rendered - start, written - rendered, count);
     return 0;

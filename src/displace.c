@@ -28,6 +28,7 @@ typedef struct search {
     feet p;
     heights h;
     real rate[LANES], reach[LANES];
+    long looks; /* at P */
 } search;
 
 /* The gap at t, and its derivative along the ray. */
@@ -45,6 +46,7 @@ static void look(const surface *f, const perturb *P, int part, search *s, real *
 {
     f->is->foot(f, part, s->n, &s->x, s->t, &s->p);
     P->is->eval(P, s->n, s->p.u, s->p.w, 1, &s->h);
+    s->looks += s->n;
     gaps(s, slope);
 }
 
@@ -73,11 +75,12 @@ static void compact(search *s)
 
 /* A crossing between a and b, the gap's sign changing: Newton's steps from b, or halvings where they leave the bracket or
  * do not pay. Returns the confirmed t in *t. */
-static displace_end refine(const surface *f, const perturb *P, int part, const search *s, int i, real a, real b, real *t)
+static displace_end refine(const surface *f, const perturb *P, int part, search *s, int i, real a, real b, real *t)
 {
     search one; /* its first lane alone is used */
     real slope[LANES], best = b, least = REAL_FAR, before = REAL_FAR;
     one.n = 1;
+    one.looks = 0;
     lane_set(&one.x.r, 0, lane_get(&s->x.r, i));
     lane_set(&one.x.s, 0, lane_get(&s->x.s, i));
     one.t[0] = b;
@@ -100,6 +103,7 @@ static displace_end refine(const surface *f, const perturb *P, int part, const s
             break;
         one.t[0] = next;
     }
+    s->looks += one.looks;
     *t = best;
     return least <= s->tolerance[i] ? DISPLACE_HIT : DISPLACE_UNCERTAIN;
 }
@@ -111,6 +115,7 @@ static void begin(const surface *f, const perturb *P, int part, int n, const ray
     real t0[LANES], t1[LANES];
     f->is->shell(f, part, n, x, end, P->Pmin, P->Pmax, t0, t1);
     s->n = 0;
+    s->looks = 0;
     for (int i = 0; i < n; i++) {
         if (!(t0[i] <= t1[i]))
             continue;
@@ -140,7 +145,7 @@ static real side_of(const search *s, int i, real slope)
     return (slope > 0) == (s->own[i] != 0) ? R(1) : R(-1);
 }
 
-void displace_search(const surface *f, const perturb *P, int part, int n, const rays *x, const real *end, const int32_t *on,
+long displace_search(const surface *f, const perturb *P, int part, int n, const rays *x, const real *end, const int32_t *on,
                      real *t, int32_t *found)
 {
     search s;
@@ -183,36 +188,39 @@ void displace_search(const surface *f, const perturb *P, int part, int n, const 
         t[s.lane[i]] = s.t[i];
         found[s.lane[i]] = DISPLACE_UNCERTAIN;
     }
+    return s.looks;
 }
 
-void displace_hit(const surface *f, const perturb *P, int n, const rays *x, int32_t id, hits *h, long *uncertain)
+void displace_hit(const surface *f, const perturb *P, int n, const rays *x, int32_t id, hits *h,
+                  displace_counts *c)
 {
     real t[LANES];
     int32_t found[LANES];
     for (int part = 0; part < f->is->parts; part++) {
-        displace_search(f, P, part, n, x, h->t, NULL, t, found);
+        c->heights += displace_search(f, P, part, n, x, h->t, NULL, t, found);
         for (int i = 0; i < n; i++)
             if (found[i] != DISPLACE_MISSED && t[i] > 0 && t[i] < h->t[i]) {
                 h->t[i] = t[i];
                 h->id[i] = id;
                 h->part[i] = part;
-                *uncertain += found[i] == DISPLACE_UNCERTAIN;
+                c->uncertain += found[i] == DISPLACE_UNCERTAIN;
             }
     }
 }
 
-void displace_occlude(const surface *f, const perturb *P, int n, const rays *x, const int32_t *on, real *lit, long *uncertain)
+void displace_occlude(const surface *f, const perturb *P, int n, const rays *x, const int32_t *on, real *lit,
+                      displace_counts *c)
 {
     real t[LANES], end[LANES];
     int32_t found[LANES];
     for (int i = 0; i < n; i++)
         end[i] = lit[i] > 0 ? R(1) : R(-1); /* what is dark already need not be searched */
     for (int part = 0; part < f->is->parts; part++) {
-        displace_search(f, P, part, n, x, end, on, t, found);
+        c->heights += displace_search(f, P, part, n, x, end, on, t, found);
         for (int i = 0; i < n; i++)
             if (found[i] != DISPLACE_MISSED) {
                 lit[i] = 0;
-                *uncertain += found[i] == DISPLACE_UNCERTAIN;
+                c->uncertain += found[i] == DISPLACE_UNCERTAIN;
             }
     }
 }
@@ -257,14 +265,14 @@ void displace_shape(const surface *f, const perturb *P, group *g)
     }
 }
 
-void displace_shift(const surface *f, const perturb *P, group *g, long *uncertain)
+void displace_shift(const surface *f, const perturb *P, group *g, displace_counts *c)
 {
     hits h;
     for (int i = 0; i < g->n; i++) {
         h.t[i] = REAL_FAR;
         h.id[i] = -1;
     }
-    displace_hit(f, P, g->n, &g->x, 0, &h, uncertain);
+    displace_hit(f, P, g->n, &g->x, 0, &h, c);
     for (int i = 0; i < g->n; i++) {
         bs_vec3 n = lane_get(&g->n_smooth, i), Qu = lane_get(&g->q.Qu, i), Qw = lane_get(&g->q.Qw, i);
         bs_real sn = bs_dot(lane_get(&g->x.s, i), n) / real_sqrt(bs_dot(n, n));

@@ -19,18 +19,26 @@ typedef enum displace_end {
     DISPLACE_UNCERTAIN, /* a crossing that Newton could not confirm, or a search that did not end */
 } displace_end;
 
+/* What searches cost, and how sure they are; sums. */
+typedef struct displace_counts {
+    long heights;   /* looks at P */
+    long uncertain; /* hits that could not be confirmed */
+} displace_counts;
+
 /* The first hits with 0 < t < end[i] on one part of the surface: t[i], where found[i] is DISPLACE_HIT (or DISPLACE_UNCERTAIN: then
  * the best there is). on: the part on whose rough surface each ray starts, so that this hit at t = 0 does not count; NULL: they
- * start elsewhere. P must have bounds of value and gradient (displace_possible). */
-void displace_search(const surface *f, const perturb *P, int part, int n, const rays *x, const real *end, const int32_t *on,
+ * start elsewhere. P must have bounds of value and gradient (displace_possible). Returns how often P was looked up. */
+long displace_search(const surface *f, const perturb *P, int part, int n, const rays *x, const real *end, const int32_t *on,
                      real *t, int32_t *found);
 
-/* The nearest hit over all parts, like surface_methods.hit; h->part too. Adds the uncertain ones to *uncertain. */
-void displace_hit(const surface *f, const perturb *P, int n, const rays *x, int32_t id, hits *h, long *uncertain);
+/* The nearest hit over all parts, like surface_methods.hit; h->part too. Adds to *c. */
+void displace_hit(const surface *f, const perturb *P, int n, const rays *x, int32_t id, hits *h,
+                  displace_counts *c);
 
 /* lit[i] = 0 where the rough surface lies across r + s t, 0 < t < 1. on: as above; such a ray is to leave to the side that is
  * seen. */
-void displace_occlude(const surface *f, const perturb *P, int n, const rays *x, const int32_t *on, real *lit, long *uncertain);
+void displace_occlude(const surface *f, const perturb *P, int n, const rays *x, const int32_t *on, real *lit,
+                      displace_counts *c);
 
 /* A group that has met the rough surface itself, at g->t on g->part: (u,w), P and its gradient, the partials of Q at the foot,
  * in q.Q the hit, and in n_bump and n_smooth alike the unit normal of the rough surface. No shift. */
@@ -38,7 +46,7 @@ void displace_shape(const surface *f, const perturb *P, group *g);
 
 /* Method `exact`, for a group that has met the smooth surface: tau to the first hit of the rough one. Where the ray passes
  * that, beside a silhouette, order 0. */
-void displace_shift(const surface *f, const perturb *P, group *g, long *uncertain);
+void displace_shift(const surface *f, const perturb *P, group *g, displace_counts *c);
 
 /* Whether a search has bounds to go by. */
 bool displace_possible(const perturb *P);

@@ -32,7 +32,8 @@ void stats_add(stats *sum, const stats *part)
     sum->rays += part->rays;
     sum->shadow_rays += part->shadow_rays;
     sum->heights += part->heights;
-    sum->uncertain += part->uncertain;
+    sum->displaced.heights += part->displaced.heights;
+    sum->displaced.uncertain += part->displaced.uncertain;
     sum->bumped += part->bumped;
     sum->fell_back += part->fell_back;
     for (int k = 0; k < ORDER_CODES; k++)

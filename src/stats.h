@@ -2,6 +2,7 @@
 #ifndef KAGE_STATS_H
 #define KAGE_STATS_H
 
+#include "displace.h"
 #include "method.h"
 
 #include <stdbool.h>
@@ -25,9 +26,9 @@ extern const char *const stage_names[STAGES];
 
 /* The parts of one thread are added up in the end. */
 typedef struct stats {
-    long rays, shadow_rays, heights;       /* camera rays, shadow rays, looks at a P */
+    long rays, shadow_rays, heights;       /* camera rays, shadow rays, looks at a P but for those in searches */
     long orders[ORDER_CODES];              /* bumped samples by the order really used, from none on */
-    long uncertain;                        /* true hits that could not be confirmed (displace.h) */
+    displace_counts displaced;             /* searches of true hits */
     long bumped, fell_back;                /* bumped samples, and those among them with another order than asked for */
     double seconds[STAGES];                /* in the tiles that were timed */
     bool timing;                           /* this tile is */

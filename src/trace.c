@@ -41,7 +41,7 @@ static void shadow_rough(const object *o, const light *l, group *g, stats *st)
         bool lit = bs_dot(n, lane_get(&g->to_light.s, i)) * bs_dot(n, lane_get(&g->x.s, i)) < 0;
         g->lit[i] = lit ? g->lit[i] : 0;
     }
-    displace_occlude(o->shape, o->bump, g->n, &g->to_light, g->part, g->lit, &st->uncertain);
+    displace_occlude(o->shape, o->bump, g->n, &g->to_light, g->part, g->lit, &st->displaced);
 }
 
 /* The receiver's own shadow on itself. */
@@ -70,7 +70,7 @@ static void shadow(const tracer *k, int id, const light *l, group *g, stats *st)
         if (!is_rough(k, o))
             o->shape->is->occlude(o->shape, g->n, &g->to_light, g->lit);
         else if (k->self_shadow)
-            displace_occlude(o->shape, o->bump, g->n, &g->to_light, NULL, g->lit, &st->uncertain);
+            displace_occlude(o->shape, o->bump, g->n, &g->to_light, NULL, g->lit, &st->displaced);
     }
     st->shadow_rays += g->n;
 }
@@ -91,7 +91,7 @@ static void shape_and_shift(const tracer *k, const object *o, group *g, stats *s
     shift_normals(g, P);
     stats_stage(st, STAGE_NORMAL);
     if (P && k->shadow.kind == METHOD_EXACT)
-        displace_shift(f, P, g, &st->uncertain);
+        displace_shift(f, P, g, &st->displaced);
     else
         st->heights += shift_group(g, P, k->shadow, k->guard);
     stats_stage(st, STAGE_SHIFT);
@@ -130,7 +130,7 @@ int32_t trace_nearest(const tracer *k, int n, workspace *v)
     for (int32_t id = 0; id < sc->objects; id++) {
         const object *o = &sc->object[id];
         if (is_rough(k, o))
-            displace_hit(o->shape, o->bump, n, &v->x, id, &v->h, &v->stats.uncertain);
+            displace_hit(o->shape, o->bump, n, &v->x, id, &v->h, &v->stats.displaced);
         else
             o->shape->is->hit(o->shape, n, &v->x, id, &v->h);
     }

@@ -194,7 +194,7 @@ static void hits_agree_with_bisection(void **state)
             surface *f = make_surface(kind);
             perturb *P = make_bump(kind, bump, f);
             assert_true(displace_possible(P));
-            long uncertain = 0;
+            displace_counts counts = {0};
             int met = 0, passed = 0, doubts = 0;
             double worst = 0;
             for (int round = 0; round < 4; round++) {
@@ -206,7 +206,7 @@ static void hits_agree_with_bisection(void **state)
                     h.t[i] = R(3);
                     h.id[i] = -1;
                 }
-                displace_hit(f, P, LANES, &x, 5, &h, &uncertain);
+                displace_hit(f, P, LANES, &x, 5, &h, &counts);
                 for (int i = 0; i < LANES; i++) {
                     int doubt;
                     wide t = first_crossing(kind, bump, r[i], s[i], 3, &doubt);
@@ -233,10 +233,10 @@ static void hits_agree_with_bisection(void **state)
                 }
             }
             print_message("%s, %s: %d hits, %d misses, farthest %.2g, %d left out near edges and tangents, %ld uncertain\n",
-                          names[kind], bump ? "map" : "function", met, passed, worst, doubts, uncertain);
+                          names[kind], bump ? "map" : "function", met, passed, worst, doubts, counts.uncertain);
             assert_true(met > 150);
             assert_true(doubts < 4 * LANES / 8);
-            assert_int_equal(uncertain, 0);
+            assert_int_equal(counts.uncertain, 0);
             perturb_free(P);
             surface_free(f);
         }
@@ -251,14 +251,14 @@ static void normals_are_gradients(void **state)
         perturb *P = make_bump(kind, SMOOTH_BUMP, f);
         static group g;
         static hits h;
-        long uncertain = 0;
+        displace_counts counts = {0};
         wide r[LANES][3], s[LANES][3];
         for (int i = 0; i < LANES; i++) {
             random_ray(&g.x, i, r[i], s[i]);
             h.t[i] = R(3);
             h.id[i] = -1;
         }
-        displace_hit(f, P, LANES, &g.x, 0, &h, &uncertain);
+        displace_hit(f, P, LANES, &g.x, 0, &h, &counts);
         g.n = LANES;
         for (int i = 0; i < LANES; i++) {
             g.t[i] = h.id[i] == 0 ? h.t[i] : R(1);
@@ -297,7 +297,7 @@ static void own_shadows(void **state)
         perturb *P = make_bump(kind, MAP_BUMP, f);
         static rays x, up;
         static hits h;
-        long uncertain = 0;
+        displace_counts counts = {0};
         int dark = 0, lights = 0, wrong = 0, n = 0;
         int32_t on[LANES];
         wide r[LANES][3], s[LANES][3];
@@ -307,7 +307,7 @@ static void own_shadows(void **state)
             h.t[i] = R(3);
             h.id[i] = -1;
         }
-        displace_hit(f, P, LANES, &x, 0, &h, &uncertain);
+        displace_hit(f, P, LANES, &x, 0, &h, &counts);
         for (int i = 0; i < LANES; i++)
             if (h.id[i] == 0) {
                 bs_vec3 X = lane_at(&x, i, h.t[i]), d = {R(-5) - X.x, R(1.2) - X.y, R(-3) - X.z};
@@ -318,7 +318,7 @@ static void own_shadows(void **state)
                 on[n] = h.part[i];
                 lit[n++] = gap_at(kind, MAP_BUMP, h.part[i], near_by, &in) > 0 ? R(1) : R(0); /* turned to the light */
             }
-        displace_occlude(f, P, n, &up, on, lit, &uncertain);
+        displace_occlude(f, P, n, &up, on, lit, &counts);
         for (int i = 0; i < n; i++) {
             bs_vec3 X = lane_get(&up.r, i), D = lane_get(&up.s, i);
             wide o[3] = {(wide)X.x, (wide)X.y, (wide)X.z}, d[3] = {(wide)D.x, (wide)D.y, (wide)D.z};
@@ -353,7 +353,7 @@ static void flat_and_exact(void **state)
     perturb *P = perturb_function(expr_parse("0.1", &e), 1, all, all);
     surface *f = plane_new((vec3){0, 0, 0}, (vec3){0, 0, 1}, (vec3){1, 0, 0}, false);
     static group g;
-    long uncertain = 0;
+    displace_counts counts = {0};
     g.n = LANES;
     for (int i = 0; i < LANES; i++) {
         g.x.r.x[i] = (real)(i * 0.1), g.x.r.y[i] = R(2), g.x.r.z[i] = R(-1);
@@ -365,13 +365,13 @@ static void flat_and_exact(void **state)
     P->is->eval(P, LANES, g.u, g.w, 1, &g.h);
     for (int i = 0; i < LANES; i++)
         lane_set(&g.n_smooth, i, bs_normal(lane_get(&g.q.Qu, i), lane_get(&g.q.Qw, i)));
-    displace_shift(f, P, &g, &uncertain);
+    displace_shift(f, P, &g, &counts);
     for (int i = 0; i < LANES; i++) {
         double y = (double)(g.x.r.y[i] + g.x.s.y[i] * (g.t[i] + g.tau[i]));
         assert_int_equal(g.order[i], ORDER_EXACT);
         assert_true(fabs(y - 0.1) < 1e-6);
     }
-    assert_int_equal(uncertain, 0);
+    assert_int_equal(counts.uncertain, 0);
     perturb_free(P);
     surface_free(f);
     P = perturb_function(expr_parse("u", &e), 1, all, all);
