@@ -1,4 +1,4 @@
-# kage: make render | test | install | clean | help
+# kage: make render | bench | test | install | clean | help
 #
 #   REAL=float|double     the number type of the tracer (double: for verification)
 #   CC=gcc|clang          the compiler
@@ -11,6 +11,7 @@ REAL     ?= float
 SANITIZE ?=
 CLONES   ?= yes
 BUILD    ?= build/$(REAL)
+BENCH    ?= normal
 PREFIX   ?= /usr/local
 Q         = $(if $(V),,@)
 
@@ -47,13 +48,15 @@ UNITS     = $(patsubst tests/%.c,%,$(wildcard tests/test_*.c))
 FIGURES   = figure4 figure5 figure6 figure7 figure8-none figure8 terrain-none terrain
 PICTURES  = $(FIGURES:%=out/%.png)
 
-.PHONY: all render reference accept test unit-tests program-tests install clean help bootstrap FORCE
+.PHONY: all render bench readme reference accept test unit-tests program-tests install clean help bootstrap FORCE
 all: bootstrap
 	@$(MAKE) --no-print-directory $(BUILD)/kage
 
 help:
 	@echo 'make            build the tracer, $(BUILD)/kage'
 	@echo 'make render     the pictures of the paper, into out/'
+	@echo 'make bench      what each method costs and what it buys, BENCH=quick|normal|full, into out/bench/index.html'
+	@echo 'make readme     the same, then what the README tells of it'
 	@echo 'make test       all tests'
 	@echo 'make accept     look at pictures that have changed, and keep them (tests/regression/)'
 	@echo 'make reference  what POV-Ray makes of the scenes, where that is stale, into reference/'
@@ -134,6 +137,16 @@ unit-tests: $(UNITS:%=$(BUILD)/%)
 program-tests: $(BUILD)/kage
 	@$(MAKE) --no-print-directory REAL=double build/double/kage
 	scripts/venv python -m pytest -q tests
+
+# What POV-Ray, valgrind or a Python package would tell is left out where they are missing and can't be installed.
+bench: all
+	@CC='$(CC)' scripts/bootstrap python povray valgrind || echo 'bench: going on without what is missing' >&2
+	@python=.venv/bin/python; scripts/venv || python=python3; \
+	    $$python -m bench --level $(BENCH) --kage $(BUILD)/kage || [ $$? -eq 3 ]
+
+# The README's tables and pictures, and those of docs/.
+readme: render bench
+	scripts/venv python -m bench.readme
 
 # Only what is stale is made again.
 reference: all

@@ -1,4 +1,4 @@
-// Figure 4's scene, scenes/cube.yaml, as POV-Ray renders it with a bump_map: the peer for cost of bench/speed.py.
+// Figure 4's scene, scenes/cube.yaml, as POV-Ray renders it with a bump_map: the bench's peer for cost.
 // (Figure 5's shadow, which follows the bumps, is what POV-Ray has no means for: its shadow rays start on the plane.)
 // From the top of the project:
 //

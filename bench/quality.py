@@ -1,306 +1,220 @@
-"""How good the methods' shadows are: each scene and method against POV-Ray's true displacement, and against kage's own.
+"""What the methods' pictures are worth: their shadows against POV-Ray's true displacement, and against kage's own.
 
-    against POV-Ray   wrong pixels of the cast shadow, in % of the shadow, by the masks in reference/ (640x480). A pixel
-                      counts where both programs see the receiver there, and where it faces the light: the smooth surface
-                      in kage, the rough one in POV-Ray, as turned away there is no cast shadow to be seen. kage shades
-                      the smooth hit of the very same viewing ray, so pixels are compared one to one.
-    against exact     the same against `--shadow exact`: the true hit in kage's own engine
-    tau               |tau - tau of exact| in scene units: the median and the 95th percentile over the receiver
-    fell back         share of the receiver where the method fell back to a lower order
-
-and how true that truth is: `kage render --surface displaced` against POV-Ray's pictures in reference/ (320x240), in linear
-light, with the bounds that the project demands of itself:
-
-    self              rough surfaces cast shadows: at least 99.5 % of the pixels within 1/255
-    cast              only other objects do: at least 99.8 %
-    mask              of `cast` (640x480): at most 0.1 % of the shadow's pixels differ
-
-On function data with slopes below 0.35 (the scene waves) fewer and fewer pixels must be wrong from none to 0, 1, 2, 2+.
-
-status: 0 all this holds, 1 something does not, 2 wrong usage, or a program or reference fails
+A pixel of a shadow counts where both programs see the receiver there, and where it faces the light: the smooth surface in kage,
+the rough one in POV-Ray, as turned away there is no cast shadow to be seen. kage shades the smooth hit of the very same viewing
+ray, so pixels are compared one to one.
 """
 
 from __future__ import annotations
 
-import argparse
-import json
-import os
+import functools
 import re
-import subprocess
-import sys
 import tempfile
-from collections.abc import Iterable, Sequence
-from concurrent.futures import ThreadPoolExecutor
-from dataclasses import asdict, dataclass
 from pathlib import Path
 
 import numpy as np
 
-TOP = Path(__file__).resolve().parent.parent
-sys.path.insert(0, str(TOP / "reference"))
-
-import references  # noqa: E402  (the folder is no package)
+from bench import images, masks, plan, programs
+from bench.plan import Bench, Facts
+from bench.programs import TOP, MeasureError, Options, Size
+from bench.runner import Job, Stage
+from bench.store import Inputs, Value
+from reference import references
 
 Layers = dict[str, np.ndarray]
-Options = tuple[str, ...]
 
-
-def shadow(method: str) -> Options:
-    """The options of kage for one of the names below."""
-    name, _, bare = method.partition(" ")
-    return ("--shadow", name, *(["--no-guard"] if bare else []))
-
-
-METHODS = ("none", "0", "1", "1 bare", "2", "2 bare", "2+", "iter:2", "iter:4", "march:2", "march:4", "march:8", "exact")
-MERIT = ("none", "0", "1", "2", "2+")  # each better than the one before, on
-MERIT_SCENE = "waves"
 ORDER_CODES = {"none": -1, "0": 0, "1": 1, "2": 2, "2+": 3, "iter": 4, "march": 5, "exact": 6}  # of the layer `order`
-DISPLACED: dict[str, Options] = {
-    "self": ("--surface", "displaced"),
-    "cast": ("--surface", "displaced", "--no-self-shadow"),
-}
 CLOSE = 1 / 255
-LEAST_CLOSE = {"self": 99.5, "cast": 99.8}  # % of the pixels
-MOST_DIFFERENT = 0.1  # % of the shadow's pixels
+TRUTH_LAYERS = "color,tau,order,visibility"
+FLAT_LAYERS = "N,P,visibility"
+CODE = programs.file_digest(*(Path(module.__file__ or "") for module in (images, masks)), Path(__file__))
 
 
-class QualityError(Exception):
-    """Something could not be measured; the message says what and why."""
+def slug(method: str) -> str:
+    """A method's name as part of a file's."""
+    return method.replace(":", "").replace(" ", "-").replace("+", "plus")
 
 
-@dataclass(frozen=True)
-class Row:
-    """What a method is worth on a scene; shares in %, tau in scene units."""
-
-    scene: str
-    method: str
-    wrong_povray: float
-    wrong_exact: float
-    tau_median: float
-    tau_95: float
-    fell_back: float
+def command(bench: Bench, scene: Facts, options: Options, *outputs: Path) -> list[str | Path]:
+    """As it is shown to the reader, who may give it more threads: the picture is the same."""
+    words = [word for path in outputs for word in ("-o", path)]
+    return [bench.kage, "render", scene.file, *options, *words, "--threads", "1", "--quiet"]
 
 
-@dataclass(frozen=True)
-class Parity:
-    """`--surface displaced` against POV-Ray."""
-
-    scene: str
-    self: float  # % of the pixels within 1/255
-    cast: float
-    mask_differs: int  # pixels
-    mask_shadow: int
-
-    @property
-    def mask(self) -> float:
-        return 100 * self.mask_differs / self.mask_shadow
-
-    def holds(self) -> bool:
-        return self.self >= LEAST_CLOSE["self"] and self.cast >= LEAST_CLOSE["cast"] and self.mask <= MOST_DIFFERENT
-
-
-# Running kage ---------------------------------------------------------------------------------------
-
-
-def run(command: Sequence[str | Path]) -> str:
-    try:
-        done = subprocess.run(command, cwd=TOP, capture_output=True, text=True, check=False)
-    except OSError as error:
-        raise QualityError(f"{command[0]}: {error.strerror}") from error
-    if done.returncode:
-        raise QualityError(f"{' '.join(map(str, command))}: status {done.returncode}\n{done.stderr[-1000:].strip()}")
-    return done.stdout
-
-
-def render(kage: Path, scene: str, shape: tuple[int, ...], options: Options) -> Layers:
-    """All layers, at the size of an array of that shape."""
-    size = ("--size", f"{shape[1]}x{shape[0]}")
+def render(bench: Bench, scene: Facts, size: Size, options: Options, layers: str, png: Path | None = None) -> Layers:
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "a.exr"
-        run([kage, "render", f"scenes/{scene}.yaml", *size, *options, "--threads", "1", "--quiet", "-o", path])
+        outputs = [path] if png is None else [path, png]
+        options = (*options, *programs.size_options(size), "--layers", layers)
+        programs.run(command(bench, scene, options, *outputs))
         return references.read_exr(path)
 
 
-@dataclass(frozen=True)
-class Facts:
-    """What the measures need to know of a scene; `kage check` tells it."""
-
-    light: str
-    at: np.ndarray
-    receiver: str
+# Truths -------------------------------------------------------------------------------------------
 
 
-def facts(kage: Path, scene: str) -> Facts:
-    text = run([kage, "check", f"scenes/{scene}.yaml"])
-    lights = re.findall(r"^light (\S+) at (.*)", text, re.MULTILINE)
-    receivers = re.findall(r"^object (\S+): .*, bump by", text, re.MULTILINE)
-    if len(lights) != 1 or len(receivers) != 1:
-        raise QualityError(f"scenes/{scene}.yaml: masks tell of one light and one bumped object, here are {len(lights)} "
-                           f"and {len(receivers)}")
-    name, at = lights[0]
-    return Facts(name, np.array([float(x) for x in at.split(",")]), receivers[0])
-
-
-# Measuring ------------------------------------------------------------------------------------------
-
-
-def percent(part: np.ndarray, whole: np.ndarray) -> float:
-    return 100 * int(part.sum()) / int(whole.sum())
-
-
-def share_close(a: np.ndarray, b: np.ndarray) -> float:
-    """% of the pixels with all three colours within 1/255 of each other."""
-    return 100 * float((np.abs(a - b) <= CLOSE).all(axis=-1).mean())
-
-
-def in_shadow(layers: Layers, light: str) -> np.ndarray:
-    return layers[f"visibility.{light}"] == 0
-
-
-def mask_tells(mask: np.ndarray) -> np.ndarray:
-    return (mask == references.SHADOW) | (mask == references.LIT)
-
-
-def smooth_faces_light(layers: Layers, at: np.ndarray) -> np.ndarray:
-    """In a picture without bumps, where N is the smooth normal."""
-    n, p = (np.stack([layers[f"{v}.{axis}"] for axis in "XYZ"], axis=-1) for v in "NP")
-    return ((at - p) * n).sum(axis=-1) > 0
-
-
-def measure_method(method: str, scene: str, got: Layers, exact: Layers, mask: np.ndarray, facing: np.ndarray,
-                   light: str) -> Row:
-    """`facing`: where kage sees the receiver, and its smooth surface faces the light."""
-    code = ORDER_CODES[re.split("[ :]", method)[0]]
-    ours, own_truth, truth = in_shadow(got, light), in_shadow(exact, light), mask == references.SHADOW
-    both = facing & mask_tells(mask)
-    found = exact["order"] == ORDER_CODES["exact"]  # where the ray meets the rough surface at all
-    error = np.abs(got["tau"] - exact["tau"])[found]
-    bumped = exact["order"] >= 0
-    return Row(scene, method, percent(both & (ours != truth), both & truth),
-               percent(facing & (ours != own_truth), facing & own_truth),
-               float(np.median(error)), float(np.percentile(error, 95)), percent(bumped & (got["order"] != code), bumped))
-
-
-def measure_scene(kage: Path, scene: str, pool: ThreadPoolExecutor, methods: Sequence[str]) -> list[Row]:
-    mask = references.load(scene).mask
-    about = facts(kage, scene)
-    flat = pool.submit(render, kage, scene, mask.shape,
-                       (*shadow("none"), "--set", f"objects.{about.receiver}.bump.scale=0"))
-    wanted = dict.fromkeys((*methods, "exact"))
-    pictures = {method: pool.submit(render, kage, scene, mask.shape, shadow(method)) for method in wanted}
-    exact = pictures["exact"].result()
-    facing = (exact["order"] >= 0) & smooth_faces_light(flat.result(), about.at)
-    return [measure_method(method, scene, pictures[method].result(), exact, mask, facing, about.light)
-            for method in methods]
-
-
-def measure_parity(kage: Path, scene: str, pool: ThreadPoolExecutor) -> Parity:
-    truth = references.load(scene)
-    light = facts(kage, scene).light
-    pictures = {kind: pool.submit(render, kage, scene, truth.pictures[kind].shape, options)
-                for kind, options in DISPLACED.items()}
-    large = pool.submit(render, kage, scene, truth.mask.shape, DISPLACED["cast"]).result()
-    close = {kind: share_close(references.stack(picture.result()), truth.pictures[kind])
-             for kind, picture in pictures.items()}
-    both = mask_tells(truth.mask) & (large["order"] == ORDER_CODES["exact"])
-    differs = both & (in_shadow(large, light) != (truth.mask == references.SHADOW))
-    return Parity(scene, close["self"], close["cast"], int(differs.sum()), int((truth.mask == references.SHADOW).sum()))
-
-
-def merit_holds(rows: Iterable[Row]) -> bool:
-    """Whether each of MERIT is better than the one before, against either truth."""
-    found = {row.method: row for row in rows if row.scene == MERIT_SCENE}
-    ranks = [found[method] for method in MERIT]
-    return all(a.wrong_povray > b.wrong_povray and a.wrong_exact > b.wrong_exact
-               for a, b in zip(ranks, ranks[1:], strict=False))
-
-
-# Printing -------------------------------------------------------------------------------------------
-
-HEAD = ("scene", "method", "wrong, POV-Ray", "wrong, exact", "tau median", "tau 95 %", "fell back")
-PARITY_HEAD = ("displaced", "self", "cast", "mask", "pixels of the mask")
-
-
-def row_cells(row: Row) -> list[str]:
-    return [row.scene, row.method, f"{row.wrong_povray:.2f} %", f"{row.wrong_exact:.2f} %", f"{row.tau_median:.2g}",
-            f"{row.tau_95:.2g}", f"{row.fell_back:.2f} %"]
-
-
-def parity_cells(parity: Parity) -> list[str]:
-    return [parity.scene, f"{parity.self:.2f} %", f"{parity.cast:.2f} %", f"{parity.mask:.3f} %",
-            f"{parity.mask_differs} of {parity.mask_shadow}"]
-
-
-def print_table(head: Sequence[str], rows: Sequence[Sequence[str]], markdown: bool) -> None:
-    if markdown:
-        print("| " + " | ".join(head) + " |")
-        print("|---" + "|---:" * (len(head) - 1) + "|")
-        for row in rows:
-            print("| " + " | ".join(row) + " |")
-        return
-    widths = [max(len(row[i]) for row in (head, *rows)) for i in range(len(head))]
-    for row in (head, *rows):
-        first, *others = zip(row, widths, strict=True)
-        print("  ".join([first[0].ljust(first[1]), *(cell.rjust(width) for cell, width in others)]))
-
-
-def print_verdicts(rows: Sequence[Row], parities: Sequence[Parity]) -> int:
-    """A line for each claim that was measured; the status."""
-    claims = {f"{p.scene}: displaced as POV-Ray's": p.holds() for p in parities}
-    if any(row.scene == MERIT_SCENE for row in rows):
-        claims[f"{MERIT_SCENE}: wrong pixels {' > '.join(MERIT)}"] = merit_holds(rows)
-    for claim, good in claims.items():
-        print(f"{'PASS' if good else 'FAIL'}  {claim}")
-    return 0 if all(claims.values()) else 1
-
-
-# The command line -----------------------------------------------------------------------------------
-
-
-def parse_arguments(arguments: Sequence[str] | None) -> argparse.Namespace:
-    about, _, status = (__doc__ or "").partition("\nstatus:")
-    parser = argparse.ArgumentParser(prog="quality.py", description=about, epilog="status:" + status,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("scenes", nargs="*", metavar="SCENE", help=f"{', '.join(references.SCENES)} (all)")
-    parser.add_argument("--kage", type=Path, default=TOP / "build" / "float" / "kage", metavar="FILE",
-                        help="the program to measure (the project's build/float/kage)")
-    parser.add_argument("--markdown", action="store_true", help="print the tables as Markdown")
-    parser.add_argument("--json", type=Path, metavar="FILE", help="write all numbers there")
-    options = parser.parse_args(arguments)
-    for name in options.scenes:
-        if name not in references.SCENES:
-            parser.error(f"'{name}' is none of the scenes {', '.join(references.SCENES)}")
-    options.kage = options.kage.resolve()
-    if not os.access(options.kage, os.X_OK):
-        parser.error(f"{options.kage} is not there, or no program: `make build/float/kage` makes it")
-    return options
-
-
-def bench(options: argparse.Namespace) -> int:
-    scenes = options.scenes or references.SCENES
-    with ThreadPoolExecutor(os.cpu_count()) as pool:
-        rows = [row for scene in scenes for row in measure_scene(options.kage, scene, pool, METHODS)]
-        parities = [measure_parity(options.kage, scene, pool) for scene in scenes]
-    print_table(HEAD, [row_cells(row) for row in rows], options.markdown)
-    print()
-    print_table(PARITY_HEAD, [parity_cells(parity) for parity in parities], options.markdown)
-    print()
-    if options.json:
-        content = {"methods": [asdict(row) for row in rows], "displaced": [asdict(p) | {"mask": p.mask} for p in parities]}
-        options.json.write_text(json.dumps(content, indent=1) + "\n")
-    return print_verdicts(rows, parities)
-
-
-def main(arguments: Sequence[str] | None = None) -> int:
-    options = parse_arguments(arguments)
+@functools.lru_cache(maxsize=4)
+def reference(folder: Path, scene: str) -> references.Reference:
+    """POV-Ray's. It must be of the scene as it is now."""
+    entry = references.read_manifest(folder).get(scene, {})
+    if entry.get("scene") != references.scene_digest(TOP / "scenes" / f"{scene}.yaml"):
+        raise MeasureError(f"POV-Ray's reference of {scene} is not of the scene as it is now: `make reference` makes it again")
     try:
-        return bench(options)
-    except (QualityError, references.ReferenceError, OSError) as error:
-        print(f"quality.py: {error}", file=sys.stderr)
-        return 2
-    except KeyboardInterrupt:
-        return 130
+        return references.load(scene, folder)
+    except references.ReferenceError as error:
+        raise MeasureError(str(error)) from error
 
 
-if __name__ == "__main__":
-    sys.exit(main())
+@functools.lru_cache(maxsize=8)
+def read_truth(path: Path) -> Layers:
+    return references.read_exr(path)
+
+
+def mask_size(bench: Bench) -> Size:
+    return tuple(x * bench.level.reference_scale for x in references.MASK_SIZE)
+
+
+def picture_size(bench: Bench) -> Size:
+    return tuple(x * bench.level.reference_scale for x in references.PICTURE_SIZE)
+
+
+def make_truth(bench: Bench, scene: Facts, name: str) -> Value:
+    options, layers = {
+        "exact": (programs.method_options("exact"), TRUTH_LAYERS),
+        "flat": ((*programs.method_options("none"), *programs.set_options({f"objects.{scene.receiver}.bump.scale": 0})),
+                 FLAT_LAYERS),
+    }[name]
+    path = bench.truth(scene.name, name)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    options = (*options, *programs.size_options(mask_size(bench)), "--layers", layers)
+    programs.run(command(bench, scene, options, path))
+    return {}
+
+
+def in_shadow(layers: Layers, scene: Facts) -> np.ndarray:
+    return layers[f"visibility.{scene.light}"] == 0
+
+
+def faces_light(flat: Layers, scene: Facts) -> np.ndarray:
+    """Where the smooth surface does; in a picture without bumps N is its normal."""
+    n, p = (np.stack([flat[f"{v}.{axis}"] for axis in "XYZ"], axis=-1) for v in "NP")
+    return ((np.array(scene.at) - p) * n).sum(axis=-1) > 0
+
+
+# Measures -----------------------------------------------------------------------------------------
+
+
+def rounded(values: dict[str, float | None]) -> dict[str, float | None]:
+    """Enough digits to tell, and few enough that another processor's sums give the same."""
+    return {name: None if value is None else float(f"{value:.6g}") for name, value in values.items()}
+
+
+def measure_tau(method: str, got: Layers, exact: Layers) -> Value:
+    """Where the ray meets the rough surface at all, and where bumps are, respectively."""
+    found, bumped = exact["order"] == ORDER_CODES["exact"], exact["order"] >= 0
+    error = np.abs(got["tau"] - exact["tau"])[found]
+    code = ORDER_CODES[re.split("[ :]", method)[0]]
+    tau = {"median": float(np.median(error)), "p95": float(np.percentile(error, 95))}
+    return {"tau": rounded(tau), "fell_back": 100 * float((got["order"] != code)[bumped].mean())}
+
+
+def measure_mask(got: np.ndarray, truth: np.ndarray, counted: np.ndarray) -> dict[str, float | None]:
+    return rounded(dict(masks.measure(got, truth, counted)))
+
+
+def against_povray(bench: Bench, scene: Facts, got: Layers, counted: np.ndarray) -> dict[str, object]:
+    mask = reference(bench.references, scene.name).mask
+    both = counted & ((mask == references.SHADOW) | (mask == references.LIT))
+    ours, truth = in_shadow(got, scene), mask == references.SHADOW
+    return {"mask": measure_mask(ours, truth, both), "mask_shadow": int((both & truth).sum()),
+            "mask_differs": int((both & (ours != truth)).sum())}
+
+
+def against_displacement(bench: Bench, scene: Facts, method: str) -> dict[str, object]:
+    """The picture against POV-Ray's with rough surfaces, whose own shadows are cast (`self`) or not (`cast`)."""
+    truth = reference(bench.references, scene.name).pictures
+    found: dict[str, object] = {}
+    for kind in references.PICTURES:
+        options = programs.method_options(method)
+        if method == "displaced" and kind == "cast":
+            options = (*options, "--no-self-shadow")
+        got = references.stack(render(bench, scene, picture_size(bench), options, "color"))
+        found[kind] = rounded(dict(images.measure(got, truth[kind])))
+        found[f"{kind}_close"] = 100 * float((np.abs(got - truth[kind]) <= CLOSE).all(axis=-1).mean())
+    return found
+
+
+def measure(bench: Bench, scene: Facts, method: str) -> Value:
+    """All about one method. What needs POV-Ray's reference is left out where that is missing, and `why` says so."""
+    exact, flat = (read_truth(bench.truth(scene.name, name)) for name in ("exact", "flat"))
+    png = bench.picture(scene.name, slug(method))
+    png.parent.mkdir(parents=True, exist_ok=True)
+    own = method == "displaced"
+    options = (*programs.method_options(method), *(["--no-self-shadow"] if own else []))
+    got = render(bench, scene, mask_size(bench), options, TRUTH_LAYERS, png)
+    counted = (exact["order"] >= 0) & faces_light(flat, scene)
+    if own:
+        counted &= got["order"] == ORDER_CODES["exact"]
+    ours, theirs, smooth = (in_shadow(layers, scene) for layers in (got, exact, flat))
+    moved = masks.edge_distances(ours, smooth, counted)
+    value: Value = {
+        "exact": measure_mask(ours, theirs, counted),
+        "edge_moved": rounded(dict(moved)) if moved else None,
+        "hybrid": rounded(dict(images.measure(references.stack(got), references.stack(exact)))),
+        "tau": None, "fell_back": None,
+        "command": programs.shown(command(bench, scene, (*options, *programs.size_options(mask_size(bench))),
+                                          Path(f"{scene.name}-{slug(method)}.png"))),
+    }
+    if not own:
+        value |= measure_tau(method, got, exact)
+    save_levels(masks.picture(ours, theirs, counted), bench.picture(scene.name, f"{slug(method)}.wrong"))
+    try:
+        value |= against_povray(bench, scene, got, (got["order"] == ORDER_CODES["exact"]) if own else counted)
+        value |= against_displacement(bench, scene, method)
+    except MeasureError as error:
+        value["why"] = str(error)
+    return value
+
+
+# Pictures -----------------------------------------------------------------------------------------
+
+
+def save_levels(levels: np.ndarray, path: Path) -> None:
+    from PIL import Image
+
+    path.parent.mkdir(parents=True, exist_ok=True)
+    aside = path.with_suffix(".new")
+    Image.fromarray(levels).save(aside, format="PNG", optimize=True)
+    aside.replace(path)
+
+
+def save_references(bench: Bench, scene: Facts) -> Value:
+    """POV-Ray's pictures, as PNG for the report."""
+    for kind, picture in reference(bench.references, scene.name).pictures.items():
+        save_levels(np.rint(255 * images.srgb(picture)).astype(np.uint8), bench.picture(scene.name, f"povray-{kind}"))
+    return {}
+
+
+# Jobs ---------------------------------------------------------------------------------------------
+
+
+def inputs(bench: Bench, scene: Facts, **more: object) -> Inputs:
+    entry = references.read_manifest(bench.references).get(scene.name, {})
+    return {"kage": bench.kage_digest, "scene": scene.digest, "code": CODE, "reference": entry.get("pixels"),
+            "scale": bench.level.reference_scale, "packages": images.missing(), **more}
+
+
+def jobs(bench: Bench) -> list[Job]:
+    found = []
+    for scene in bench.scenes.values():
+        for name in ("exact", "flat"):
+            found.append(Job(f"truth {scene.name} {name}", inputs(bench, scene), functools.partial(make_truth, bench, scene, name),
+                             Stage.TRUTHS, 0.6, (bench.truth(scene.name, name),)))
+        shown = tuple(bench.picture(scene.name, f"povray-{kind}") for kind in references.PICTURES)
+        found.append(Job(f"reference {scene.name}", inputs(bench, scene), functools.partial(save_references, bench, scene),
+                         Stage.MEASURES, 0.1, shown))
+        for method in bench.level.methods:
+            files = tuple(bench.picture(scene.name, name) for name in (slug(method), f"{slug(method)}.wrong"))
+            found.append(Job(f"quality {scene.name} {method}", inputs(bench, scene, method=method),
+                             functools.partial(measure, bench, scene, method), Stage.MEASURES, 1.0, files))
+    return found

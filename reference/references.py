@@ -19,14 +19,14 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-import OpenEXR
-from PIL import Image
 
 TOP = Path(__file__).resolve().parent.parent
 FOLDER = TOP / "reference"
 SCENES = ("cube", "sphere", "terrain", "waves")
 
 PICTURES = ("self", "cast")
+PICTURE_SIZE = (320, 240)
+MASK_SIZE = (640, 480)  # the scenes' own
 
 # The levels of a mask, chosen so that the PNG can be looked at.
 ELSEWHERE = 0  # another object, or the background
@@ -57,12 +57,16 @@ class Reference:
 
 
 def read_exr(path: Path) -> dict[str, np.ndarray]:
+    import OpenEXR  # only where pictures are read and written: the bench goes on without it, and measures less
+
     with OpenEXR.File(str(path), separate_channels=True) as file:
         return {name: channel.pixels.copy() for name, channel in file.channels().items()}
 
 
 def write_exr(path: Path, channels: dict[str, np.ndarray]) -> None:
     """As half floats. ZIP packs rows of all channels together, so that what two pictures share costs little."""
+    import OpenEXR
+
     header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
     OpenEXR.File(header, {name: plane.astype(np.float16) for name, plane in channels.items()}).write(str(path))
 
@@ -77,6 +81,8 @@ def files(name: str) -> tuple[str, str]:
 
 
 def load(name: str, folder: Path = FOLDER) -> Reference:
+    from PIL import Image
+
     exr, png = (folder / file for file in files(name))
     try:
         layers = read_exr(exr)
@@ -89,6 +95,8 @@ def load(name: str, folder: Path = FOLDER) -> Reference:
 
 
 def save(name: str, reference: Reference, folder: Path) -> None:
+    from PIL import Image
+
     exr, png = (folder / file for file in files(name))
     write_exr(exr, {f"{kind}.{c}": reference.pictures[kind][..., i] for kind in PICTURES for i, c in enumerate("RGB")})
     Image.fromarray(reference.mask).save(png, optimize=True)

@@ -34,10 +34,8 @@ from pathlib import Path
 
 import numpy as np
 import references
-from references import AWAY, ELSEWHERE, FOLDER, LIT, SHADOW, TOP, Reference, ReferenceError
+from references import AWAY, ELSEWHERE, FOLDER, LIT, MASK_SIZE, PICTURE_SIZE, SHADOW, TOP, Reference, ReferenceError
 
-PICTURE_SIZE = (320, 240)
-MASK_SIZE = (640, 480)  # the scenes' own
 WORK = Path("out") / "reference"  # from TOP, where all commands run: so they are the same everywhere
 FLAGS = ("+FE", "-A", "-D", "-P", "-V")  # EXR, no antialiasing, no window, no waiting, no count of lines
 HALF_ULP = 2.0**-11  # POV-Ray writes half floats: a relative step
@@ -52,14 +50,16 @@ class Shot:
     options: tuple[str, ...]
 
 
-def shots(lights: Sequence[str]) -> tuple[Shot, ...]:
+def shots(lights: Sequence[str], scale: int = 1) -> tuple[Shot, ...]:
+    """`scale`: times the width and height of those that are kept in reference/."""
+    picture, mask = (PICTURE_SIZE[0] * scale, PICTURE_SIZE[1] * scale), (MASK_SIZE[0] * scale, MASK_SIZE[1] * scale)
     dark = tuple(word for light in lights for word in ("--set", f"lights.{light}.color=[0, 0, 0]"))
     return (
-        Shot("self", PICTURE_SIZE, ()),
-        Shot("cast", PICTURE_SIZE, ("--no-self-shadow",)),
-        Shot("mask-cast", MASK_SIZE, ("--no-self-shadow",)),
-        Shot("mask-nocast", MASK_SIZE, ("--no-self-shadow", "--no-cast")),
-        Shot("mask-dark", MASK_SIZE, ("--no-self-shadow", *dark)),
+        Shot("self", picture, ()),
+        Shot("cast", picture, ("--no-self-shadow",)),
+        Shot("mask-cast", mask, ("--no-self-shadow",)),
+        Shot("mask-nocast", mask, ("--no-self-shadow", "--no-cast")),
+        Shot("mask-dark", mask, ("--no-self-shadow", *dark)),
     )
 
 
@@ -214,7 +214,7 @@ def keep(name: str, reference: Reference, entry: dict[str, object], folder: Path
 def update(options: argparse.Namespace, name: str, version: str) -> bool:
     """Look at one reference, and make it where it is stale and this is no mere check. Whether it is good then."""
     lights = lights_of(options.kage, scene_path(name))
-    plan = shots(lights)
+    plan = shots(lights, options.scale)
     wanted: dict[str, object] = {
         "scene": references.scene_digest(TOP / scene_path(name)),
         "commands": commands(name, plan),
@@ -265,11 +265,15 @@ def parse_arguments(arguments: Sequence[str] | None) -> argparse.Namespace:
     parser.add_argument("--all", action="store_true", help="make the good ones again, too")
     parser.add_argument("--kage", type=Path, default=TOP / "build" / "float" / "kage", metavar="FILE",
                         help="the program that writes the scenes for POV-Ray (the project's build/float/kage)")
+    parser.add_argument("--scale", type=int, choices=range(1, 9), default=1, metavar="N",
+                        help="N times as wide and high as those in reference/ (1; for another --folder)")
     parser.add_argument("--folder", type=Path, default=FOLDER, metavar="DIR", help="where the references are (reference/)")
     options = parser.parse_args(arguments)
     for name in options.scenes:
         if name not in references.SCENES:
             parser.error(f"'{name}' is none of the scenes {', '.join(references.SCENES)}")
+    if options.scale != 1 and options.folder == FOLDER:
+        parser.error("--scale: the references in reference/ have their size; expected another --folder")
     if options.check and options.all:
         parser.error("--check makes nothing: it can't go with --all")
     options.kage, options.folder = options.kage.resolve(), options.folder.resolve()

@@ -6,24 +6,23 @@ changes on one page and keeps them where that is wanted.
 
 from __future__ import annotations
 
-import dataclasses
 import io
-import json
-import os
+import itertools
 import shlex
 import sys
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 from conftest import TOP
 
-sys.path[:0] = [str(TOP / "tests" / "regression"), str(TOP / "reference"), str(TOP / "bench")]
+sys.path[:0] = [str(TOP / "tests" / "regression"), str(TOP)]
 
 import cases  # noqa: E402
-import quality  # noqa: E402
-import references  # noqa: E402
+
+from bench import claims, plan, quality  # noqa: E402
+from reference import references  # noqa: E402
 
 KAGE = cases.PROGRAM
 
@@ -99,69 +98,49 @@ def test_accept_asks(kept: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest
 # ---- against POV-Ray's ----
 
 
-def show(name: str, old: np.ndarray, new: np.ndarray, options: quality.Options) -> str:
-    """Write the pictures of a failure; where they are, and how to make kage's again."""
-    cases.write_pictures(name, old, new)
-    height, width = old.shape[:2]
-    scene = name.partition("-")[0]
-    command = [os.path.relpath(KAGE, TOP), "render", f"scenes/{scene}.yaml", *options, "--size", f"{width}x{height}", "-o",
-               os.path.relpath(cases.OUT / f"{name}.exr", TOP)]
-    return f"look at {cases.OUT / name}-difference.png, beside -old.png (POV-Ray) and -new.png\nagain: {shlex.join(command)}"
-
-
-@pytest.mark.parametrize("kind", references.PICTURES)
-@pytest.mark.parametrize("scene", references.SCENES)
-def test_displaced_is_povrays(scene: str, kind: str) -> None:
-    truth, options = references.load(scene).pictures[kind], quality.DISPLACED[kind]
-    picture = references.stack(quality.render(KAGE, scene, truth.shape, options))
-    close = quality.share_close(picture, truth)
-    if close < quality.LEAST_CLOSE[kind]:
-        pytest.fail(f"{close:.2f} % of the pixels are within 1/255 of POV-Ray's, expected {quality.LEAST_CLOSE[kind]} %\n"
-                    + show(f"{scene}-povray-{kind}", truth, picture, options), pytrace=False)
+@pytest.fixture(scope="module")
+def bench(tmp_path_factory: pytest.TempPathFactory) -> plan.Bench:
+    """The bench's measures of the scenes, with the truths that they need."""
+    facts = {name: plan.facts(KAGE, name) for name in references.SCENES}
+    one = plan.Bench(KAGE, "tested", tmp_path_factory.mktemp("bench"), plan.LEVELS["normal"], facts)
+    for scene in facts.values():
+        for truth in ("exact", "flat"):
+            quality.make_truth(one, scene, truth)
+    return one
 
 
 @pytest.mark.parametrize("scene", references.SCENES)
-def test_displaced_mask_is_povrays(scene: str) -> None:
-    with ThreadPoolExecutor(2) as pool:
-        parity = quality.measure_parity(KAGE, scene, pool)
-    assert parity.mask_shadow > 5000
-    assert parity.mask <= quality.MOST_DIFFERENT, f"{parity.mask_differs} of {parity.mask_shadow} pixels of shadow differ"
+def test_displaced_is_povrays(bench: plan.Bench, scene: str) -> None:
+    """A failure tells the command that makes kage's picture."""
+    found = quality.measure(bench, bench.scenes[scene], "displaced")
+    again = f"beside reference/{scene}.exr: {found['command']}"
+    for kind, least in claims.LEAST_CLOSE.items():
+        assert found[f"{kind}_close"] >= least, f"% of the pixels within 1/255 of POV-Ray's ({kind}); {again}"
+    assert found["mask_shadow"] > 5000
+    assert found["mask"]["wrong"] <= claims.MOST_DIFFERENT["mask"], f"{found['mask_differs']} pixels of shadow differ; {again}"
 
 
 @pytest.fixture(scope="module")
-def waves() -> list[quality.Row]:
-    with ThreadPoolExecutor(2) as pool:
-        return quality.measure_scene(KAGE, quality.MERIT_SCENE, pool, (*quality.MERIT, "exact"))
+def waves(bench: plan.Bench) -> dict[str, dict[str, Any]]:
+    return {method: quality.measure(bench, bench.scenes["waves"], method) for method in (*claims.MERIT, "exact")}
 
 
-def test_order_of_merit(waves: list[quality.Row]) -> None:
-    """On function data with gentle slopes each order is better than the one before, against either truth."""
-    assert quality.merit_holds(waves), [(row.method, row.wrong_povray, row.wrong_exact) for row in waves]
+@pytest.mark.parametrize("truth", ["mask", "exact"])
+def test_order_of_merit(waves: dict[str, dict[str, Any]], truth: str) -> None:
+    """On function data with gentle slopes each order is better than the one before, against POV-Ray's truth and kage's."""
+    wrong = [waves[method][truth]["wrong"] for method in claims.MERIT]
+    assert all(a > b for a, b in itertools.pairwise(wrong)), wrong
 
 
-def test_exact_is_povrays_shadow(waves: list[quality.Row]) -> None:
+def test_exact_is_povrays_shadow(waves: dict[str, dict[str, Any]]) -> None:
     """The hybrid's shadow origin is the true hit, so on a plane its mask is POV-Ray's."""
-    assert waves[-1].wrong_povray <= quality.MOST_DIFFERENT
-    assert waves[-1].wrong_exact == waves[-1].tau_95 == 0
+    exact = waves["exact"]
+    assert exact["mask"]["wrong"] <= claims.MOST_DIFFERENT["mask"]
+    assert exact["exact"]["wrong"] == exact["tau"]["p95"] == exact["fell_back"] == 0
 
 
-def test_merit_can_fail(waves: list[quality.Row]) -> None:
-    worse = [dataclasses.replace(row, wrong_povray=waves[1].wrong_povray) if row.method == "2" else row for row in waves]
-    assert not quality.merit_holds(worse)
-
-
-def test_quality_prints_and_writes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
-    monkeypatch.setattr(quality, "METHODS", ("none", "1 bare"))
-    path = tmp_path / "q.json"
-    assert quality.main(["cube", "--markdown", "--json", str(path), "--kage", str(KAGE)]) == 0
-    text = capsys.readouterr().out
-    assert "| cube | none | 6.2" in text and "| cube | 1 bare | " in text and "PASS  cube: displaced as POV-Ray's" in text
-    content = json.loads(path.read_text())
-    assert [row["method"] for row in content["methods"]] == ["none", "1 bare"]
-    assert content["displaced"][0]["mask_shadow"] > 5000
-
-
-def test_quality_usage(capsys: pytest.CaptureFixture[str]) -> None:
-    with pytest.raises(SystemExit) as stop:
-        quality.main(["nosuch"])
-    assert stop.value.code == 2 and "'nosuch' is none of the scenes" in capsys.readouterr().err
+def test_without_a_reference_the_rest_is_measured(bench: plan.Bench, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setattr(plan.Bench, "references", tmp_path)
+    found = quality.measure(bench, bench.scenes["waves"], "0")
+    assert "mask" not in found and "`make reference` makes it again" in found["why"]
+    assert 0.5 < found["exact"]["wrong"] < 1

@@ -55,7 +55,7 @@ class Machine:
 
     def everything(self, without: Iterable[str] = ()) -> None:
         """All that kage needs, less what the test wants missing."""
-        for name in ("cc", "clang", "make", "python3", "povray", "pkg-config"):
+        for name in ("cc", "clang", "make", "python3", "povray", "valgrind", "chromium", "chromedriver", "pkg-config"):
             if name not in without:
                 self.program(name)
         if "pkg-config" not in without:
@@ -100,7 +100,7 @@ def machine(tmp_path: Path) -> Machine:
 def test_bootstrap_is_silent_where_nothing_is_missing(machine: Machine) -> None:
     machine.everything()
     machine.apt()
-    result = machine.bootstrap("build", "test", "python", "povray")
+    result = machine.bootstrap("build", "test", "python", "povray", "valgrind", "browser")
     assert (result.returncode, result.stdout, result.stderr) == (0, "", "")
     assert machine.calls("apt-get") == []
     assert machine.bootstrap(BOOTSTRAP="no").returncode == 0

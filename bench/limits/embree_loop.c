@@ -1,4 +1,4 @@
-/* A yardstick of bench/speed.py, not an example of style and no part of kage: what Embree, a general library
+/* A yardstick of the bench, not an example of style and no part of kage: what Embree, a general library
  * that is made for speed, needs for such a scene. The script builds it with the compile line below where Embree 3 is. */
 /* The peer: the same scene as a triangle mesh of N x N cells (N = 1: smooth) through Embree 3, 16 rays
  * a call, one thread, primary and shadow ray, Lambert. Prints build time and ns a pixel.

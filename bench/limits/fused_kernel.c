@@ -1,4 +1,4 @@
-/* A yardstick of bench/speed.py, not an example of style and no part of kage: how fast one hand-written loop, made for
+/* A yardstick of the bench, not an example of style and no part of kage: how fast one hand-written loop, made for
  * this one scene, can be. The script builds it with the compile line below. */
 /* The limit: figure 5's scene (plane with a 512x512 height map, cube, point light) in one hand-fused
  * loop, 1920x1080, one shadow ray a pixel, orders none (-1), 0 and 1. No general tracer can be much

@@ -1,0 +1,103 @@
+"""What each method costs, what it buys, and when to use which: measures, then writes the report.
+
+Results are kept in OUT/results.jsonl as they come. Interrupted at any moment and started again, the bench goes on where it was;
+it repeats only what has another scene, program or options. The report is OUT/index.html, with report.md, report.json and CSV.
+
+status: 0 the report is made, 1 it can't be, 2 wrong usage, 3 it is made but incomplete, 130 interrupted
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import signal
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from bench import claims, cost, plan, programs, quality, report, summary, sweep
+from bench.plan import LEVELS, TITLES, Bench
+from bench.programs import KAGE, TOP, MeasureError
+from bench.runner import Job, Runner
+from bench.store import Store, StoreError
+
+PARTS = ("quality", "cost", "sweeps")
+
+
+def parse_arguments(arguments: Sequence[str] | None) -> argparse.Namespace:
+    about, _, status = (__doc__ or "").partition("\nstatus:")
+    parser = argparse.ArgumentParser(prog="python -m bench", description=about, epilog="status:" + status,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--level", choices=LEVELS, default="normal", help="how much is measured (normal)")
+    parser.add_argument("--only", action="append", choices=PARTS, metavar="PART",
+                        help=f"measure only this part; may be given again: {', '.join(PARTS)}")
+    parser.add_argument("--scene", action="append", choices=TITLES, metavar="SCENE",
+                        help=f"measure only this scene; may be given again: {', '.join(TITLES)}")
+    parser.add_argument("--out", type=Path, default=TOP / "out" / "bench", metavar="DIR", help="(out/bench)")
+    parser.add_argument("--kage", type=Path, default=KAGE, metavar="FILE", help="the program (build/float/kage)")
+    options = parser.parse_args(arguments)
+    options.kage, options.out = options.kage.resolve(), options.out.resolve()
+    if not os.access(options.kage, os.X_OK):
+        parser.error(f"{options.kage} is not there, or no program: `make` makes it")
+    return options
+
+
+def plan_jobs(bench: Bench, parts: Sequence[str]) -> tuple[list[Job], list[str]]:
+    """All jobs, and why others can't be."""
+    jobs, faults = [], []
+    if "quality" in parts:
+        jobs += quality.jobs(bench)
+    if "sweeps" in parts:
+        jobs += sweep.jobs(bench)
+    if "cost" in parts:
+        found, faults = cost_jobs(bench)
+        jobs += found
+    return jobs, faults
+
+
+def cost_jobs(bench: Bench) -> tuple[list[Job], list[str]]:
+    built, faults = cost.limits(bench) if bench.level.yardsticks and "cube" in bench.scenes else ({}, [])
+    scenes = cost.povray_scenes(bench) if programs.has_povray() else []
+    version = programs.version(["povray", "--version"], r"POV-Ray \d\S*")
+    jobs = cost.kage_once(bench) + [made for *_, made in scenes if made]
+    for number in range(bench.level.rounds):
+        jobs += cost.kage_round(bench, number) + cost.povray_round(bench, number, version, scenes)
+        jobs += cost.limits_round(number, built)
+    return jobs + cost.povray_memory(bench, version, scenes) + cost.limits_memory(built), faults
+
+
+def bench(options: argparse.Namespace) -> int:
+    names = options.scene or TITLES
+    facts = {name: plan.facts(options.kage, name) for name in TITLES if name in names}
+    about = Bench(options.kage, programs.file_digest(options.kage), options.out, LEVELS[options.level], facts)
+    with Store(options.out / "results.jsonl") as store:
+        jobs, faults = plan_jobs(about, options.only or PARTS)
+        runner = Runner(store)
+        runner.run(jobs)
+        data = summary.summarise(about, store, jobs, runner.failed, claims.claims)
+    data["incomplete"] += faults
+    data["incomplete"] += report.write(data, options.out)
+    data["complete"] = not data["incomplete"]
+    report.write_all(options.out, {"report.json": json.dumps(data, indent=1) + "\n"})
+    for line in data["incomplete"] + data["notes"]:
+        print(f"bench: {line}", file=sys.stderr)
+    print(f"{options.out / 'index.html'}")
+    return 0 if data["complete"] else 3
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    options = parse_arguments(arguments)
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    try:
+        return bench(options)
+    except (MeasureError, StoreError, OSError) as error:
+        print(f"bench: {error}", file=sys.stderr)
+        return 1
+    except KeyboardInterrupt:
+        print("bench: interrupted; the same command goes on from here", file=sys.stderr)
+        return 130
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,227 @@
+"""Running the programs that are measured, and reading what they print."""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import os
+import platform
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+TOP = Path(__file__).resolve().parent.parent
+LIMITS = TOP / "bench" / "limits"
+KAGE = TOP / "build" / "float" / "kage"
+
+Size = tuple[int, int]
+Options = tuple[str, ...]
+Word = str | Path
+
+
+class MeasureError(Exception):
+    """Something could not be measured; the message says what and why."""
+
+
+# Running ------------------------------------------------------------------------------------------
+
+
+def shown(command: Sequence[Word]) -> str:
+    """A command to be typed in the project's top."""
+    return shlex.join(str(word).removeprefix(f"{TOP}/") for word in command)
+
+
+def run(command: Sequence[Word]) -> str:
+    """What the command prints, on both streams."""
+    env = os.environ | {"LC_ALL": "C"}
+    try:
+        done = subprocess.run(command, cwd=TOP, env=env, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                              stderr=subprocess.STDOUT, text=True, errors="replace", check=False)
+    except OSError as error:
+        raise MeasureError(f"{shown(command)}: {error.strerror}") from error
+    if done.returncode:
+        last = done.stdout.strip().splitlines()[-1:]
+        raise MeasureError(f"{shown(command)}: status {done.returncode}{': ' if last else ''}{''.join(last)}")
+    return done.stdout
+
+
+# A process begins with the peak memory of the one it comes from. This one is smaller than all that are measured.
+LAUNCHER = "import os, sys; _, s, u = os.wait4(os.spawnvp(os.P_NOWAIT, sys.argv[1], sys.argv[1:]), 0); " \
+           "print('peak', u.ru_maxrss, 'kB'); sys.exit(os.waitstatus_to_exitcode(s))"
+
+
+def peak_memory(command: Sequence[Word]) -> int:
+    """Bytes, at their highest. Not below the 10 MB of the Python that starts the command."""
+    found = re.search(r"^peak (\d+) kB$", run([sys.executable, "-I", "-S", "-c", LAUNCHER, *command]), re.MULTILINE)
+    if not found:
+        raise MeasureError(f"{shown(command)}: its peak memory is not known")
+    return int(found[1]) * (1 if sys.platform == "darwin" else 1024)
+
+
+@contextlib.contextmanager
+def pinned() -> Iterator[None]:
+    """All that is started meanwhile runs on one processor, the last; where the system has no such thing, anywhere."""
+    if not hasattr(os, "sched_setaffinity"):
+        yield
+        return
+    before = os.sched_getaffinity(0)
+    os.sched_setaffinity(0, {max(before)})
+    try:
+        yield
+    finally:
+        os.sched_setaffinity(0, before)
+
+
+def version(command: Sequence[Word], pattern: str = r".+") -> str:
+    """The first match in what a command prints; nothing where it fails."""
+    try:
+        found = re.search(pattern, run(command))
+    except MeasureError:
+        return ""
+    return found[0] if found else ""
+
+
+def file_digest(*paths: Path) -> str:
+    sha = hashlib.sha256()
+    for path in paths:
+        sha.update(path.read_bytes())
+    return sha.hexdigest()[:16]
+
+
+def processor() -> str:
+    info = Path("/proc/cpuinfo")
+    model = re.search(r"model name\s*: (.*)", info.read_text()) if info.exists() else None
+    return f"{model[1] if model else platform.processor() or platform.machine()}, {os.cpu_count()} processors"
+
+
+# kage ---------------------------------------------------------------------------------------------
+
+
+def method_options(method: str) -> Options:
+    """The options of kage for one of the bench's names: `2 bare` is order 2 without the guard."""
+    if method == "displaced":
+        return ("--surface", "displaced")
+    name, _, bare = method.partition(" ")
+    return ("--shadow", name, *(["--no-guard"] if bare else []))
+
+
+def size_options(size: Size) -> Options:
+    return ("--size", f"{size[0]}x{size[1]}")
+
+
+def set_options(sets: dict[str, object]) -> Options:
+    return tuple(word for path, value in sets.items() for word in ("--set", f"{path}={value}"))
+
+
+def parse_kage(text: str) -> dict[str, float]:
+    """ns a sample of the whole `render` and of each stage, from `kage render --stats`."""
+    found = re.findall(r"^ *(\w+) .*?([0-9.]+) ns a (?:sample|pixel)", text, re.MULTILINE)
+    times = {name: float(value) for name, value in found}
+    if times.get("render", 0) <= 0:
+        raise MeasureError(f"kage --stats: no time of the render in {text[:200]!r}")
+    return times
+
+
+def parse_counts(text: str) -> dict[str, int]:
+    """What `kage render --stats` counts: rays, shadow_rays, lookups, bumped, fell_back."""
+    rays = re.search(r"^camera rays (\d+), shadow rays (\d+), height look-ups (\d+)$", text, re.MULTILINE)
+    bumped = re.search(r"^bumped samples (\d+) by .*?, fell back (\d+)", text, re.MULTILINE)
+    if not rays or not bumped:
+        raise MeasureError(f"kage --stats: no counts in {text[-300:]!r}")
+    names = ("rays", "shadow_rays", "lookups", "bumped", "fell_back")
+    return {name: int(value) for name, value in zip(names, rays.groups() + bumped.groups(), strict=True)}
+
+
+def parse_check(text: str) -> dict[str, object]:
+    """A scene's one light, its one bumped object, and the slopes of that, from `kage check`."""
+    lights = re.findall(r"^light (\S+) at (.*)$", text, re.MULTILINE)
+    bumped = re.findall(r"^object (\S+): .*, bump by", text, re.MULTILINE)
+    slopes = re.findall(r"^ +slope +median ([0-9.e-]+), 95 % below ([0-9.e-]+)", text, re.MULTILINE)
+    if not len(lights) == len(bumped) == len(slopes) == 1:
+        raise MeasureError(f"the bench is made for scenes of one light and one bumped object, here are {len(lights)} and "
+                           f"{len(bumped)}")
+    (light, at), (median, most) = lights[0], slopes[0]
+    return {"light": light, "at": tuple(float(x) for x in at.split(",")), "receiver": bumped[0], "slope_median": float(median),
+            "slope_95": float(most)}
+
+
+def parse_callgrind(text: str) -> int:
+    """The number of instructions that callgrind collected."""
+    found = re.search(r"Collected *: *(\d+)", text)
+    if not found or int(found[1]) == 0:
+        raise MeasureError("callgrind collected nothing: has kage still a function `render`, and its symbols?")
+    return int(found[1])
+
+
+def count_instructions(command: Sequence[Word]) -> int:
+    """In the function `render` of kage."""
+    with tempfile.TemporaryDirectory() as folder:
+        callgrind = ["valgrind", "--tool=callgrind", f"--callgrind-out-file={folder}/callgrind", "--toggle-collect=render"]
+        return parse_callgrind(run([*callgrind, *command]))
+
+
+# POV-Ray ------------------------------------------------------------------------------------------
+
+
+def povray_command(scene: Path, size: Size) -> list[Word]:
+    """No file, no display, no antialiasing, one thread; -V for no count of pixels on the way."""
+    return ["povray", f"+I{str(scene).removeprefix(f'{TOP}/')}", f"+W{size[0]}", f"+H{size[1]}", "+WT1", "-A", "-D", "-F", "-P",
+            "-V"]
+
+
+def parse_povray(text: str) -> dict[str, float]:
+    """Seconds of POV-Ray's parsing and of its trace. Its first lines name a certain Aaron too: only the statistics have the
+    brackets."""
+    times = {}
+    for name in ("Parse", "Trace"):
+        found = re.search(rf"{name} Time:.*\(([0-9.]+) seconds\)", text)
+        if not found:
+            raise MeasureError(f"POV-Ray: no '{name} Time' in the end of its output: {text[-300:]!r}")
+        times[name.lower()] = float(found[1])
+    return times
+
+
+def has_povray() -> bool:
+    return shutil.which("povray") is not None
+
+
+# The yardsticks -----------------------------------------------------------------------------------
+
+
+def parse_fused(text: str) -> dict[str, float]:
+    """ns a pixel of each order of the hand-fused loop; it calls none -1."""
+    found = re.findall(r"^order +(-?\d+) .*?([0-9.]+) ns/pixel", text, re.MULTILINE)
+    if not found:
+        raise MeasureError(f"fused_kernel: no 'ns/pixel' in {text[:200]!r}")
+    return {"none" if order == "-1" else order: float(ns) for order, ns in found}
+
+
+def parse_embree(text: str) -> dict[str, float]:
+    """ns a pixel of the loop over Embree, and the seconds of its build."""
+    ns, build = re.search(r"([0-9.]+) ns/pixel", text), re.search(r"build ([0-9.]+) ms", text)
+    if not ns or not build:
+        raise MeasureError(f"embree_loop: no 'ns/pixel' or no 'build' in {text[:200]!r}")
+    return {"ns": float(ns[1]), "build_s": float(build[1]) / 1e3}
+
+
+def compile_line(source: str) -> list[str]:
+    """The compile command in a C source's opening comment: from `gcc` to `&&`, with continued lines joined."""
+    comment = re.sub(r"\\\n \* *", " ", source)
+    found = re.search(r"^ \* +(gcc .*?)(?:&&.*)?$", comment, re.MULTILINE)
+    if not found:
+        raise MeasureError("no compile line in the comments of the source")
+    return shlex.split(found[1])
+
+
+def build_limit(name: str, folder: Path) -> Path:
+    """Compile a yardstick by the line in its comment."""
+    source, program = LIMITS / f"{name}.c", folder / name
+    folder.mkdir(parents=True, exist_ok=True)
+    places: dict[str, Word] = {f"{name}.c": source, name: program}
+    run([places.get(word, word) for word in compile_line(source.read_text())])
+    return program

@@ -1,0 +1,223 @@
+"""The tables and pictures of the README and of docs/, from a bench's result.
+
+    scripts/venv python -m bench.readme           keep out/bench's result in bench/result.json, and write all from it
+    scripts/venv python -m bench.readme --check   only tell what disagrees with bench/result.json (a test does)
+
+`make readme` renders and measures first. What is generated stands between <!-- bench:NAME --> and <!-- /bench:NAME -->.
+
+status: 0 all agrees, 1 something does not (--check) or there is no result, 2 wrong usage
+"""
+
+from __future__ import annotations
+
+import argparse
+import hashlib
+import json
+import re
+import sys
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from bench.programs import TOP
+
+Data = dict[str, Any]
+
+RESULT = TOP / "bench" / "result.json"
+SHEET = "docs/figures.png"  # from `make render`
+PLOT = "docs/cost-error.svg"
+PLOTTED = "cube"
+README_METHODS = ("none", "0", "1", "2", "2+", "march:4", "exact")
+DETAILS = ("none", "0", "1", "1 bare", "2", "2 bare", "2+", "iter:2", "iter:4", "march:2", "march:4", "march:8", "exact")
+
+
+class ReadmeError(Exception):
+    """What can't be generated, in one line."""
+
+
+# What is kept -------------------------------------------------------------------------------------
+
+
+def picked(data: Data, *keys: str) -> Data:
+    return {key: data[key] for key in keys}
+
+
+def kept(report: Data, sheet: str) -> Data:
+    """What the tables and the plot need of a report, and the digest of the sheet's pixels."""
+    costs = {scene: {"methods": {m: picked(c, "ns", "added", "instructions_added") for m, c in found["methods"].items()}}
+             for scene, found in report["cost"]["scenes"].items()}
+    quality = {scene: {m: picked(q, "mask", "exact") for m, q in methods.items()}
+               for scene, methods in report["quality"]["scenes"].items()}
+    return picked(report, "level", "circumstances", "methods", "scenes") | {
+        "cost": {"size": report["cost"]["size"], "scenes": costs,
+                 "peers": [picked(peer, "name", "scene", "ns", "build_s", "memory") for peer in report["cost"]["peers"]]},
+        "quality": picked(report["quality"], "truth", "parity") | {"scenes": quality},
+        "claims": [picked(claim, "id", "who", "sentence", "source", "verdict") for claim in report["claims"]],
+        "sheet": sheet,
+    }
+
+
+def pixels_digest(path: Path) -> str:
+    """Not of the bytes, which may change with the library that packs them."""
+    from PIL import Image
+
+    with Image.open(path) as image:
+        pixels = np.asarray(image.convert("RGB"))
+    return hashlib.sha256(repr(pixels.shape).encode() + pixels.tobytes()).hexdigest()
+
+
+# Tables -------------------------------------------------------------------------------------------
+
+
+def table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    lines = ["| " + " | ".join(head) + " |", "|---" + "|---:" * (len(head) - 1) + "|"]
+    return "\n".join(lines + ["| " + " | ".join(row) + " |" for row in rows])
+
+
+def percent(value: float | None, digits: int = 2) -> str:
+    return "–" if value is None else f"{value:.{digits}f} %"
+
+
+def wrong_table(data: Data, methods: Sequence[str]) -> str:
+    rows = []
+    for scene, found in data["quality"]["scenes"].items():
+        about = data["scenes"][scene]
+        name = f"{about['title']}; slopes {about['slope_median']:.2f}, {about['slope_95']:.2f}"
+        rows.append([name, *(percent(found[m]["mask"] and found[m]["mask"]["wrong"]) for m in methods if m in found)])
+    return table(["scene; slope: median, 95 % below", *(m for m in methods if m in data["methods"])], rows)
+
+
+def parity_text(data: Data) -> str:
+    parity = data["quality"]["parity"].values()
+    differs, shadow = sum(p["mask_differs"] for p in parity), sum(p["mask_shadow"] for p in parity)
+    return (f"kage's own displacement (`--surface displaced`) is within 1/255 of POV-Ray's on {min(p['cast'] for p in parity):.2f} % of the "
+            f"pixels and more, and on {min(p['self'] for p in parity):.2f} % with rough surfaces' own shadows; of {shadow} pixels of cast\n"
+            f"shadow {differs} {'differs' if differs == 1 else 'differ'}.")
+
+
+def interval_text(value: Data | None, form: str) -> str:
+    return "" if value is None else f"{value['median']:{form}} ({value['low']:{form}} to {value['high']:{form}})"
+
+
+def cost_rows(data: Data, methods: Sequence[str]) -> list[list[str]]:
+    found = data["cost"]["scenes"][PLOTTED]["methods"]
+    rows = []
+    for method in methods:
+        cost = found.get(method)
+        if cost and cost["ns"]:
+            counted = cost["instructions_added"]
+            rows.append([f"kage, {method}", f"{cost['ns']['median']:.1f}", interval_text(cost["added"], "+.0f"),
+                         "" if counted is None else f"{counted:+.0f}"])
+    return rows
+
+
+def peer_rows(data: Data) -> list[list[str]]:
+    return [[peer["name"], f"{peer['ns']['median']:.0f}", "", ""] for peer in data["cost"]["peers"] if peer["scene"] == PLOTTED]
+
+
+def cost_table(data: Data, methods: Sequence[str]) -> str:
+    width, height = data["cost"]["size"]
+    about = data["circumstances"]
+    where = (f"{width} x {height} pixels on one thread of {about['processor'].partition(',')[0]}, {about['date']}, commit {about['commit']}; "
+             "medians, in brackets the bootstrap 95 % interval.")
+    return where + "\n\n" + table(["figure 5's scene", "ns a pixel", "% over none", "by instructions"],
+                                  cost_rows(data, methods) + peer_rows(data))
+
+
+def claims_table(data: Data) -> str:
+    return table(["claim", "verdict"], [[f"{claim['sentence']} ({claim['source']})", claim["verdict"]] for claim in data["claims"]])
+
+
+# Where they stand ---------------------------------------------------------------------------------
+
+REGIONS: dict[str, dict[str, Callable[[Data], str]]] = {
+    "README.md": {
+        "quality": lambda data: wrong_table(data, README_METHODS),
+        "parity": parity_text,
+        "cost": lambda data: cost_table(data, README_METHODS),
+        "claims": claims_table,
+    },
+    "docs/method.md": {"quality": lambda data: wrong_table(data, DETAILS)},
+    "docs/design.md": {"cost": lambda data: cost_table(data, (*DETAILS, "displaced"))},
+}
+
+
+def generated(text: str, name: str, content: str) -> str:
+    """The text with the region's content replaced. There must be one such region."""
+    pattern = re.compile(rf"(<!-- bench:{name} -->\n).*?(<!-- /bench:{name} -->)", re.DOTALL)
+    if len(pattern.findall(text)) != 1:
+        raise ReadmeError(f"no place, or more than one, between <!-- bench:{name} --> and <!-- /bench:{name} -->")
+    return pattern.sub(lambda found: f"{found[1]}{content}\n{found[2]}", text)
+
+
+def plot(data: Data) -> str:
+    """On white, as a README's background is not known."""
+    from bench import plots
+
+    drawn = plots.cost_error(data, PLOTTED)
+    if drawn is None:
+        raise ReadmeError(f"the result has no costs or no errors of {PLOTTED} to be plotted")
+    head, rest = drawn.split(">", 1)
+    if "xmlns=" not in head:
+        head += ' xmlns="http://www.w3.org/2000/svg"'
+    return (head + '><rect width="100%" height="100%" fill="white"/>' + rest).replace("currentColor", "#202020") + "\n"
+
+
+def files(data: Data) -> dict[str, str]:
+    """What each generated file must hold."""
+    found = {PLOT: plot(data)}
+    for name, regions in REGIONS.items():
+        text = (TOP / name).read_text(encoding="utf-8")
+        for region, content in regions.items():
+            text = generated(text, region, content(data))
+        found[name] = text
+    return found
+
+
+def disagreements(data: Data) -> list[str]:
+    found = [name for name, text in files(data).items()
+             if not (TOP / name).exists() or (TOP / name).read_text(encoding="utf-8") != text]
+    return found + ([SHEET] if pixels_digest(TOP / SHEET) != data["sheet"] else [])
+
+
+def write(path: Path, content: bytes) -> None:
+    aside = path.with_name(path.name + ".new")
+    aside.write_bytes(content)
+    aside.replace(path)
+
+
+def update(report: Data, sheet: Path) -> None:
+    data = kept(report, pixels_digest(sheet))
+    texts = files(data)
+    write(RESULT, (json.dumps(data, indent=1) + "\n").encode())
+    write(TOP / SHEET, sheet.read_bytes())
+    for name, text in texts.items():
+        write(TOP / name, text.encode())
+
+
+# The command line ---------------------------------------------------------------------------------
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    about, _, status = (__doc__ or "").partition("\nstatus:")
+    parser = argparse.ArgumentParser(prog="python -m bench.readme", description=about, epilog="status:" + status,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--check", action="store_true", help="only tell what disagrees")
+    options = parser.parse_args(arguments)
+    try:
+        if options.check:
+            wrong = disagreements(json.loads(RESULT.read_text()))
+            for name in wrong:
+                print(f"readme.py: {name} is not what bench/result.json says: `make readme` writes it", file=sys.stderr)
+            return 1 if wrong else 0
+        update(json.loads((TOP / "out" / "bench" / "report.json").read_text()), TOP / "out" / "figures.png")
+    except (ReadmeError, OSError, ValueError) as error:
+        print(f"readme.py: {error}", file=sys.stderr)
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
