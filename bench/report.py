@@ -190,6 +190,7 @@ def write(report: Report, folder: Path) -> list[str]:
         texts["index.html"], messages = page.render(report, folder)
     except ImportError:
         messages = ["Jinja2 is missing: index.html is left out (scripts/venv)"]
+        (folder / "index.html").unlink(missing_ok=True)  # it would be of another result
     folder.mkdir(parents=True, exist_ok=True)
     write_all(folder, texts)
     return messages

@@ -15,7 +15,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
-from bench import cost, programs, quality, stats, sweep
+from bench import cost, programs, quality, stats, sweep, tables
 from bench.plan import TITLES, Bench
 from bench.programs import TOP
 from bench.store import Store
@@ -189,7 +189,8 @@ def quality_of(bench: Bench, results: Results) -> Data:
         if "mask_differs" in own:
             parity[scene] = {"self": own["self_close"], "cast": own["cast_close"], "mask": own["mask"]["wrong"],
                              "mask_differs": own["mask_differs"], "mask_shadow": own["mask_shadow"]}
-    return {"truth": povray_of_references(bench), "scenes": scenes, "parity": parity}
+    return {"truth": povray_of_references(bench), "picture_size": list(quality.picture_size(bench)), "scenes": scenes,
+            "parity": parity}
 
 
 def povray_of_references(bench: Bench) -> str | None:
@@ -244,7 +245,7 @@ def sweeps(bench: Bench, results: Results, data: Data) -> list[Data]:
             "id": f"{one.scene}-{one.id}", "scene": one.scene, "title": sweep.TITLES[one.id], "about": one.about(),
             "x": {"name": one.x, "label": sweep.AXES[one.x], "values": list(one.xs)},
             "y": {"name": one.y, "label": sweep.AXES[one.y], "values": list(one.ys)},
-            "by_cost": sweep.by_cost(costs_of(data, one.scene), sweep.methods(bench)),
+            "by_cost": sweep.by_cost(costs_of(data, one.scene), [m for m in sweep.methods(bench) if not m.endswith(" bare")]),
             "wrong": [[cell(value) for value in row] for row in values],
             "shadow_pixels": [[value and value["shadow"] for value in row] for row in values],
         })
@@ -313,31 +314,21 @@ def displaced_times(data: Data) -> dict[str, float]:
     return found
 
 
-def rule(data: Data, most: float = 1.0) -> str:
-    """The largest slope up to which a method is good enough at every height of the eye from 30 degrees."""
+def rule(data: Data, most: float = 1.0, least_view: float = 30) -> str:
+    """The largest slope up to which a method is good enough at every height of the eye from least_view on."""
     for one in data["sweeps"]:
         if (one["x"]["name"], one["y"]["name"]) != ("slope", "view"):
             continue
+        rows = [j for j, view in enumerate(one["y"]["values"]) if view >= least_view]
         texts = []
         for method in ("0", "2", "march:4"):
-            good = largest_good(one, method, most, 30)
-            if good:
-                texts.append(f"{method} up to slope {good:g}")
+            reached = [tables.reach(one, row, method, most) for row in rows]
+            if reached and None not in reached:
+                texts.append(f"{method} up to slope {min(reached):g}")
         if texts:
-            return (f"When: with the eye 30 degrees and more above the ground, at most {most:g} % of the shadow is wrong by "
+            return (f"When: with the eye {least_view:g} degrees and more above the ground, at most {most:g} % of the shadow is wrong by "
                     + ", ".join(texts) + f" ({one['scene']}).")
     return "When: not measured."
-
-
-def largest_good(one: Data, method: str, most: float, least_y: float) -> float | None:
-    """The last x of a sweep for which all y from least_y on, and all smaller x, have at most so many wrong pixels."""
-    best = None
-    for i, x in enumerate(one["x"]["values"]):
-        column = [row[i] for row, y in zip(one["wrong"], one["y"]["values"], strict=True) if y >= least_y]
-        if not all(c and c.get(method, most + 1) <= most for c in column):
-            break
-        best = x
-    return best
 
 
 def summarise(bench: Bench, store: Store, jobs: Sequence[Any], failed: dict[str, str],

@@ -103,7 +103,7 @@ def make_quality() -> dict:
                 "command": f"build/float/kage render scenes/{scene}.yaml --shadow '{method}' -o {scene}.png"}
     parity = {scene: {"self": 99.97, "cast": 99.99, "mask": 0.005, "mask_differs": 1, "mask_shadow": pixels}
               for scene, (*_, pixels) in SCENES.items()}
-    return {"truth": "POV-Ray 3.7.0.10", "scenes": scenes, "parity": parity}
+    return {"truth": "POV-Ray 3.7.0.10", "picture_size": [320, 240], "scenes": scenes, "parity": parity}
 
 
 SWEPT = ("none", "0", "1", "2", "2+", "iter:2", "iter:4", "march:2", "march:4", "march:8")  # from cheap to dear
