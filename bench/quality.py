@@ -208,8 +208,9 @@ def jobs(bench: Bench) -> list[Job]:
     found = []
     for scene in bench.scenes.values():
         for name in ("exact", "flat"):
-            found.append(Job(f"truth {scene.name} {name}", inputs(bench, scene), functools.partial(make_truth, bench, scene, name),
-                             Stage.TRUTHS, 0.6, (bench.truth(scene.name, name),)))
+            found.append(Job(f"truth {scene.name} {name}", inputs(bench, scene),
+                             functools.partial(make_truth, bench, scene, name), Stage.TRUTHS, 0.6,
+                             (bench.truth(scene.name, name),)))
         shown = tuple(bench.picture(scene.name, f"povray-{kind}") for kind in references.PICTURES)
         found.append(Job(f"reference {scene.name}", inputs(bench, scene), functools.partial(save_references, bench, scene),
                          Stage.MEASURES, 0.1, shown))

@@ -92,9 +92,10 @@ def wrong_table(data: Data, methods: Sequence[str]) -> str:
 def parity_text(data: Data) -> str:
     parity = data["quality"]["parity"].values()
     differs, shadow = sum(p["mask_differs"] for p in parity), sum(p["mask_shadow"] for p in parity)
-    return (f"kage's own displacement (`--surface displaced`) is within 1/255 of POV-Ray's on {min(p['cast'] for p in parity):.2f} % of the "
-            f"pixels and more, and on {min(p['self'] for p in parity):.2f} % with rough surfaces' own shadows; of {shadow} pixels of cast\n"
-            f"shadow {differs} {'differs' if differs == 1 else 'differ'}.")
+    cast, own = (min(p[kind] for p in parity) for kind in ("cast", "self"))
+    return ("kage's own displacement (`--surface displaced`) is within 1/255 of POV-Ray's on "
+            f"{cast:.2f} % of the pixels\nand more, and on {own:.2f} % with rough surfaces' own shadows; of {shadow} pixels of "
+            f"cast shadow {differs} {'differs' if differs == 1 else 'differ'}.")
 
 
 def interval_text(value: Data | None, form: str) -> str:
@@ -120,14 +121,15 @@ def peer_rows(data: Data) -> list[list[str]]:
 def cost_table(data: Data, methods: Sequence[str]) -> str:
     width, height = data["cost"]["size"]
     about = data["circumstances"]
-    where = (f"{width} x {height} pixels on one thread of {about['processor'].partition(',')[0]}, {about['date']}, commit {about['commit']}; "
-             "medians, in brackets the bootstrap 95 % interval.")
+    where = (f"{width} x {height} pixels on one thread of {about['processor'].partition(',')[0]}, {about['date']}, commit "
+             f"{about['commit']};\nmedians, in brackets the bootstrap 95 % interval.")
     return where + "\n\n" + table(["figure 5's scene", "ns a pixel", "% over none", "by instructions"],
                                   cost_rows(data, methods) + peer_rows(data))
 
 
 def claims_table(data: Data) -> str:
-    return table(["claim", "verdict"], [[f"{claim['sentence']} ({claim['source']})", claim["verdict"]] for claim in data["claims"]])
+    rows = [[f"{claim['sentence']} ({claim['source']})", claim["verdict"]] for claim in data["claims"]]
+    return table(["claim", "verdict"], rows)
 
 
 # Where they stand ---------------------------------------------------------------------------------

@@ -1,8 +1,8 @@
 """The results, kept as they come: a file of JSON lines that only grows.
 
 Each line is one finished job: its name, what it depended on (`inputs`), when, by which commit and how long it took, and its
-value. A job whose line is there with the same inputs is not done again, whatever else was measured since. A line that a crash has torn is passed over: its job
-was not finished.
+value. A job whose line is there with the same inputs is not done again, whatever else was measured since. A line that a crash
+has torn is passed over: its job was not finished.
 """
 
 from __future__ import annotations

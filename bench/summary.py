@@ -74,7 +74,8 @@ def circumstances(bench: Bench) -> Data:
     return {
         "date": datetime.now(UTC).date().isoformat(), "kage": programs.version([bench.kage, "--version"]),
         "commit": describe.removesuffix("-dirty"), "dirty": describe.endswith("-dirty"), "processor": programs.processor(),
-        "memory": memory, "system": f"{platform.system()} {platform.release()}", "compiler": programs.version(["gcc", "--version"]),
+        "memory": memory, "system": f"{platform.system()} {platform.release()}",
+        "compiler": programs.version(["gcc", "--version"]),
         "povray": programs.version(["povray", "--version"], r"POV-Ray \d\S*") or None,
         "packages": {name: package_version(name) for name in ("numpy", *PACKAGES)}, "load": os.getloadavg(),
         "command": f"make bench BENCH={bench.level.name}",
@@ -87,13 +88,15 @@ def incomplete(bench: Bench, failed: dict[str, str]) -> list[str]:
         lines.append("POV-Ray is missing: its times are left out (`scripts/bootstrap povray` installs it)")
     packages = missing_packages()
     if packages:
-        lines.append(f"Python packages are missing: {', '.join(packages)}; what needs them is left out (`scripts/venv` installs them)")
+        lines.append(f"Python packages are missing: {', '.join(packages)}; what needs them is left out (`scripts/venv` "
+                     "installs them)")
     if not shutil.which("valgrind"):
         lines.append("valgrind is missing: instructions are not counted (Debian: valgrind)")
     reasons: dict[str, list[str]] = {}
     for name, why in failed.items():
         reasons.setdefault(why, []).append(name)
-    return lines + [f"{names[0]}{f' and {len(names) - 1} more' if len(names) > 1 else ''}: {why}" for why, names in reasons.items()]
+    return lines + [f"{names[0]}{f' and {len(names) - 1} more' if len(names) > 1 else ''}: {why}"
+                    for why, names in reasons.items()]
 
 
 # Cost ---------------------------------------------------------------------------------------------
@@ -126,9 +129,10 @@ def median(values: Sequence[float]) -> float:
     return stats.interval(values)["median"]
 
 
-def peer(name: str, scene: str, command: str, note: str, times: Sequence[float], build: Sequence[float], memory: Data | None) -> Data:
-    return {"name": name, "scene": scene, "ns": stats.interval(times) if times else None, "build_s": median(build) if build else None,
-            "memory": memory and memory["memory"], "command": command, "note": note}
+def peer(name: str, scene: str, command: str, note: str, times: Sequence[float], build: Sequence[float],
+         memory: Data | None) -> Data:
+    return {"name": name, "scene": scene, "ns": stats.interval(times) if times else None,
+            "build_s": median(build) if build else None, "memory": memory and memory["memory"], "command": command, "note": note}
 
 
 def povray_peers(bench: Bench, results: Results) -> list[Data]:
@@ -149,8 +153,8 @@ def limit_peers(bench: Bench, results: Results) -> list[Data]:
     found = []
     fused = results.rounds("time cube", cost.FUSED, count=bench.level.rounds)
     for order in fused[0]["orders"] if fused else ():
-        found.append(peer(f"{cost.FUSED}, {order}", "cube", "bench/limits/fused_kernel.c", note, [t["orders"][order] for t in fused],
-                          [], None))
+        found.append(peer(f"{cost.FUSED}, {order}", "cube", "bench/limits/fused_kernel.c", note,
+                          [t["orders"][order] for t in fused], [], None))
     for name in cost.EMBREE:
         times = results.rounds("time cube", name, count=bench.level.rounds)
         found.append(peer(name, "cube", "bench/limits/embree_loop.c", note, [t["ns"] for t in times],
@@ -169,8 +173,8 @@ def costs(bench: Bench, results: Results) -> Data:
 
 
 def notes(data: Data) -> list[str]:
-    return [f"{scene}: repeats of the same render were {noise:.1f} % apart (half the interquartile range): the machine was too noisy "
-            "for small differences of cost; instruction counts are not touched by that"
+    return [f"{scene}: repeats of the same render were {noise:.1f} % apart (half the interquartile range): the machine was too "
+            "noisy for small differences of cost; instruction counts are not touched by that"
             for scene, noise in data["cost"]["noise"].items() if noise is not None and noise > NOISY]
 
 
@@ -217,7 +221,8 @@ def pictures(bench: Bench) -> Data:
                        "wrong": relative(bench.picture(scene, f"{quality.slug(m)}.wrong"))} for m in bench.level.methods}
         names = {"cast": "POV-Ray, displaced, only other objects' shadows", "self": "POV-Ray, displaced, all shadows"}
         shown = [{"name": name, "file": relative(bench.picture(scene, f"povray-{kind}"))} for kind, name in names.items()]
-        scenes[scene] = {"methods": {m: p for m, p in methods.items() if p["file"]}, "references": [p for p in shown if p["file"]]}
+        scenes[scene] = {"methods": {m: p for m, p in methods.items() if p["file"]},
+                         "references": [p for p in shown if p["file"]]}
     return {"size": list(quality.mask_size(bench)), "scenes": scenes}
 
 
@@ -282,13 +287,14 @@ def answer(data: Data) -> list[str]:
         measure = found.get("mask") or found.get("exact")
         return measure and measure["wrong"]
 
-    lines.append(f"Cost: over bump mapping alone, order 0 takes {added('0')} in figure 5's scene, 1 {added('1')}, 2 {added('2')}, "
-                 f"march:4 {added('march:4')}; the true hit for the shadow's origin {added('exact')}.")
+    lines.append(f"Cost: over bump mapping alone, order 0 takes {added('0')} in figure 5's scene, 1 {added('1')}, "
+                 f"2 {added('2')}, march:4 {added('march:4')}; the true hit for the shadow's origin {added('exact')}.")
     shares = {scene: (wrong(scene, "none"), wrong(scene, "0")) for scene in data["scenes"]}
     removed = [100 * (1 - after / before) for before, after in shares.values() if before and after is not None]
     if removed:
         lines.append(f"Quality: order 0 puts {min(removed):.0f} to {max(removed):.0f} % of the wrong shadow pixels right: "
-                     + ", ".join(f"{scene} {a:.2g} to {b:.2g} %" for scene, (a, b) in shares.items() if a and b is not None) + ".")
+                     + ", ".join(f"{scene} {a:.2g} to {b:.2g} %" for scene, (a, b) in shares.items() if a and b is not None)
+                     + ".")
     best = {}
     for scene in data["scenes"]:
         ranked = [(value, m) for m in ("0", "1", "2", "2+") if (value := wrong(scene, m)) is not None]
@@ -326,8 +332,8 @@ def rule(data: Data, most: float = 1.0, least_view: float = 30) -> str:
             if reached and None not in reached:
                 texts.append(f"{method} up to slope {min(reached):g}")
         if texts:
-            return (f"When: with the eye {least_view:g} degrees and more above the ground, at most {most:g} % of the shadow is wrong by "
-                    + ", ".join(texts) + f" ({one['scene']}).")
+            return (f"When: with the eye {least_view:g} degrees and more above the ground, at most {most:g} % of the shadow is wrong "
+                    f"by {', '.join(texts)} ({one['scene']}).")
     return "When: not measured."
 
 

@@ -1,7 +1,7 @@
 """When to use which: wrong shadow pixels over slopes, angles and frequencies; and the error's slope in the amplitude.
 
-The scenes are `waves` (a function) and `cube` (samples), with a cube over a plane. The eye and the light go around the shadow: the
-light at a height over the cube, the eye at a height over the middle of the shadow. Truth is kage's `exact`.
+The scenes are `waves` (a function) and `cube` (samples), with a cube over a plane. The light goes up and down around the cube,
+the eye around the middle of the shadow. Truth is kage's `exact`.
 """
 
 from __future__ import annotations
@@ -135,8 +135,10 @@ def measure_cell(bench: Bench, scene: Facts, place: Place) -> Value:
     sets = changes(scene, place)
     exact = render(bench, scene, sets, place.size, "exact", layers)
     seen, truth = exact["order"] >= 0, quality.in_shadow(exact, scene)
-    wrong = {method: int((seen & (quality.in_shadow(render(bench, scene, sets, place.size, method, layers), scene) != truth)).sum())
-             for method in methods(bench)}
+    wrong = {}
+    for method in methods(bench):
+        got = render(bench, scene, sets, place.size, method, layers)
+        wrong[method] = int((seen & (quality.in_shadow(got, scene) != truth)).sum())
     return {"shadow": int((seen & truth).sum()), "wrong": wrong}
 
 

@@ -192,7 +192,8 @@ def stable(out: Path) -> dict[str, object]:
     data = report(out)
     cost = {scene: {m: {k: c[k] for k in ("lookups", "shadow_rays", "instructions_added")} for m, c in found["methods"].items()}
             for scene, found in data["cost"]["scenes"].items()}
-    rounded = json.loads(json.dumps(cost), parse_float=lambda text: round(float(text), 1))  # callgrind counts the system's parts, too
+    # callgrind counts the system's parts, too
+    rounded = json.loads(json.dumps(cost), parse_float=lambda text: round(float(text), 1))
     return {"quality": data["quality"], "sweeps": data["sweeps"], "slopes": data["slopes"], "cost": rounded}
 
 
@@ -267,10 +268,11 @@ def test_interrupted_and_started_again(tiny: Path, tmp_path: Path, how: signal.S
     (["jinja2"], ["Jinja2"], {"report.md", "report.json", "quality.csv"}),
     (["OpenEXR"], ["OpenEXR"], {"index.html", "report.md", "report.json", "cost.csv"}),
 ])
-def test_without_a_package_the_rest_is_made(tiny: Path, tmp_path: Path, missing: list[str], names: list[str], left: set[str]) -> None:
+def test_without_a_package_the_rest_is_made(tiny: Path, tmp_path: Path, missing: list[str], names: list[str],
+                                            left: set[str]) -> None:
     """What was measured with the package is not taken for what is measured without."""
     if missing != ["OpenEXR"]:
-        shutil.copytree(tiny, tmp_path, dirs_exist_ok=True, ignore=lambda folder, files: [f for f in files if Path(f).suffix in (".html", ".md")])
+        shutil.copytree(tiny, tmp_path, dirs_exist_ok=True, ignore=shutil.ignore_patterns("*.html", "*.md"))
     done = bench(command(tmp_path, "--only", "quality", "--only", "cost", missing=missing))
     assert done.returncode == 3 and "Traceback" not in done.stderr, done.stderr
     data = report(tmp_path)
@@ -303,7 +305,8 @@ def test_without_povray(tmp_path: Path) -> None:
     assert data["cost"]["peers"] == [] and data["cost"]["scenes"]["waves"]["methods"]["0"]["ns"]["n"] == 3
 
 
-@pytest.mark.parametrize("arguments", [["--level", "huge"], ["--scene", "moon"], ["--only", "nothing"], ["--kage", "none"], ["more"]])
+@pytest.mark.parametrize("arguments", [["--level", "huge"], ["--scene", "moon"], ["--only", "nothing"], ["--kage", "none"],
+                                       ["more"]])
 def test_wrong_usage(arguments: list[str]) -> None:
     done = subprocess.run([sys.executable, "-m", "bench", *arguments], cwd=TOP, capture_output=True, text=True, timeout=60)
     assert done.returncode == 2 and "bench: error: " in done.stderr
