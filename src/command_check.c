@@ -101,8 +101,14 @@ static void print_scene(const scene *s, const seen *all)
     method_name(s->shadow, name);
     printf("%s: %d x %d pixels, %d x %d samples each, shadow %s%s\n", s->path, s->width, s->height, s->aa, s->aa, name,
            s->guard ? "" : ", no guard");
-    for (int i = 0; i < s->lights; i++)
-        printf("light %s at %g, %g, %g\n", s->light[i].name, s->light[i].at.x, s->light[i].at.y, s->light[i].at.z);
+    for (int i = 0; i < s->lights; i++) {
+        static const char *const kinds[] = {"", ", spot", ", parallel"};
+        const light *l = &s->light[i];
+        printf("light %s at %g, %g, %g%s%s", l->name, l->at.x, l->at.y, l->at.z, kinds[l->kind], l->fade_distance > 0 ? ", fading" : "");
+        if (l->samples[0] * l->samples[1] > 1)
+            printf(", area of %d x %d samples", l->samples[0], l->samples[1]);
+        printf("\n");
+    }
     for (int i = 0; i < s->objects; i++) {
         const object *o = &s->object[i];
         printf("object %s: %s, material %s%s%s\n", o->name, o->shape->is->kind, s->material[o->material].name,

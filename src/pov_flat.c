@@ -94,11 +94,12 @@ void pov_plane_region(const scene *s, const object *o, double u[2], double w[2])
         }
     if (r.u[0] > r.u[1]) /* nothing is seen */
         hold_place(&r, c->from);
-    for (int k = 0; k < s->lights && s->self_shadow; k++) {
-        vec3 d = vec3_sub(s->light[k].at, f->a);
-        double height = vec3_dot(n, d) - level[0];
-        hold_casters(&r, vec3_dot(r.Du, d), vec3_dot(r.Dw, d), height > level[1] - level[0] ? (level[1] - level[0]) / height : 0);
-    }
+    for (int k = 0; k < s->lights && s->self_shadow; k++)
+        for (int j = 0; j < light_corners(&s->light[k]); j++) {
+            vec3 d = vec3_sub(light_corner(&s->light[k], j, f->a), f->a);
+            double height = vec3_dot(n, d) - level[0];
+            hold_casters(&r, vec3_dot(r.Du, d), vec3_dot(r.Dw, d), height > level[1] - level[0] ? (level[1] - level[0]) / height : 0);
+        }
     double mu = 0.01 * (r.u[1] - r.u[0]) + 1e-3 / vec3_length(f->u), mw = 0.01 * (r.w[1] - r.w[0]) + 1e-3 / vec3_length(f->w);
     u[0] = r.u[0] - mu;
     u[1] = r.u[1] + mu;

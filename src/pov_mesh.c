@@ -120,12 +120,13 @@ static bool block_seen(const tessellation *x, const corners *c)
     for (int k = 0; k < 4; k++) {
         vec3 low = vec3_add(c->Q[k], vec3_scale(c->n, lo)), top = vec3_add(c->Q[k], vec3_scale(c->n, hi));
         outside &= beyond(x->s, low) & beyond(x->s, top);
-        for (int l = 0; l < x->s->lights && x->s->self_shadow && outside; l++) {
-            vec3 ray = vec3_sub(top, x->s->light[l].at);
-            double fall = -vec3_dot(ray, c->n);
-            if (fall > 0)
-                outside &= beyond(x->s, vec3_add(top, vec3_scale(ray, (hi - lo) / fall)));
-        }
+        for (int l = 0; l < x->s->lights && x->s->self_shadow && outside; l++)
+            for (int j = 0; j < light_corners(&x->s->light[l]); j++) {
+                vec3 ray = vec3_sub(top, light_corner(&x->s->light[l], j, top));
+                double fall = -vec3_dot(ray, c->n);
+                if (fall > 0)
+                    outside &= beyond(x->s, vec3_add(top, vec3_scale(ray, (hi - lo) / fall)));
+            }
     }
     return !outside;
 }

@@ -45,10 +45,25 @@ static void put_camera(pov_text *t, const scene *s)
               s->camera.from, v->up, v->fov, v->at, s->background);
 }
 
+/* An area is halved down to each of its samples (`adaptive`), as here none is left out. */
+static void put_light(pov_text *t, const light *l)
+{
+    pov_print(t, "light_source { %v color rgb %v", l->at, l->color);
+    if (l->kind == LIGHT_SPOT)
+        pov_print(t, "\n  spotlight point_at %v radius %g falloff %g tightness %g", l->to, l->radius, l->falloff, l->tightness);
+    if (l->kind == LIGHT_PARALLEL)
+        pov_print(t, "\n  parallel point_at %v", l->to);
+    if (l->fade_distance > 0)
+        pov_print(t, "\n  fade_distance %g fade_power %g", l->fade_distance, l->fade_power);
+    if (l->samples[0] * l->samples[1] > 1)
+        pov_print(t, "\n  area_light %v, %v, %d, %d adaptive 16", l->u, l->w, l->samples[0], l->samples[1]);
+    pov_print(t, " } // %s\n", l->name);
+}
+
 static void put_lights(pov_text *t, const scene *s)
 {
     for (int k = 0; k < s->lights; k++)
-        pov_print(t, "light_source { %v color rgb %v } // %s\n", s->light[k].at, s->light[k].color, s->light[k].name);
+        put_light(t, &s->light[k]);
     pov_print(t, "\n");
 }
 

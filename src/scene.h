@@ -3,6 +3,7 @@
 #define KAGE_SCENE_H
 
 #include "errors.h"
+#include "light.h"
 #include "method.h"
 #include "perturb.h"
 #include "surface.h"
@@ -24,12 +25,6 @@ typedef struct camera_view {
     vec3 at, up;
     double fov;
 } camera_view;
-
-typedef struct light {
-    char *name;
-    vec3 at;
-    vec3 color; /* linear */
-} light;
 
 /* POV-Ray's finish: ambient and diffuse light on the colour, and two kinds of highlight in the light's colour. */
 typedef struct material {

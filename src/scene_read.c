@@ -31,7 +31,7 @@ bool reader_vector(reader *r, node *map, const char *key, const char *what, vec3
     return true;
 }
 
-static bool color(reader *r, node *map, const char *key, vec3 *v)
+bool reader_color(reader *r, node *map, const char *key, vec3 *v)
 {
     double x[3];
     node *at = yaml_get(map, key);
@@ -104,7 +104,7 @@ static void read_image(reader *r)
         s->width = (int)size[0];
         s->height = (int)size[1];
     }
-    color(r, at, "background", &s->background);
+    reader_color(r, at, "background", &s->background);
 }
 
 static void read_camera(reader *r)
@@ -156,24 +156,7 @@ static void read_render(reader *r)
         yaml_bool(r->y, k, "true or false", &s->self_shadow);
 }
 
-/* ---- lights and materials ---- */
-
-static void read_lights(reader *r)
-{
-    scene *s = r->s;
-    node *at = reader_named(r, "lights", "lights", true, sizeof *s->light, &s->light, &s->lights), *key;
-    for (int i = 0; at && i < s->lights; i++) {
-        node *v = yaml_pair(at, i, &key);
-        light *l = &s->light[i];
-        l->color = (vec3){1, 1, 1};
-        l->name = reader_name(r, at, key);
-        if (!yaml_map(r->y, v, "a light", "at color"))
-            continue;
-        if (yaml_need(r->y, v, "at", "a light"))
-            reader_vector(r, v, "at", "the light's place [x, y, z]", &l->at);
-        color(r, v, "color", &l->color);
-    }
-}
+/* ---- materials ---- */
 
 static void read_materials(reader *r)
 {
@@ -186,7 +169,7 @@ static void read_materials(reader *r)
         m->name = reader_name(r, at, key);
         if (!yaml_map(r->y, v, "a material", "color ambient diffuse phong phong_size specular roughness"))
             continue;
-        color(r, v, "color", &m->color);
+        reader_color(r, v, "color", &m->color);
         reader_number(r, v, "ambient", 0, false, BIG, "a share of light, 0 or more", &m->ambient);
         reader_number(r, v, "diffuse", 0, false, BIG, "a share of light, 0 or more", &m->diffuse);
         reader_number(r, v, "phong", 0, false, BIG, "a share of light, 0 or more", &m->phong);
@@ -211,7 +194,7 @@ scene *scene_read(const char *path, int sets, char *const *set, errors *e)
             read_image(&r);
             read_camera(&r);
             read_render(&r);
-            read_lights(&r);
+            reader_lights(&r);
             read_materials(&r);
             reader_objects(&r);
         }

@@ -1,4 +1,4 @@
-/* What the parts of the scene reader share: its state, and the small readers. Private to scene_read.c and scene_objects.c. */
+/* What the parts of the scene reader share: its state, and the small readers. Private to scene_*.c. */
 #ifndef KAGE_SCENE_READER_H
 #define KAGE_SCENE_READER_H
 
@@ -21,6 +21,9 @@ char *reader_copy(reader *r, const char *text);
 /* Three numbers, each within BIG. An absent key leaves *v and is no error here. */
 bool reader_vector(reader *r, node *map, const char *key, const char *what, vec3 *v);
 
+/* A linear colour likewise. */
+bool reader_color(reader *r, node *map, const char *key, vec3 *v);
+
 /* A number lo <= x <= hi; `open`: lo < x. An absent key leaves *x and is no error here. */
 bool reader_number(reader *r, node *map, const char *key, double lo, bool open, double hi, const char *what, double *x);
 
@@ -29,6 +32,9 @@ char *reader_name(reader *r, node *map, node *key);
 
 /* A map of named things: makes room for them. Returns their map, NULL where there is none or it is wrong. */
 node *reader_named(reader *r, const char *key, const char *what, bool need, size_t size, void *array, int *count);
+
+/* (scene_lights.c) */
+void reader_lights(reader *r);
 
 /* The objects with their surfaces and bumps; after the materials, whose names they give. (scene_objects.c) */
 void reader_objects(reader *r);

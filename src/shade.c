@@ -9,11 +9,30 @@ void shade_ambient(group *g, const material *m)
                (real)(m->ambient * m->color.z));
 }
 
+/* The way from p to a light: at - near p. A parallel light has it without p. Constant in each stage, so that it costs nothing. */
+typedef struct way {
+    bs_vec3 at;
+    real near;
+} way;
+
+static inline way way_to(const light *l)
+{
+    way x = {{(real)l->at.x, (real)l->at.y, (real)l->at.z}, 1};
+    return x;
+}
+
+static inline way way_against(const light *l)
+{
+    way x = {{-(real)l->axis.x, -(real)l->axis.y, -(real)l->axis.z}, 0};
+    return x;
+}
+
 /* The place of a light against a lane: L, the unit vector to it, and n' on the viewer's side. Returns g->lit, or 0 where
  * the smooth surface lies between the light and the viewer. */
-static inline real facing(const group *g, int i, bs_vec3 at, bs_vec3 *L, bs_vec3 *n)
+static inline real facing(const group *g, int i, way to, bs_vec3 *L, bs_vec3 *n)
 {
-    bs_vec3 p = lane_at(&g->x, i, g->t[i]), d = {at.x - p.x, at.y - p.y, at.z - p.z};
+    bs_vec3 p = lane_at(&g->x, i, g->t[i]);
+    bs_vec3 d = {to.at.x - to.near * p.x, to.at.y - to.near * p.y, to.at.z - to.near * p.z};
     bs_vec3 smooth = lane_get(&g->n_smooth, i), bump = lane_get(&g->n_bump, i);
     real lit = g->lit[i]; /* read in any case: a reading that depends is a branch */
     real side = bs_dot(smooth, lane_get(&g->x.s, i)) < 0 ? R(1) : R(-1);
@@ -24,20 +43,13 @@ static inline real facing(const group *g, int i, bs_vec3 at, bs_vec3 *L, bs_vec3
     return side * bs_dot(smooth, d) > 0 ? lit : 0;
 }
 
-static inline bs_vec3 position(const light *l)
+static inline void diffuse(group *restrict g, const material *m, const light *l, const way to)
 {
-    bs_vec3 p = {(real)l->at.x, (real)l->at.y, (real)l->at.z};
-    return p;
-}
-
-STAGE static void diffuse(group *restrict g, const material *m, const light *l)
-{
-    const bs_vec3 at = position(l);
     const real kr = (real)(m->diffuse * m->color.x * l->color.x), kg = (real)(m->diffuse * m->color.y * l->color.y),
                kb = (real)(m->diffuse * m->color.z * l->color.z);
     for (int i = 0; i < g->n; i++) {
         bs_vec3 L, n;
-        real lit = facing(g, i, at, &L, &n);
+        real lit = facing(g, i, to, &L, &n);
         real c = lit * real_max(bs_dot(n, L), 0);
         g->rgb.x[i] += kr * c;
         g->rgb.y[i] += kg * c;
@@ -45,28 +57,35 @@ STAGE static void diffuse(group *restrict g, const material *m, const light *l)
     }
 }
 
+STAGE static void diffuse_to(group *g, const material *m, const light *l) { diffuse(g, m, l, way_to(l)); }
+STAGE static void diffuse_against(group *g, const material *m, const light *l) { diffuse(g, m, l, way_against(l)); }
+
 /* Phong's highlight: the mirrored view against the light. */
-STAGE static void phong(const group *restrict g, const light *l, double *restrict c, real *restrict lit)
+static inline void phong(const group *restrict g, const way to, double *restrict c, real *restrict lit)
 {
-    const bs_vec3 at = position(l);
     for (int i = 0; i < g->n; i++) {
         bs_vec3 L, n, s = lane_unit(lane_get(&g->x.s, i));
-        lit[i] = facing(g, i, at, &L, &n);
+        lit[i] = facing(g, i, to, &L, &n);
         c[i] = (double)real_max(bs_dot(s, L) - 2 * bs_dot(s, n) * bs_dot(n, L), 0);
     }
 }
 
+STAGE static void phong_to(const group *g, const light *l, double *c, real *lit) { phong(g, way_to(l), c, lit); }
+STAGE static void phong_against(const group *g, const light *l, double *c, real *lit) { phong(g, way_against(l), c, lit); }
+
 /* Blinn's: the half-way vector between light and viewer, L - s, against the normal. */
-STAGE static void blinn(const group *restrict g, const light *l, double *restrict c, real *restrict lit)
+static inline void blinn(const group *restrict g, const way to, double *restrict c, real *restrict lit)
 {
-    const bs_vec3 at = position(l);
     for (int i = 0; i < g->n; i++) {
         bs_vec3 L, n, s = lane_unit(lane_get(&g->x.s, i));
-        lit[i] = facing(g, i, at, &L, &n);
+        lit[i] = facing(g, i, to, &L, &n);
         real length = real_sqrt(real_max(2 - 2 * bs_dot(s, L), R(1e-20)));
         c[i] = (double)real_max((bs_dot(n, L) - bs_dot(s, n)) / length, 0);
     }
 }
+
+STAGE static void blinn_to(const group *g, const light *l, double *c, real *lit) { blinn(g, way_to(l), c, lit); }
+STAGE static void blinn_against(const group *g, const light *l, double *c, real *lit) { blinn(g, way_against(l), c, lit); }
 
 /* c to a power, in a loop of its own: mixed with float it would not be vectorised. log 0 is -inf, and its exp 0. */
 STAGE static void raise(int n, double *c, double power)
@@ -89,16 +108,17 @@ STAGE static void add_highlight(group *restrict g, const light *l, double share,
 
 void shade_light(group *g, const material *m, const light *l)
 {
-    diffuse(g, m, l);
+    const bool along = l->kind == LIGHT_PARALLEL;
+    (along ? diffuse_against : diffuse_to)(g, m, l);
     double c[LANES];
     real lit[LANES];
     if (m->phong > 0) {
-        phong(g, l, c, lit);
+        (along ? phong_against : phong_to)(g, l, c, lit);
         raise(g->n, c, m->phong_size);
         add_highlight(g, l, m->phong, c, lit);
     }
     if (m->specular > 0) {
-        blinn(g, l, c, lit);
+        (along ? blinn_against : blinn_to)(g, l, c, lit);
         raise(g->n, c, 1 / m->roughness);
         add_highlight(g, l, m->specular, c, lit);
     }

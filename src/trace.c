@@ -8,26 +8,14 @@
  */
 #include "trace.h"
 
+#include <string.h>
+
 #include "displace.h"
 #include "lane.h"
+#include "light.h"
 #include "shade.h"
 #include "shift.h"
 #include "wave_stages.h"
-
-/* Where shadow rays start, and how far they go: the segments r + s t, 0 < t < 1, from
- *     the smooth hit p1                 to the light, for the receiver's own smooth surface, which is left out at t = 0 by
- *                                       its own methods, and
- *     the shifted hit r + s (t_hit+tau) to the light, for every other object.
- * No offset is added to either: it would shorten each shadow by offset/tan(elevation), and P is small, too. */
-STAGE static void aim(group *restrict g, const light *l, int shifted)
-{
-    const real lx = (real)l->at.x, ly = (real)l->at.y, lz = (real)l->at.z;
-    for (int i = 0; i < g->n; i++) {
-        bs_vec3 o = lane_at(&g->x, i, shifted ? g->t[i] + g->tau[i] : g->t[i]), d = {lx - o.x, ly - o.y, lz - o.z};
-        lane_set(&g->to_light.r, i, o);
-        lane_set(&g->to_light.s, i, d);
-    }
-}
 
 /* Whether an object is taken for its displaced surface. */
 static bool is_rough(const tracer *k, const object *o) { return k->displaced && o->bump; }
@@ -35,7 +23,7 @@ static bool is_rough(const tracer *k, const object *o) { return k->displaced && 
 /* A rough surface that is turned away from the light is dark; from where it is not, the way to the light is searched. */
 static void shadow_rough(const object *o, const light *l, group *g, stats *st)
 {
-    aim(g, l, 0);
+    light_aim(l, g, false);
     for (int i = 0; i < g->n; i++) {
         bs_vec3 n = lane_get(&g->n_smooth, i);
         bool lit = bs_dot(n, lane_get(&g->to_light.s, i)) * bs_dot(n, lane_get(&g->x.s, i)) < 0;
@@ -51,18 +39,21 @@ static void shadow_own(const tracer *k, const object *o, const light *l, group *
         if (k->self_shadow)
             shadow_rough(o, l, g, st);
     } else if (o->shape->is->occlude_own) {
-        aim(g, l, 0);
+        light_aim(l, g, false);
         o->shape->is->occlude_own(o->shape, g->n, &g->to_light, g->part, g->lit);
     }
 }
 
-static void shadow(const tracer *k, int id, const light *l, group *g, stats *st)
+/* Which lanes of object `id` a light of one place shines on. The segments to it are r + s t, 0 < t < 1, from
+ *     the smooth hit p1                 for the receiver's own smooth surface, which is left out at t = 0 by its own methods, and
+ *     the shifted hit r + s (t_hit+tau) for every other object. */
+static void shadow_one(const tracer *k, int id, const light *l, group *g, stats *st)
 {
     const scene *sc = k->scene;
     for (int i = 0; i < g->n; i++)
         g->lit[i] = 1;
     shadow_own(k, &sc->object[id], l, g, st);
-    aim(g, l, 1);
+    light_aim(l, g, true);
     for (int j = 0; j < sc->objects; j++) {
         const object *o = &sc->object[j];
         if (j == id)
@@ -73,6 +64,29 @@ static void shadow(const tracer *k, int id, const light *l, group *g, stats *st)
             displace_occlude(o->shape, o->bump, g->n, &g->to_light, NULL, g->lit, &st->displaced);
     }
     st->shadow_rays += g->n;
+}
+
+STAGE static void add_share(group *restrict g, real share, real *restrict sum)
+{
+    for (int i = 0; i < g->n; i++)
+        sum[i] += share * g->lit[i];
+}
+
+/* The share of a light that is seen: of an area, the samples that are. */
+static void shadow(const tracer *k, int id, const light *l, group *g, stats *st)
+{
+    const int places = l->samples[0] * l->samples[1];
+    if (places == 1) {
+        shadow_one(k, id, l, g, st);
+        return;
+    }
+    real sum[LANES] = {0}, share;
+    for (int j = 0; j < places; j++) {
+        const light one = light_sample(l, j, &share);
+        shadow_one(k, id, &one, g, st);
+        add_share(g, share, sum);
+    }
+    memcpy(g->lit, sum, sizeof sum);
 }
 
 /* Where a group's lanes are on their surface, P there, n and n', and how far the shadow rays' origin is shifted. */
@@ -114,10 +128,11 @@ void trace_group(const tracer *k, int id, workspace *v)
     for (int l = 0; l < sc->lights; l++) {
         shadow(k, id, &sc->light[l], g, st);
         stats_stage(st, STAGE_SHADOW);
-        shade_light(g, m, &sc->light[l]);
-        stats_stage(st, STAGE_SHADE);
         if (k->layers)
             wave_scatter_visibility(g, v->visibility[l]);
+        light_fade(&sc->light[l], g);
+        shade_light(g, m, &sc->light[l]);
+        stats_stage(st, STAGE_SHADE);
     }
     if (o->bump)
         stats_orders(st, g->n, g->order, is_rough(k, o) ? ORDER_EXACT : method_code(k->shadow));

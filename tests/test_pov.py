@@ -71,6 +71,25 @@ SMOOTH = {
     "fov 120": ("{from: [0.3, 1.9, -2], at: [0, 0.5, 0], fov: 120}", LIGHTS, FLOOR + BOX.replace("MATERIAL", "glaze")),
     "horizon": ("{from: [0, 1.2, -5], at: [0, 1.2, 0], fov: 70}", LIGHTS, FLOOR + BALL.replace("MATERIAL", "clay")),
     "from below": ("{from: [0, -2, -4], at: [0, 0, 0], fov: 50}", "{a: {at: [1, -6, -3]}}", FLOOR + BALL.replace("MATERIAL", "clay")),
+    "spot": (CAMERA, "{a: {at: [-3, 5, -2], spot: {to: [0, 0.5, 0]}}}", FLOOR + BALL.replace("MATERIAL", "shiny")),
+    "spot tight": (CAMERA, "{a: {at: [-3, 5, -2], spot: {to: [0, 0, 0], radius: 0, falloff: 35, tightness: 7.5}}}",
+                   FLOOR + BOX.replace("MATERIAL", "glaze")),
+    "spot hard": (CAMERA, "{a: {at: [-3, 5, -2], spot: {to: [0.3, 0, 0], radius: 18, falloff: 18}}}",
+                  FLOOR + BALL.replace("MATERIAL", "clay")),
+    "parallel": (CAMERA, "{a: {at: [-3, 5, -2], parallel: {to: [0, 0, 0]}}}",
+                 FLOOR + BALL.replace("MATERIAL", "shiny") + SHEET.replace("MATERIAL", "glaze")),
+    "parallel from low": (CAMERA, "{a: {at: [-0.9, 0.9, -0.3], parallel: {to: [0, 0, 0]}, fade: {distance: 1.5}}}",
+                          FLOOR + BOX.replace("MATERIAL", "shiny")),
+    "fading": (CAMERA, "{a: {at: [-1, 3, -2], color: [2, 1, 1], fade: {distance: 2.5, power: 3}}}",
+               FLOOR + BALL.replace("MATERIAL", "shiny")),
+    "spot fading": (CAMERA, "{a: {at: [-3, 5, -2], spot: {to: [0, 0.5, 0], radius: 5}, fade: {distance: 8, power: 1.5}}}",
+                    FLOOR + SHEET.replace("MATERIAL", "glaze")),
+    "area": (CAMERA, "{a: {at: [-3, 5, -2], area: {u: [1.5, 0, 0], w: [0, 0, 1], samples: [4, 4]}}}",
+             FLOOR + BALL.replace("MATERIAL", "shiny")),
+    "area uneven": (CAMERA, "{a: {at: [-3, 5, -2], area: {u: [1.5, 0.2, 0], w: [0, 0.3, 1], samples: [5, 3]}}}",
+                    FLOOR + BOX.replace("MATERIAL", "clay")),
+    "area row, spot": (CAMERA, "{a: {at: [-3, 5, -2], spot: {to: [0, 0, 0]}, area: {u: [2, 0, 0], w: [0, 0, 1], samples: [6, 1]}}}",
+                       FLOOR + BOX.replace("MATERIAL", "glaze") + SHEET.replace("MATERIAL", "clay")),
     "eye within": ("{from: [0, 1.1, 0], at: [0.3, 0.4, 1], fov: 90}", "{a: {at: [0.2, 1.4, 0.1]}}", BOX.replace("MATERIAL", "shiny")),
 }
 
@@ -155,6 +174,26 @@ def test_smooth_parity(kage: Kage, capsys: pytest.CaptureFixture[str]) -> None:
     with capsys.disabled():
         print("\n" + "\n".join(table))
     assert not wrong
+
+
+@needs_povray
+def test_area_light_as_adaptive_0(kage: Kage) -> None:
+    """POV-Ray's usual way leaves samples out where the four around them agree: no picture of its own, but close."""
+    camera, lights, objects = SMOOTH["area uneven"]
+    scene = kage.folder / "area.yaml"
+    scene.write_text(HEAD.format(camera=camera, lights=lights) + objects)
+    kage.good("pov", scene, "-o", "area.pov", "--surface", "smooth")
+    kage.good("render", scene, "-o", "area.exr", "--quiet")
+    text = (kage.folder / "area.pov").read_text()
+    assert "5, 3 adaptive 16 }" in text
+    (kage.folder / "area.pov").write_text(text.replace("adaptive 16", "adaptive 0"))
+    theirs, words = povray(kage.folder / "area.pov")
+    picture = layers(kage.folder / "area.exr")
+    ours = np.stack([picture[channel] for channel in "RGB"], axis=-1)
+    assert not words.strip()
+    assert np.abs(ours - theirs).mean() < 0.5 * STEP
+    visible = picture["visibility.a"]
+    assert 0.01 < ((visible > 0) & (visible < 1)).mean() < 0.5
 
 
 # ---- displaced ----
@@ -261,6 +300,25 @@ def test_displaced_parity(kage: Kage, capsys: pytest.CaptureFixture[str]) -> Non
     with capsys.disabled():
         print("\n" + "\n".join(table))
     assert not wrong
+
+
+@needs_povray
+@pytest.mark.parametrize("lights", [
+    "{a: {at: [-0.3, 1, -0.2], parallel: {to: [0, 0, 0]}}}",
+    "{a: {at: [-4.5, 5.2, -2.2], area: {u: [2, 0, 0], w: [0, 0, 2], samples: [2, 2]}, spot: {to: [0, 0, 0]}}}",
+], ids=["parallel", "area"])
+@pytest.mark.parametrize("name", ["plane", "plane, map"])
+def test_displaced_lights(kage: Kage, name: str, lights: str) -> None:
+    """Lights other than points on rough surfaces, which a mesh must be large enough for."""
+    scene = write_displaced(kage, name)
+    scene.write_text(scene.read_text().replace(LIGHTS, lights))
+    kage.good("pov", scene, "-o", "rough.pov", "--surface", "displaced")
+    kage.good("render", scene, "-o", "rough.exr", "--quiet", "--surface", "displaced")
+    picture = layers(kage.folder / "rough.exr")
+    theirs, words = povray(kage.folder / "rough.pov", (100, 75))
+    off = np.abs(np.stack([picture[channel] for channel in "RGB"], axis=-1) - theirs).max(axis=-1)
+    assert not words.strip()
+    assert (off <= STEP).mean() > PARITY[True]
 
 
 # ---- the file ----
