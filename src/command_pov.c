@@ -33,12 +33,16 @@ int command_pov(const arguments *a)
         return EXIT_INPUT;
     }
     scene *s = command_scene(a);
+    errors e = {0};
     if (!s)
         return EXIT_INPUT;
+    if (!pov_possible(s, &e)) {
+        scene_free(s);
+        return command_fail(&e, EXIT_INPUT);
+    }
     char *text = command_text(a);
     pov_options how = {text, a->no_cast};
     pov_report r;
-    errors e = {0};
     bool good = text ? pov_write(s, &how, a->output[0], &r, &e) : usage_error("out of memory");
     if (good && r.coarse)
         fprintf(stderr, "kage: object %s: a mesh of facets below half a pixel is too large; they have up to %.2g pixels\n", r.coarse,

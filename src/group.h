@@ -33,7 +33,8 @@ typedef struct group {
     rays to_light;
     real lit[LANES];
 
-    vec3s rgb; /* linear, as the eye gets it */
+    vec3s color; /* of the material, where it is not constant */
+    vec3s rgb;   /* linear, as the eye gets it */
 } group;
 
 #endif

@@ -29,6 +29,16 @@ enum { IMAGE_MAX_SIDE = 65536 };
  * False with one message in *e, that begins with the reason and does not name the file. */
 bool image_read(const char *path, const char *channel, image *out, errors *e);
 
+/* How the values of a colour stand for light. */
+typedef enum image_encoding { IMAGE_BY_KIND, IMAGE_SRGB, IMAGE_LINEAR } image_encoding;
+
+/* Read a file in colour: four values a pixel, that is 4 x width values a row; linear red, green and blue, and alpha, which is 1.
+ *
+ * PNG: any kind; sRGB unless IMAGE_LINEAR is asked for. What else it says of its gamma is not looked at.
+ * OpenEXR: as above; R, G and B, or Y or the only channel as a grey. Always linear; IMAGE_SRGB is an error.
+ * An image that is transparent anywhere is refused. exr: whether the file is one. */
+bool image_read_color(const char *path, image_encoding encoding, image *out, bool *exr, errors *e);
+
 /* A named text that is kept in the file. */
 typedef struct image_text {
     const char *key, *value;

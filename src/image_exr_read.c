@@ -75,6 +75,14 @@ static int64_t size_of_file(exr_const_context_t ctx, void *data)
     return fstat(((exr_reader *)data)->fd, &st) == 0 ? (int64_t)st.st_size : -1;
 }
 
+static const exr_attr_chlist_entry_t *find(const exr_attr_chlist_t *list, const char *name)
+{
+    for (int c = 0; c < list->num_channels; c++)
+        if (strcmp(list->entries[c].name.str, name) == 0)
+            return &list->entries[c];
+    return NULL;
+}
+
 /* The channel of that name, or the only one, or Y. */
 static bool choose(exr_reader *r, const exr_attr_chlist_t *list, const char *name,
                    const exr_attr_chlist_entry_t **out)
@@ -96,6 +104,26 @@ static bool choose(exr_reader *r, const exr_attr_chlist_t *list, const char *nam
     return false;
 }
 
+/* The channels of red, green, blue and alpha; the last NULL where there is none. */
+static bool choose_colors(exr_reader *r, const exr_attr_chlist_t *list, const exr_attr_chlist_entry_t *out[4])
+{
+    static const char *const names[] = {"R", "G", "B", "A"};
+    for (int k = 0; k < 4; k++) {
+        out[k] = find(list, names[k]);
+        if (out[k] && (out[k]->x_sampling != 1 || out[k]->y_sampling != 1))
+            return refuse(r, "a channel is subsampled; one sample a pixel is expected");
+    }
+    if (out[0] && out[1] && out[2])
+        return true;
+    if (out[0] || out[1] || out[2])
+        return refuse(r, "not all of the channels R, G and B are there");
+    const exr_attr_chlist_entry_t *grey;
+    if (!choose(r, list, NULL, &grey))
+        return false;
+    out[0] = out[1] = out[2] = grey;
+    return true;
+}
+
 /* Where the samples go, and the pipeline that decompresses them, chunk by chunk. */
 typedef struct exr_plane {
     exr_context_t ctx;
@@ -103,6 +131,7 @@ typedef struct exr_plane {
     bool started;
     const char *channel;
     image *out;
+    int values, which; /* a pixel's values, and the one that the channel is */
 } exr_plane;
 
 static float half_to_float(unsigned h)
@@ -115,20 +144,20 @@ static float half_to_float(unsigned h)
     return h >> 15 ? -magnitude : magnitude;
 }
 
-/* n samples as the file has them, little-endian. */
-static void to_float(float *to, const uint8_t *from, int n, int type)
+/* n samples as the file has them, little-endian, to every `step`th place. */
+static void to_float(float *to, int step, const uint8_t *from, int n, int type)
 {
-    for (int x = 0; x < n; x++) {
+    for (int x = 0; x < n; x++, to += step) {
         if (type == EXR_PIXEL_HALF) {
-            to[x] = half_to_float((unsigned)from[2 * x + 1] << 8 | from[2 * x]);
+            *to = half_to_float((unsigned)from[2 * x + 1] << 8 | from[2 * x]);
             continue;
         }
         const uint8_t *b = from + 4 * (size_t)x;
         uint32_t bits = (uint32_t)b[3] << 24 | (uint32_t)b[2] << 16 | (uint32_t)b[1] << 8 | b[0];
         if (type == EXR_PIXEL_UINT)
-            to[x] = (float)bits;
+            *to = (float)bits;
         else
-            memcpy(&to[x], &bits, sizeof bits);
+            memcpy(to, &bits, sizeof bits);
     }
 }
 
@@ -150,7 +179,8 @@ static bool unpack(exr_reader *r, exr_plane *p, int x, int y)
             if (size > left || (wanted && ch->width != chunk->width))
                 return refuse(r, "OpenEXR: a chunk has a wrong size");
             if (wanted)
-                to_float(p->out->v + (size_t)(y + line) * (size_t)p->out->width + x, from, ch->width, ch->data_type);
+                to_float(p->out->v + ((size_t)(y + line) * (size_t)p->out->width + (size_t)x) * (size_t)p->values + p->which, p->values,
+                         from, ch->width, ch->data_type);
             from += size;
             left -= size;
         }
@@ -210,13 +240,14 @@ static bool decode_tiles(exr_reader *r, exr_plane *p)
     return true;
 }
 
-static bool all_finite(exr_reader *r, const image *m)
+static bool all_finite(exr_reader *r, const image *m, int values)
 {
+    const int width = values * m->width;
     for (int y = 0; y < m->height; y++)
-        for (int x = 0; x < m->width; x++) {
-            float v = m->v[(size_t)y * (size_t)m->width + (size_t)x];
+        for (int x = 0; x < width; x++) {
+            float v = m->v[(size_t)y * (size_t)width + (size_t)x];
             if (!isfinite(v)) {
-                snprintf(r->why, IMAGE_WHY, "the sample in column %d of row %d (both from 0) is %s", x, y,
+                snprintf(r->why, IMAGE_WHY, "the sample in column %d of row %d (both from 0) is %s", x / values, y,
                          isnan(v) ? "NaN" : v > 0 ? "infinite" : "-infinite");
                 return false;
             }
@@ -224,13 +255,21 @@ static bool all_finite(exr_reader *r, const image *m)
     return true;
 }
 
-static bool decode(exr_reader *r, exr_plane *p, const char *name)
+static bool decode_channel(exr_reader *r, exr_plane *p, const exr_attr_chlist_entry_t *channel, int which, exr_storage_t storage,
+                           int first_y)
+{
+    p->channel = channel->name.str;
+    p->which = which;
+    return storage == EXR_STORAGE_TILED ? decode_tiles(r, p) : decode_scanlines(r, p, first_y);
+}
+
+static bool decode(exr_reader *r, exr_plane *p, const char *name, bool color)
 {
     int parts = 0;
     exr_storage_t storage = EXR_STORAGE_LAST_TYPE;
     exr_attr_box2i_t window;
     const exr_attr_chlist_t *list = NULL;
-    const exr_attr_chlist_entry_t *channel = NULL;
+    const exr_attr_chlist_entry_t *channel[4] = {NULL};
     if (!good(r, exr_get_count(p->ctx, &parts)))
         return false;
     if (parts != 1)
@@ -239,19 +278,23 @@ static bool decode(exr_reader *r, exr_plane *p, const char *name)
         return false;
     if (storage != EXR_STORAGE_SCANLINE && storage != EXR_STORAGE_TILED)
         return refuse(r, "the OpenEXR file holds deep samples; a flat image is expected");
-    if (!good(r, exr_get_channels(p->ctx, 0, &list)) || !choose(r, list, name, &channel) ||
+    if (!good(r, exr_get_channels(p->ctx, 0, &list)) || !(color ? choose_colors(r, list, channel) : choose(r, list, name, channel)) ||
         !good(r, exr_get_data_window(p->ctx, 0, &window)))
         return false;
     const char *why = image_alloc(p->out, (int64_t)window.max.x - window.min.x + 1,
-                                  (int64_t)window.max.y - window.min.y + 1);
+                                  (int64_t)window.max.y - window.min.y + 1, color ? 4 : 1);
     if (why)
         return refuse(r, why);
-    p->channel = channel->name.str;
-    bool ok = storage == EXR_STORAGE_TILED ? decode_tiles(r, p) : decode_scanlines(r, p, window.min.y);
-    return ok && all_finite(r, p->out);
+    p->values = color ? 4 : 1;
+    for (size_t k = 0; color && k < (size_t)p->out->width * (size_t)p->out->height; k++)
+        p->out->v[4 * k + 3] = 1;
+    for (int k = 0; k < p->values; k++)
+        if (channel[k] && !decode_channel(r, p, channel[k], k, storage, window.min.y))
+            return false;
+    return all_finite(r, p->out, p->values);
 }
 
-bool image_read_exr(FILE *file, const char *channel, image *out, char *why)
+bool image_read_exr(FILE *file, const char *channel, bool color, image *out, char *why)
 {
     exr_reader r = {.fd = fileno(file), .why = why};
     struct stat st;
@@ -269,7 +312,7 @@ bool image_read_exr(FILE *file, const char *channel, image *out, char *why)
     init.max_tile_width = init.max_tile_height = IMAGE_MAX_SIDE;
     init.flags = EXR_CONTEXT_FLAG_DISABLE_CHUNK_RECONSTRUCTION; /* an incomplete file is an error */
     exr_plane p = {.pipe = EXR_DECODE_PIPELINE_INITIALIZER, .out = out};
-    bool ok = good(&r, exr_start_read(&p.ctx, "image", &init)) && decode(&r, &p, channel);
+    bool ok = good(&r, exr_start_read(&p.ctx, "image", &init)) && decode(&r, &p, channel, color);
     if (p.ctx) {
         exr_decoding_destroy(p.ctx, &p.pipe);
         exr_finish(&p.ctx);

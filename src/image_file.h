@@ -13,12 +13,12 @@ enum { IMAGE_WHY = 512 };
 /* NULL, or why an image of this size is neither read nor written. */
 const char *image_refuse_size(int64_t width, int64_t height);
 
-/* Room for width x height samples in *out. NULL, or why there is none. */
-const char *image_alloc(image *out, int64_t width, int64_t height);
+/* Room for width x height pixels of so many values in *out. NULL, or why there is none. */
+const char *image_alloc(image *out, int64_t width, int64_t height, int values);
 
 /* The readers behind image_read. *out is empty and stays so on error; why[IMAGE_WHY] then holds the reason. */
-bool image_read_png(FILE *file, image *out, char *why); /* after the 8 bytes of signature */
-bool image_read_exr(FILE *file, const char *channel, image *out, char *why); /* from anywhere */
+bool image_read_png(FILE *file, bool color, image *out, char *why); /* after the 8 bytes of signature */
+bool image_read_exr(FILE *file, const char *channel, bool color, image *out, char *why); /* from anywhere */
 
 /* A file being written. Nobody sees it at `path` before it is whole: it grows under another name in the same
  * directory and is renamed at the end. A path that leads to something other than a regular file (a terminal,

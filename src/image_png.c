@@ -57,7 +57,21 @@ static void row_to_float(float *row, int width, int bytes)
     }
 }
 
-static bool decode(png_job *job, FILE *file, image *out)
+/* Every kind of PNG as red, green, blue and alpha of 8 or 16 bits. */
+static void expand_to_color(png_job *job, int colour)
+{
+    if (colour == PNG_COLOR_TYPE_PALETTE)
+        png_set_palette_to_rgb(job->png);
+    if (colour == PNG_COLOR_TYPE_GRAY || colour == PNG_COLOR_TYPE_GRAY_ALPHA) {
+        png_set_expand_gray_1_2_4_to_8(job->png);
+        png_set_gray_to_rgb(job->png);
+    }
+    if (png_get_valid(job->png, job->info, PNG_INFO_tRNS))
+        png_set_tRNS_to_alpha(job->png);
+    png_set_add_alpha(job->png, 0xffff, PNG_FILLER_AFTER); /* where there is none */
+}
+
+static bool decode(png_job *job, FILE *file, bool color, image *out)
 {
     if (setjmp(job->jump))
         return false;
@@ -68,39 +82,44 @@ static bool decode(png_job *job, FILE *file, image *out)
     png_set_read_fn(job->png, file, read_bytes);
     png_set_sig_bytes(job->png, 8);
     png_set_user_limits(job->png, PNG_UINT_31_MAX, PNG_UINT_31_MAX); /* image_alloc has the limits */
-    /* Heights are numbers: gamma, colour profiles, texts and the like are not even looked at. */
+    /* Samples are numbers: gamma, colour profiles, texts and the like are not even looked at. */
     png_set_keep_unknown_chunks(job->png, PNG_HANDLE_CHUNK_NEVER, NULL, -1);
     png_read_info(job->png, job->info);
 
     int colour = png_get_color_type(job->png, job->info);
-    if (colour != PNG_COLOR_TYPE_GRAY && colour != PNG_COLOR_TYPE_GRAY_ALPHA)
+    if (!color && colour != PNG_COLOR_TYPE_GRAY && colour != PNG_COLOR_TYPE_GRAY_ALPHA)
         return refuse(job, colour == PNG_COLOR_TYPE_PALETTE
                                ? "the PNG has a palette; a grey one is expected, of 8 or 16 bits"
                                : "the PNG is in colour; a grey one is expected, of 8 or 16 bits");
-    const char *why = image_alloc(out, png_get_image_width(job->png, job->info),
-                                  png_get_image_height(job->png, job->info));
+    const int values = color ? 4 : 1;
+    const char *why = image_alloc(out, png_get_image_width(job->png, job->info), png_get_image_height(job->png, job->info), values);
     if (why)
         return refuse(job, why);
     const int bytes = png_get_bit_depth(job->png, job->info) == 16 ? 2 : 1;
-    png_set_expand_gray_1_2_4_to_8(job->png); /* x 255, 85, 17: sample / maximum stays what it was */
-    png_set_strip_alpha(job->png);
+    if (color)
+        expand_to_color(job, colour);
+    else {
+        png_set_expand_gray_1_2_4_to_8(job->png); /* x 255, 85, 17: sample / maximum stays what it was */
+        png_set_strip_alpha(job->png);
+    }
     const int passes = png_set_interlace_handling(job->png);
     png_read_update_info(job->png, job->info);
-    if (png_get_rowbytes(job->png, job->info) != (size_t)out->width * (size_t)bytes)
+    const size_t row = (size_t)out->width * (size_t)values;
+    if (png_get_rowbytes(job->png, job->info) != row * (size_t)bytes)
         return refuse(job, "libpng: unexpected size of a row");
     for (int pass = 0; pass < passes; pass++)
         for (int y = 0; y < out->height; y++)
-            png_read_row(job->png, (png_bytep)(out->v + (size_t)y * (size_t)out->width), NULL);
+            png_read_row(job->png, (png_bytep)(out->v + (size_t)y * row), NULL);
     png_read_end(job->png, NULL);
     for (int y = 0; y < out->height; y++)
-        row_to_float(out->v + (size_t)y * (size_t)out->width, out->width, bytes);
+        row_to_float(out->v + (size_t)y * row, (int)row, bytes);
     return true;
 }
 
-bool image_read_png(FILE *file, image *out, char *why)
+bool image_read_png(FILE *file, bool color, image *out, char *why)
 {
     png_job job = {.why = why};
-    bool ok = decode(&job, file, out);
+    bool ok = decode(&job, file, color, out);
     png_destroy_read_struct(&job.png, &job.info, NULL);
     if (!ok) {
         free(out->v);

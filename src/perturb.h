@@ -8,7 +8,7 @@
 
 #include "expr.h"
 #include "image.h"
-#include "wave.h"
+#include "table.h"
 
 typedef struct perturb perturb;
 
@@ -32,20 +32,6 @@ struct perturb {
      * within them, too; a map's are central differences, and can stay far below. */
     real Pu_max, Pw_max;
 };
-
-/* How a map goes on when (u,w) leaves it. */
-typedef enum map_wrap { MAP_REPEAT, MAP_CLAMP, MAP_MIRROR } map_wrap;
-
-/* How a map lies on (u,w), and what makes its samples a height. */
-typedef struct map_layout {
-    double size[2];   /* of one copy of the map in u and in w; not 0 */
-    double offset[2]; /* (u,w) of its corner */
-    map_wrap wrap;
-    bool corners;     /* n samples span n - 1 cells, the first and the last on the edge, as in POV-Ray's height_field;
-                         otherwise n cells with a sample in the middle of each, as in an image map */
-    double scale;     /* scene units for one unit of the samples; negative turns the relief inside out */
-    double zero;      /* the sample whose height is 0 */
-} map_layout;
 
 /* P from samples as the paper has it (section 4.1): partials by central differences at the samples; height and
  * partials interpolated bilinearly. u goes along the rows from left to right, w down the columns. `samples` is only

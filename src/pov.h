@@ -15,6 +15,9 @@ typedef struct pov_report {
     double pixels;      /* the side of its facets on the screen */
 } pov_report;
 
+/* Whether POV-Ray has all that is in the scene. */
+bool pov_possible(const scene *s, errors *e);
+
 /* Write the scene to `path`, as scene->displaced says with bumps or without. False with the errors in *e. */
 bool pov_write(const scene *s, const pov_options *o, const char *path, pov_report *report, errors *e);
 

@@ -134,6 +134,8 @@ void pov_isosurface(pov_text *t, const scene *s, const object *o, const char *na
         pov_print(t, "union {\n");
         for (int part = 0; part < 6; part++) {
             put_flat(t, s, o, part, name);
+            if (pov_by_parts(s, o))
+                pov_texture(t, s, o, part);
             pov_print(t, "}\n");
         }
     } else

@@ -379,6 +379,8 @@ bool pov_mesh(pov_text *t, const scene *s, const object *o, pov_report *report)
     for (int part = 0; part < parts && x.memory; part++) {
         tessellate(&x, part);
         put_mesh(t, &x);
+        if (pov_by_parts(s, o))
+            pov_texture(t, s, o, part);
         if (parts > 1)
             pov_print(t, "}\n");
     }

@@ -21,6 +21,18 @@ bool pov_is_flat(const shape_spec *f);
  * and what of it can shade that. */
 void pov_plane_region(const scene *s, const object *o, double u[2], double w[2]);
 
+/* The name of a thing of the scene as an identifier of POV-Ray, which has no '-'; `index` keeps a-b and a_b apart. */
+typedef struct pov_identifier {
+    char text[96];
+} pov_identifier;
+
+pov_identifier pov_identify(const char *kind, const char *name, int index);
+
+/* All materials; and that of an object, on a part of its surface. pov_by_parts: each part has its own. */
+void pov_materials(pov_text *t, const scene *s);
+void pov_texture(pov_text *t, const scene *s, const object *o, int part);
+bool pov_by_parts(const scene *s, const object *o);
+
 /* P as a POV-Ray function of u and w, named by `name`. False where there is none. */
 bool pov_function(pov_text *t, const object *o, const char *name);
 

@@ -3,14 +3,9 @@
 
 #include <string.h>
 
-/* The name of a thing of the scene as an identifier of POV-Ray, which has no '-'; `index` keeps a-b and a_b apart. */
-typedef struct identifier {
-    char text[96];
-} identifier;
-
-static identifier identify(const char *kind, const char *name, int index)
+pov_identifier pov_identify(const char *kind, const char *name, int index)
 {
-    identifier d;
+    pov_identifier d;
     if (strchr(name, '-'))
         snprintf(d.text, sizeof d.text, "%s%d_%s", kind, index, name);
     else
@@ -19,8 +14,6 @@ static identifier identify(const char *kind, const char *name, int index)
         *c = *c == '-' ? '_' : *c;
     return d;
 }
-
-static identifier material_name(const scene *s, int k) { return identify("Material", s->material[k].name, k); }
 
 /* The base name: a file says nothing of the machine that made it. */
 static void put_head(pov_text *t, const scene *s, const pov_options *o)
@@ -32,7 +25,11 @@ static void put_head(pov_text *t, const scene *s, const pov_options *o)
         *c = (unsigned char)*c < 0x20 ? '?' : *c;
     pov_print(t, "// %s, %s, for POV-Ray 3.7\n", name, s->displaced ? "with its bumps truly displaced" : "without bumps");
     pov_print(t, "// made by: %s\n", o->command);
-    pov_print(t, "// render:  povray +I<this file> +O<picture>.exr +FE +W%d +H%d -A -D\n\n", s->width, s->height);
+    bool images = false;
+    for (int k = 0; k < s->materials; k++)
+        images |= s->material[k].pattern == PATTERN_IMAGE;
+    pov_print(t, "// render:  povray +I<this file> +O<picture>.exr +FE +W%d +H%d -A -D%s\n\n", s->width, s->height,
+              images ? " +L<the scene's folder>" : "");
     pov_print(t, "#version 3.7;\n"
                  "global_settings { assumed_gamma 1 ambient_light rgb 1 }\n\n");
 }
@@ -67,26 +64,38 @@ static void put_lights(pov_text *t, const scene *s)
     pov_print(t, "\n");
 }
 
-static void put_materials(pov_text *t, const scene *s)
-{
-    for (int k = 0; k < s->materials; k++) {
-        const material *m = &s->material[k];
-        pov_print(t, "#declare %s = texture {\n  pigment { color rgb %v }\n  finish {\n    ambient %g\n    diffuse %g\n"
-                     "    phong %g phong_size %g\n    specular %g roughness %g\n  }\n}\n\n",
-                  material_name(s, k).text, m->color, m->ambient, m->diffuse, m->phong, m->phong_size, m->specular, m->roughness);
-    }
-}
-
 void pov_object_end(pov_text *t, const scene *s, const pov_options *how, const object *o)
 {
     bool displaced = s->displaced && o->bump;
-    pov_print(t, "  texture { %s }\n", material_name(s, o->material).text);
+    if (!pov_by_parts(s, o))
+        pov_texture(t, s, o, 0);
     if ((displaced && !s->self_shadow) || (!o->bump && how->no_cast))
         pov_print(t, "  no_shadow\n");
     pov_print(t, "}\n\n");
 }
 
-static void put_smooth(pov_text *t, const object *o)
+/* A parallelogram; the brace stays open. */
+static void put_rectangle(pov_text *t, vec3 O, vec3 U, vec3 W)
+{
+    vec3 n = vec3_unit(vec3_cross(U, W));
+    pov_print(t, "polygon {\n  5, <0, 0>, <1, 0>, <1, 1>, <0, 1>, <0, 0>\n"
+                 "  matrix <%g, %g, %g,  %g, %g, %g,  %g, %g, %g,  %g, %g, %g> // u, w, n, origin\n",
+              U.x, U.y, U.z, W.x, W.y, W.z, n.x, n.y, n.z, O.x, O.y, O.z);
+}
+
+/* A box whose faces have colours of their own. */
+static void put_faces(pov_text *t, const scene *s, const object *o)
+{
+    pov_print(t, "union {\n");
+    for (int part = 0; part < o->shape->is->parts; part++) {
+        const pov_flat p = pov_flat_of(&o->shape_said, part);
+        put_rectangle(t, p.O, p.U, p.W);
+        pov_texture(t, s, o, part);
+        pov_print(t, "}\n");
+    }
+}
+
+static void put_smooth(pov_text *t, const scene *s, const object *o)
 {
     const shape_spec *f = &o->shape_said;
     switch (f->kind) {
@@ -95,15 +104,14 @@ static void put_smooth(pov_text *t, const object *o)
         pov_print(t, "plane {\n  %v, %g\n", n, vec3_dot(n, f->a));
         break;
     }
-    case SHAPE_RECTANGLE: {
-        vec3 n = vec3_unit(vec3_cross(f->u, f->w));
-        pov_print(t, "polygon {\n  5, <0, 0>, <1, 0>, <1, 1>, <0, 1>, <0, 0>\n"
-                     "  matrix <%g, %g, %g,  %g, %g, %g,  %g, %g, %g,  %g, %g, %g> // u, w, n, origin\n",
-                  f->u.x, f->u.y, f->u.z, f->w.x, f->w.y, f->w.z, n.x, n.y, n.z, f->a.x, f->a.y, f->a.z);
+    case SHAPE_RECTANGLE:
+        put_rectangle(t, f->a, f->u, f->w);
         break;
-    }
     case SHAPE_BOX:
-        pov_print(t, "box {\n  %v, %v\n", f->a, f->u);
+        if (pov_by_parts(s, o))
+            put_faces(t, s, o);
+        else
+            pov_print(t, "box {\n  %v, %v\n", f->a, f->u);
         break;
     case SHAPE_SPHERE:
         pov_print(t, "sphere {\n  %v, %g\n", f->a, f->radius);
@@ -114,7 +122,7 @@ static void put_smooth(pov_text *t, const object *o)
 static bool put_displaced(pov_text *t, const scene *s, int k, pov_report *report)
 {
     const object *o = &s->object[k];
-    identifier P = identify("P", o->name, k);
+    pov_identifier P = pov_identify("P", o->name, k);
     double gradient = 0;
     for (int part = 0; part < o->shape->is->parts; part++)
         gradient = fmax(gradient, pov_isosurface_gradient(o, part));
@@ -135,7 +143,7 @@ bool pov_write(const scene *s, const pov_options *how, const char *path, pov_rep
     put_head(&t, s, how);
     put_camera(&t, s);
     put_lights(&t, s);
-    put_materials(&t, s);
+    pov_materials(&t, s);
     for (int k = 0; good && k < s->objects; k++) {
         const object *o = &s->object[k];
         pov_print(&t, "// object %s: %s%s%s\n", o->name, o->shape->is->kind, o->bump ? ", bump by " : "",
@@ -143,7 +151,7 @@ bool pov_write(const scene *s, const pov_options *how, const char *path, pov_rep
         if (s->displaced && o->bump)
             good = put_displaced(&t, s, k, report);
         else
-            put_smooth(&t, o);
+            put_smooth(&t, s, o);
         pov_object_end(&t, s, how, o);
     }
     return pov_end(&t, good ? NULL : "out of memory", e);

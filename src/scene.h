@@ -6,6 +6,7 @@
 #include "light.h"
 #include "method.h"
 #include "perturb.h"
+#include "pigment.h"
 #include "surface.h"
 
 /* A pinhole: the ray of a pixel is from + t (forward + x right + y up), x and y over the image, so s is no unit vector
@@ -26,10 +27,19 @@ typedef struct camera_view {
     double fov;
 } camera_view;
 
+/* What a colour is made of. */
+typedef enum pattern { PATTERN_NONE, PATTERN_CHECKER, PATTERN_IMAGE } pattern;
+
 /* POV-Ray's finish: ambient and diffuse light on the colour, and two kinds of highlight in the light's colour. */
 typedef struct material {
     char *name;
     vec3 color; /* linear */
+    pattern pattern;      /* none: the colour is the same everywhere; otherwise it is the object's */
+    vec3 field[2];        /* of a checker */
+    map_layout layout;    /* of the checker's fields; of an image the wrap alone, as the rest depends on the surface */
+    texels *texels;       /* of an image, shared by the objects */
+    char *file;           /* the image as the file said it, */
+    bool exr, linear, nearest; /* its kind; a PNG taken for linear; without interpolation */
     double ambient, diffuse;
     double phong, phong_size;
     double specular, roughness;
@@ -64,6 +74,8 @@ typedef struct object {
     shape_spec shape_said;
     bump_spec bump_said;
     perturb *bump; /* NULL: smooth */
+    pigment *color;          /* NULL: the material's */
+    map_layout color_layout; /* how its image, or its fields, lie on (u,w) */
     int material;
     map_note map;
 } object;

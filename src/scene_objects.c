@@ -6,7 +6,6 @@
 #include "yaml_text.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -89,22 +88,8 @@ static surface *read_surface(reader *r, node *at, shape_spec *said)
 
 /* ---- bumps ---- */
 
-/* The file beside the scene, so that a scene finds its maps from any working directory. */
-static char *beside(reader *r, const char *file)
-{
-    const char *slash = strrchr(r->s->path, '/');
-    int folder = slash && *file != '/' ? (int)(slash - r->s->path) + 1 : 0;
-    size_t size = (size_t)folder + strlen(file) + 1;
-    char *path = malloc(size);
-    if (path)
-        snprintf(path, size, "%.*s%s", folder, r->s->path, file);
-    else
-        errors_add(r->e, "out of memory");
-    return path;
-}
-
 /* Where the map lies: by its size in (u,w), or by how often it goes into the surface's extent. */
-static bool read_layout(reader *r, node *at, const double u[2], const double w[2], map_layout *l)
+bool reader_layout(reader *r, node *at, const double u[2], const double w[2], map_layout *l)
 {
     const double extent[2] = {u[1] - u[0], w[1] - w[0]};
     const bool bounded = extent[0] < HUGE_VAL;
@@ -152,7 +137,7 @@ static bool read_samples(reader *r, node *at, image *out, map_note *note)
     const char *layer = channel ? yaml_text(r->y, channel, "the name of a channel") : NULL;
     if (!name || (channel && !layer))
         return false;
-    char *path = beside(r, name);
+    char *path = reader_beside(r, name);
     errors e = {0};
     bool good = path && image_read(path, layer, out, &e);
     if (!good && path)
@@ -184,7 +169,7 @@ static perturb *read_map(reader *r, node *at, const double u[2], const double w[
     good = scale && yaml_number(r->y, scale, 0, false, BIG, "scene units for one unit of the map, 0 or more", &l.scale) && good;
     good = zero && yaml_number(r->y, zero, -BIG, false, BIG, "the map's value whose height is 0", &l.zero) && good;
     int up = sign ? yaml_word(r->y, sign, "up down", "up (higher values are higher) or down") : -1;
-    good = read_layout(r, at, u, w, &l) && up >= 0 && good;
+    good = reader_layout(r, at, u, w, &l) && up >= 0 && good;
     good = read_samples(r, yaml_get(at, "map"), &samples, note) && good;
     if (!note->file) /* there are no samples */
         return NULL;
@@ -276,6 +261,8 @@ void reader_objects(reader *r)
         o->shape = read_surface(r, v, &o->shape_said);
         if ((m = yaml_need(r->y, v, "material", "an object")))
             o->material = find_material(r, m);
+        if (m && o->shape && s->material)
+            reader_pigment(r, m, o);
         if ((bump = yaml_get(v, "bump")) && o->shape)
             o->bump = read_bump(r, bump, o->shape, &o->map, &o->bump_said);
         if (o->bump && (s->displaced || s->shadow.kind == METHOD_EXACT) && !displace_possible(o->bump))

@@ -6,6 +6,7 @@
 #include "image.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -47,6 +48,19 @@ bool reader_number(reader *r, node *map, const char *key, double lo, bool open, 
 {
     node *at = yaml_get(map, key);
     return !at || yaml_number(r->y, at, lo, open, hi, what, x);
+}
+
+char *reader_beside(reader *r, const char *file)
+{
+    const char *slash = strrchr(r->s->path, '/');
+    int folder = slash && *file != '/' ? (int)(slash - r->s->path) + 1 : 0;
+    size_t size = (size_t)folder + strlen(file) + 1;
+    char *path = malloc(size);
+    if (path)
+        snprintf(path, size, "%.*s%s", folder, r->s->path, file);
+    else
+        errors_add(r->e, "out of memory");
+    return path;
 }
 
 /* The letters are few: names are used in --set and as layers of the image. */
@@ -156,29 +170,6 @@ static void read_render(reader *r)
         yaml_bool(r->y, k, "true or false", &s->self_shadow);
 }
 
-/* ---- materials ---- */
-
-static void read_materials(reader *r)
-{
-    scene *s = r->s;
-    node *at = reader_named(r, "materials", "materials", true, sizeof *s->material, &s->material, &s->materials), *key;
-    for (int i = 0; at && i < s->materials; i++) {
-        node *v = yaml_pair(at, i, &key);
-        material *m = &s->material[i];
-        *m = (material){.color = {1, 1, 1}, .ambient = 0.1, .diffuse = 0.6, .phong_size = 40, .roughness = 0.05};
-        m->name = reader_name(r, at, key);
-        if (!yaml_map(r->y, v, "a material", "color ambient diffuse phong phong_size specular roughness"))
-            continue;
-        reader_color(r, v, "color", &m->color);
-        reader_number(r, v, "ambient", 0, false, BIG, "a share of light, 0 or more", &m->ambient);
-        reader_number(r, v, "diffuse", 0, false, BIG, "a share of light, 0 or more", &m->diffuse);
-        reader_number(r, v, "phong", 0, false, BIG, "a share of light, 0 or more", &m->phong);
-        reader_number(r, v, "phong_size", 0, true, BIG, "an exponent above 0", &m->phong_size);
-        reader_number(r, v, "specular", 0, false, BIG, "a share of light, 0 or more", &m->specular);
-        reader_number(r, v, "roughness", 0, true, BIG, "a number above 0; small is sharp", &m->roughness);
-    }
-}
-
 /* ---- the whole ---- */
 
 scene *scene_read(const char *path, int sets, char *const *set, errors *e)
@@ -195,7 +186,7 @@ scene *scene_read(const char *path, int sets, char *const *set, errors *e)
             read_camera(&r);
             read_render(&r);
             reader_lights(&r);
-            read_materials(&r);
+            reader_materials(&r);
             reader_objects(&r);
         }
         yaml_close(r.y);
@@ -214,13 +205,17 @@ void scene_free(scene *s)
         return;
     for (int i = 0; i < s->lights; i++)
         free(s->light[i].name);
-    for (int i = 0; i < s->materials; i++)
+    for (int i = 0; i < s->materials; i++) {
         free(s->material[i].name);
+        free(s->material[i].file);
+        texels_free(s->material[i].texels);
+    }
     for (int i = 0; i < s->objects; i++) {
         object *o = &s->object[i];
         free(o->name);
         surface_free(o->shape);
         perturb_free(o->bump);
+        pigment_free(o->color);
         free(o->bump_said.function);
         free(o->map.file);
     }

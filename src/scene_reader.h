@@ -36,6 +36,16 @@ node *reader_named(reader *r, const char *key, const char *what, bool need, size
 /* (scene_lights.c) */
 void reader_lights(reader *r);
 
+/* The file beside the scene, so that a scene finds its files from any working directory; owned. */
+char *reader_beside(reader *r, const char *file);
+
+/* Where a map lies on a surface with that extent: size or repeat, offset, wrap and samples. (scene_objects.c) */
+bool reader_layout(reader *r, node *at, const double u[2], const double w[2], map_layout *l);
+
+/* (scene_materials.c) The materials; the colour of an object's, where it is not constant. `at`: the object's material, for errors. */
+void reader_materials(reader *r);
+void reader_pigment(reader *r, node *at, object *o);
+
 /* The objects with their surfaces and bumps; after the materials, whose names they give. (scene_objects.c) */
 void reader_objects(reader *r);
 

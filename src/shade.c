@@ -3,8 +3,21 @@
 #include "kmath.h"
 #include "lane.h"
 
+STAGE static void ambient_pattern(group *restrict g, real share)
+{
+    for (int i = 0; i < g->n; i++) {
+        g->rgb.x[i] = share * g->color.x[i];
+        g->rgb.y[i] = share * g->color.y[i];
+        g->rgb.z[i] = share * g->color.z[i];
+    }
+}
+
 void shade_ambient(group *g, const material *m)
 {
+    if (m->pattern) {
+        ambient_pattern(g, (real)m->ambient);
+        return;
+    }
     vec3s_fill(&g->rgb, g->n, (real)(m->ambient * m->color.x), (real)(m->ambient * m->color.y),
                (real)(m->ambient * m->color.z));
 }
@@ -43,7 +56,8 @@ static inline real facing(const group *g, int i, way to, bs_vec3 *L, bs_vec3 *n)
     return side * bs_dot(smooth, d) > 0 ? lit : 0;
 }
 
-static inline void diffuse(group *restrict g, const material *m, const light *l, const way to)
+/* Call it with constants: a choice in the loop would keep it from being vectorised. With a pattern the material's own colour is 1. */
+static inline void diffuse(group *restrict g, const material *m, const light *l, const way to, bool own)
 {
     const real kr = (real)(m->diffuse * m->color.x * l->color.x), kg = (real)(m->diffuse * m->color.y * l->color.y),
                kb = (real)(m->diffuse * m->color.z * l->color.z);
@@ -51,14 +65,16 @@ static inline void diffuse(group *restrict g, const material *m, const light *l,
         bs_vec3 L, n;
         real lit = facing(g, i, to, &L, &n);
         real c = lit * real_max(bs_dot(n, L), 0);
-        g->rgb.x[i] += kr * c;
-        g->rgb.y[i] += kg * c;
-        g->rgb.z[i] += kb * c;
+        g->rgb.x[i] += kr * c * (own ? g->color.x[i] : 1);
+        g->rgb.y[i] += kg * c * (own ? g->color.y[i] : 1);
+        g->rgb.z[i] += kb * c * (own ? g->color.z[i] : 1);
     }
 }
 
-STAGE static void diffuse_to(group *g, const material *m, const light *l) { diffuse(g, m, l, way_to(l)); }
-STAGE static void diffuse_against(group *g, const material *m, const light *l) { diffuse(g, m, l, way_against(l)); }
+STAGE static void diffuse_to(group *g, const material *m, const light *l) { diffuse(g, m, l, way_to(l), false); }
+STAGE static void diffuse_against(group *g, const material *m, const light *l) { diffuse(g, m, l, way_against(l), false); }
+STAGE static void diffuse_pattern_to(group *g, const material *m, const light *l) { diffuse(g, m, l, way_to(l), true); }
+STAGE static void diffuse_pattern_against(group *g, const material *m, const light *l) { diffuse(g, m, l, way_against(l), true); }
 
 /* Phong's highlight: the mirrored view against the light. */
 static inline void phong(const group *restrict g, const way to, double *restrict c, real *restrict lit)
@@ -109,7 +125,10 @@ STAGE static void add_highlight(group *restrict g, const light *l, double share,
 void shade_light(group *g, const material *m, const light *l)
 {
     const bool along = l->kind == LIGHT_PARALLEL;
-    (along ? diffuse_against : diffuse_to)(g, m, l);
+    if (m->pattern)
+        (along ? diffuse_pattern_against : diffuse_pattern_to)(g, m, l);
+    else
+        (along ? diffuse_against : diffuse_to)(g, m, l);
     double c[LANES];
     real lit[LANES];
     if (m->phong > 0) {

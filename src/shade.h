@@ -5,7 +5,9 @@
 #include "group.h"
 #include "scene.h"
 
-/* g->rgb = ambient light. */
+/* Both take the material's colour where it is constant, otherwise g->color.
+ *
+ * g->rgb = ambient light. */
 void shade_ambient(group *g, const material *m);
 
 /* g->rgb += what this light sends from p1 = r + s t_hit to the eye, with n', where g->lit. A light on the far side of

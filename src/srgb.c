@@ -85,3 +85,16 @@ void srgb_encode(const srgb *s, int n, const float *linear, uint16_t *code)
         code[i] = (uint16_t)k;
     }
 }
+
+bool srgb_decode(size_t n, float *v)
+{
+    float *linear = malloc(65536 * sizeof *linear); /* 1/255 is 257/65535 */
+    if (!linear)
+        return false;
+    for (int k = 0; k < 65536; k++)
+        linear[k] = (float)linear_of(k / 65535.0);
+    for (size_t i = 0; i < 4 * n; i++)
+        v[i] = i % 4 < 3 ? linear[(int)(v[i] * 65535 + 0.5f)] : v[i];
+    free(linear);
+    return true;
+}

@@ -124,6 +124,8 @@ void trace_group(const tracer *k, int id, workspace *v)
         stats_stage(st, STAGE_SURFACE);
     } else
         shape_and_shift(k, o, g, st);
+    if (o->color)
+        o->color->is->eval(o->color, g->n, g->u, g->w, &g->color);
     shade_ambient(g, m);
     for (int l = 0; l < sc->lights; l++) {
         shadow(k, id, &sc->light[l], g, st);

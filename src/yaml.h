@@ -37,6 +37,7 @@ bool yaml_error_in(yaml *y, node *at, size_t offset, const char *fmt, ...) KAGE_
 
 /* Maps. `yaml_map` checks that the node is one with no other keys than `keys` (separated by spaces, any where NULL). */
 bool yaml_map(yaml *y, node *at, const char *what, const char *keys);
+bool yaml_is_map(node *at);
 node *yaml_get(node *map, const char *key); /* NULL: not there */
 node *yaml_first(node *map, const char *key); /* the key itself; of several of that name the first */
 node *yaml_need(yaml *y, node *map, const char *key, const char *what); /* NULL: an error is told */

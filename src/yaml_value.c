@@ -55,6 +55,8 @@ bool yaml_map(yaml *y, node *at, const char *what, const char *keys)
     return good;
 }
 
+bool yaml_is_map(node *at) { return fy_node_is_mapping(at); }
+
 node *yaml_get(node *map, const char *key) { return fy_node_mapping_lookup_by_string(map, key, FY_NT); }
 
 node *yaml_first(node *map, const char *key)

@@ -135,6 +135,45 @@ REPLACED = [
      "7:23: -0.7 is less than 0, expected a linear colour [red, green, blue], 0 or more each"),
     ("color-name", "color: [0.8, 0.7, 0.6]", "color: red",
      "7:17: a single value, expected a linear colour [red, green, blue], 0 or more each"),
+    ("color-kind", "color: [0.8, 0.7, 0.6]", "color: {cheker: {}}", "7:18: color has no 'cheker', did you mean 'checker'?"),
+    ("color-neither", "color: [0.8, 0.7, 0.6]", "color: {}",
+     "7:17: a color with neither checker nor image, expected either 'checker' or 'image'"),
+    ("color-both", "color: [0.8, 0.7, 0.6]", "color: {checker: {even: [1, 1, 1], odd: [0, 0, 0]}, image: {file: color.png}}",
+     "7:17: a color with both checker and image, expected either 'checker' or 'image'"),
+    ("checker-no-odd", "color: [0.8, 0.7, 0.6]", "color: {checker: {even: [1, 1, 1]}}", "7:27: checker lacks its 'odd'"),
+    ("checker-key", "color: [0.8, 0.7, 0.6]", "color: {checker: {even: [1, 1, 1], odd: [0, 0, 0], scale: 2}}",
+     "7:61: checker has no 'scale', expected one of: even odd size offset"),
+    ("checker-color", "color: [0.8, 0.7, 0.6]", "color: {checker: {even: white, odd: [0, 0, 0]}}",
+     "7:34: a single value, expected a linear colour [red, green, blue], 0 or more each"),
+    ("checker-size", "color: [0.8, 0.7, 0.6]", "color: {checker: {even: [1, 1, 1], odd: [0, 0, 0], size: [1, 0]}}",
+     "7:71: 0 is less than 1e-06, expected the size of a field [in u, in w], 1e-6 or more"),
+    ("image-no-file", "color: [0.8, 0.7, 0.6]", "color: {image: {wrap: repeat}}", "7:25: image lacks its 'file'"),
+    ("image-color-key", "color: [0.8, 0.7, 0.6]", "color: {image: {file: color.png, gamma: 2}}",
+     "7:43: image has no 'gamma', expected one of: file encoding size repeat offset wrap interpolation"),
+    ("image-missing", "color: [0.8, 0.7, 0.6]", "color: {image: {file: none.png, size: [1, 1]}}",
+     "7:32: 'none.png' can't be used: No such file or directory"),
+    ("image-one", "color: [0.8, 0.7, 0.6]", "color: {image: {file: one.png, size: [1, 1]}}",
+     "7:32: 'one.png' has 1 x 1 pixels, expected at least 2 x 2"),
+    ("image-cut", "color: [0.8, 0.7, 0.6]", "color: {image: {file: cut.png, size: [1, 1]}}",
+     "7:32: 'cut.png' can't be used: libpng: the file ends too early"),
+    ("image-alpha", "color: [0.8, 0.7, 0.6]", "color: {image: {file: alpha.png, size: [1, 1]}}",
+     "7:32: 'alpha.png' can't be used: the pixel in column 3 of row 2 (both from 0) is transparent; an opaque image is expected"),
+    ("image-exr-channels", "color: [0.8, 0.7, 0.6]", "color: {image: {file: two.exr, size: [1, 1]}}",
+     "7:32: 'two.exr' can't be used: which channel is meant? The file has a, b"),
+    ("image-exr-nan", "color: [0.8, 0.7, 0.6]", "color: {image: {file: nan.exr, size: [1, 1]}}",
+     "7:32: 'nan.exr' can't be used: the sample in column 2 of row 1 (both from 0) is NaN"),
+    ("image-exr-srgb", "color: [0.8, 0.7, 0.6]", "color: {image: {file: rgb.exr, encoding: srgb, size: [1, 1]}}",
+     "7:32: 'rgb.exr' can't be used: an OpenEXR file is linear; srgb is for PNG"),
+    ("image-exr-rg", "color: [0.8, 0.7, 0.6]", "color: {image: {file: rg.exr, size: [1, 1]}}",
+     "7:32: 'rg.exr' can't be used: not all of the channels R, G and B are there"),
+    ("image-encoding", "color: [0.8, 0.7, 0.6]", "color: {image: {file: color.png, encoding: sRGB, size: [1, 1]}}",
+     "7:53: 'sRGB' is unknown, expected srgb or linear"),
+    ("image-interpolation", "color: [0.8, 0.7, 0.6]", "color: {image: {file: color.png, interpolation: cubic, size: [1, 1]}}",
+     "7:58: 'cubic' is unknown, expected bilinear or nearest"),
+    ("image-wrap", "color: [0.8, 0.7, 0.6]", "color: {image: {file: color.png, wrap: once, size: [1, 1]}}",
+     "7:49: 'once' is unknown, expected repeat, clamp or mirror"),
+    ("image-on-plane", "color: [0.8, 0.7, 0.6]", "color: {image: {file: color.png}}",
+     "11:15: the image of 'clay' has no 'size', expected one for a surface without ends"),
     ("ambient-negative", "ambient: 0.1", "ambient: -0.1",
      "7:43: -0.1 is less than 0, expected a share of light, 0 or more"),
     ("roughness", "diffuse: 0.8", "roughness: 0",
@@ -309,10 +348,17 @@ def images(tmp_path_factory: pytest.TempPathFactory) -> Path:
     Image.fromarray(np.stack([grey] * 3, -1)).save(folder / "color.png")
     Image.fromarray(grey).convert("P").save(folder / "palette.png")
     Image.fromarray(grey[:1, :1]).save(folder / "one.png")
+    colors = np.stack([grey] * 4, -1)
+    colors[..., 3] = 255
+    Image.fromarray(colors).save(folder / "opaque.png")
+    colors[2, 3, 3] = 254
+    Image.fromarray(colors).save(folder / "alpha.png")
     (folder / "empty.png").touch()
     (folder / "cut.png").write_bytes((folder / "map.png").read_bytes()[:60])
     heights = grey.astype(np.float32)
     write_exr(folder / "two.exr", a=heights, b=heights)
+    write_exr(folder / "rgb.exr", R=heights, G=heights, B=heights)
+    write_exr(folder / "rg.exr", R=heights, G=heights)
     (folder / "cut.exr").write_bytes((folder / "two.exr").read_bytes()[:400])
     heights[1, 2] = np.nan
     write_exr(folder / "nan.exr", Y=heights)
@@ -361,6 +407,14 @@ def errors_in(lines: list[str]) -> list[str]:
 def test_scene_without_a_mistake(bench: Kage) -> None:
     (bench.folder / "scene.yaml").write_text(SCENE)
     assert "object ball: sphere" in bench.good("check", "scene.yaml")
+
+
+def test_opaque_images(bench: Kage) -> None:
+    """An alpha channel is no harm where it is 1; and grey, palette, PNG and EXR are all colours."""
+    for file in ("opaque.png", "color.png", "map.png", "palette.png", "rgb.exr"):
+        (bench.folder / "scene.yaml").write_text(
+            SCENE.replace("color: [0.8, 0.7, 0.6]", f"color: {{image: {{file: {file}, size: [1, 1]}}}}"))
+        bench.good("check", "scene.yaml")
 
 
 @pytest.mark.parametrize(("old", "new", "message"), [case[1:] for case in REPLACED], ids=[case[0] for case in REPLACED])
@@ -688,13 +742,14 @@ def test_examples_of_the_page(kage: Kage, images: Path, block: tuple[int, str]) 
     (kage.folder / "scene.yaml").write_text(completed(block[1]))
     (kage.folder / "bumps.png").symlink_to(images / "map.png")
     (kage.folder / "heights.exr").symlink_to(images / "two.exr")
+    (kage.folder / "wood.png").symlink_to(images / "color.png")
     assert "warning" in kage.good("check", "scene.yaml")
 
 
 def test_the_page_names_every_key() -> None:
     """Every key that the reader takes stands in the page as code."""
-    source = "".join((TOP / "src" / name).read_text() for name in ("scene_read.c", "scene_objects.c"))
+    source = "".join(path.read_text() for path in (TOP / "src").glob("scene_*.c"))
     keys = {key for words in re.findall(r'yaml_map\([^;]*?"([a-z_ ]+)"\)', source) for key in words.split()}
-    assert {"camera", "fov", "phong_size", "samples"} <= keys
+    assert {"camera", "fov", "phong_size", "samples", "tightness", "encoding"} <= keys
     text = PAGE.read_text()
     assert not [key for key in sorted(keys) if not re.search(rf"`{key}[`:]|^\s*{key}:|[{{ ]{key}:", text, re.MULTILINE)]

@@ -176,6 +176,97 @@ def test_smooth_parity(kage: Kage, capsys: pytest.CaptureFixture[str]) -> None:
     assert not wrong
 
 
+#: name: (colour, object)
+SPHERE = "sphere: {center: [0.1, 1, 0], radius: 1}"
+COLORS = {
+    "checker plane": ("{checker: {even: [0.9, 0.8, 0.7], odd: [0.1, 0.2, 0.4], size: [0.7, 0.4], offset: [0.1, 0.05]}}",
+                      "plane: {origin: [0, 0, 0], u: [2, 0.1, 0.3], w: [0.4, 0.2, -3]}"),
+    "checker rectangle": ("{checker: {even: [0.9, 0.8, 0.7], odd: [0.1, 0.2, 0.4], size: [0.25, 0.2]}}",
+                          "rectangle: {origin: [-1, 0.5, 0.2], u: [2, 0.4, 0.3], w: [0.5, 1.2, 0.4]}"),
+    "checker box": ("{checker: {even: [0.9, 0.8, 0.7], odd: [0.1, 0.2, 0.4], size: [0.3, 0.5]}}",
+                    "box: {from: [-0.6, 0.55, -0.6], to: [0.6, 1.75, 0.6]}"),
+    "checker sphere": ("{checker: {even: [0.9, 0.8, 0.7], odd: [0.1, 0.2, 0.4], size: [0.5, 0.3], offset: [0.1, 0]}}", SPHERE),
+    "image plane": ("{image: {file: color.png, size: [0.8, 1.1], offset: [0.3, 0.2]}}",
+                    "plane: {origin: [0, 0, 0], u: [2, 0.1, 0.3], w: [0.4, 0.2, -3]}"),
+    "image rectangle, nearest": ("{image: {file: color.png, interpolation: nearest, wrap: clamp}}",
+                                 "rectangle: {origin: [-1, 2.1, 0.2], u: [2, 0.4, 0.3], w: [0.5, -1.2, 0.4]}"),
+    "image box": ("{image: {file: color.png, repeat: [2, 1]}}", "box: {from: [-0.6, 0.55, -0.6], to: [0.6, 1.75, 0.6]}"),
+    "image sphere": ("{image: {file: color.png}}", SPHERE),
+    "image sphere, a seam": ("{image: {file: color.png, size: [2.5, 2], offset: [0.4, 0.3]}}", SPHERE),
+    "image, 16 bits, grey": ("{image: {file: grey.png, size: [2, 2]}}", "plane: {origin: [0, 0, 0], u: [0, 0, 1], w: [1, 0, 0]}"),
+    "image, linear": ("{image: {file: color.png, encoding: linear, size: [2, 2]}}",
+                      "plane: {origin: [0, 0, 0], u: [0, 0, 1], w: [1, 0, 0]}"),
+    "image, palette": ("{image: {file: palette.png, size: [2, 2], interpolation: nearest}}",
+                       "plane: {origin: [0, 0, 0], u: [0, 0, 1], w: [1, 0, 0]}"),
+    "image, EXR": ("{image: {file: color.exr, size: [2, 2]}}", "plane: {origin: [0, 0, 0], u: [0, 0, 1], w: [1, 0, 0]}"),
+}
+
+
+def write_images(folder: Path) -> None:
+    x, y = np.meshgrid(np.arange(24), np.arange(16))
+    red, green, blue = 127 + 120 * np.sin(x / 3), 127 + 120 * np.cos(y / 2 + x / 5), 255 * (x + y) / 38
+    rgb = np.stack([red, green, blue], axis=-1)
+    rgb[:4, :4] = 255, 0, 0  # which corner is which
+    rgb[-4:, :4] = 0, 255, 0
+    picture = Image.fromarray(rgb.astype(np.uint8))
+    picture.save(folder / "color.png")
+    picture.quantize(16).save(folder / "palette.png")
+    Image.fromarray((257 * red).astype(np.uint16)).save(folder / "grey.png")
+    channels = {name: (rgb[..., k] / 200).astype(np.float32) for k, name in enumerate("RGB")}
+    OpenEXR.File({"type": OpenEXR.scanlineimage}, channels).write(str(folder / "color.exr"))
+
+
+def write_colored(kage: Kage, color: str, shape: str, more: str = "") -> Path:
+    write_images(kage.folder)
+    scene = kage.folder / "color.yaml"
+    head = HEAD.format(camera=CAMERA, lights=LIGHTS).replace("objects:\n", f"  own: {{color: {color}, ambient: 0.2, phong: 0.3}}\nobjects:\n")
+    scene.write_text(head + f"  it:\n    {shape}\n    material: own\n{more}" + "  above: {sphere: {center: [-0.9, 2.3, -1], radius: 0.25}, material: shiny}\n")
+    return scene
+
+
+@needs_povray
+@pytest.mark.parametrize("name", COLORS)
+def test_color_parity(kage: Kage, name: str) -> None:
+    scene = write_colored(kage, *COLORS[name])
+    kage.good("pov", scene, "-o", "color.pov", "--surface", "smooth")
+    kage.good("render", scene, "-o", "picture.exr", "--quiet")
+    picture = layers(kage.folder / "picture.exr")
+    theirs, words = povray(kage.folder / "color.pov")
+    off = np.abs(np.stack([picture[channel] for channel in "RGB"], axis=-1) - theirs).max(axis=-1)
+    close = float((off <= np.maximum(STEP, np.abs(theirs).max(axis=-1) * 2.0**-10)).mean())
+    assert not words.strip()
+    assert close >= 0.999, f"{100 * close:.3f} %"
+    assert theirs.std() > 0.05
+
+
+@needs_povray
+@pytest.mark.parametrize(("name", "bump"), [
+    *((name, "{function: '0.05*sin(8*u)*sin(8*w)*sin(w)^2'}") for name in ("checker plane", "checker box", "image box", "image sphere, a seam")),
+    *((name, "{function: '0.05*sin(5*u)^2*sin(w)^2 + 0*noise(u,w)'}") for name in ("image box", "image sphere, a seam")),
+], ids=lambda value: "mesh" if "noise" in value else "isosurface" if value[0] == "{" else value)
+def test_displaced_color_parity(kage: Kage, name: str, bump: str) -> None:
+    """Colours lie on the truly rough surface where they lie on the smooth one."""
+    scene = write_colored(kage, *COLORS[name], more=f"    bump: {bump}\n")
+    kage.good("pov", scene, "-o", "color.pov", "--surface", "displaced", "--size", "100x75")
+    kage.good("render", scene, "-o", "picture.exr", "--quiet", "--surface", "displaced", "--size", "100x75")
+    assert ("mesh2 {" in (kage.folder / "color.pov").read_text()) == ("noise" in bump)
+    picture = layers(kage.folder / "picture.exr")
+    theirs, words = povray(kage.folder / "color.pov", (100, 75))
+    off = np.abs(np.stack([picture[channel] for channel in "RGB"], axis=-1) - theirs).max(axis=-1)
+    assert not words.strip()
+    assert (off <= STEP).mean() > 0.99
+
+
+@pytest.mark.parametrize("color", ["{image: {file: color.png, wrap: clamp}}", "{image: {file: color.png, wrap: mirror}}",
+                                   "{image: {file: color.png, wrap: clamp, interpolation: nearest, size: [0.5, 1]}}"])
+def test_image_that_povray_has_not(kage: Kage, color: str) -> None:
+    scene = write_colored(kage, color, "rectangle: {origin: [-1, 2.1, 0.2], u: [2, 0.4, 0.3], w: [0.5, -1.2, 0.4]}")
+    done = kage("pov", scene, "-o", "color.pov")
+    assert done.returncode == 2 and "object it: POV-Ray's images repeat and do nothing else, expected 'wrap: repeat'" in done.stderr
+    assert not (kage.folder / "color.pov").exists()
+    kage.good("render", scene, "-o", "color.exr", "--quiet")
+
+
 @needs_povray
 def test_area_light_as_adaptive_0(kage: Kage) -> None:
     """POV-Ray's usual way leaves samples out where the four around them agree: no picture of its own, but close."""

@@ -1,0 +1,137 @@
+/* Materials for the POV-Ray writer. A colour that is not constant becomes a pigment in the surface's own (u,w): on a flat surface in its
+ * frame, on a sphere by POV-Ray's spherical warp, whose axis is y and whose x is u/2pi in 0..1.
+ */
+#include "pov_parts.h"
+
+#include <string.h>
+
+#define PI 3.14159265358979323846
+
+/* ---- what has to do ---- */
+
+/* Whether all of the surface is on the image. */
+static bool covers(const object *o)
+{
+    double u[2], w[2];
+    const map_layout *l = &o->color_layout;
+    o->shape->is->extent(o->shape, u, w);
+    return l->offset[0] <= u[0] && l->offset[0] + l->size[0] >= u[1] && l->offset[1] <= w[0] && l->offset[1] + l->size[1] >= w[1];
+}
+
+bool pov_possible(const scene *s, errors *e)
+{
+    bool good = true;
+    for (int k = 0; k < s->objects; k++) {
+        const object *o = &s->object[k];
+        const material *m = &s->material[o->material];
+        if (m->pattern == PATTERN_IMAGE && m->layout.wrap != MAP_REPEAT && !(m->layout.wrap == MAP_CLAMP && m->nearest && covers(o)))
+            good = errors_add(e, "%s: object %s: POV-Ray's images repeat and do nothing else, expected 'wrap: repeat' in material %s%s", s->path,
+                              o->name, m->name,
+                              m->layout.wrap == MAP_CLAMP ? ", or 'interpolation: nearest' on an image as large as the surface" : "");
+    }
+    return good;
+}
+
+/* ---- materials ---- */
+
+static void put_finish(pov_text *t, const material *m, const char *in)
+{
+    pov_print(t, "%sfinish {\n%s  ambient %g\n%s  diffuse %g\n%s  phong %g phong_size %g\n%s  specular %g roughness %g\n%s}\n", in, in,
+              m->ambient, in, m->diffuse, in, m->phong, m->phong_size, in, m->specular, m->roughness, in);
+}
+
+void pov_materials(pov_text *t, const scene *s)
+{
+    bool checkers = false;
+    for (int k = 0; k < s->materials; k++) {
+        const material *m = &s->material[k];
+        checkers |= m->pattern == PATTERN_CHECKER;
+        if (m->pattern)
+            pov_print(t, "#declare %s =\n", pov_identify("Finish", m->name, k).text);
+        else
+            pov_print(t, "#declare %s = texture {\n  pigment { color rgb %v }\n", pov_identify("Material", m->name, k).text, m->color);
+        put_finish(t, m, "  ");
+        pov_print(t, m->pattern ? "\n" : "}\n\n");
+    }
+    if (checkers)
+        pov_print(t, "// 0 on the even fields, 1/2 on the odd ones\n"
+                     "#declare Checker = function(u, w) { 0.5*(floor(u) + floor(w)) - floor(0.5*(floor(u) + floor(w))) }\n\n");
+}
+
+static void put_checker(pov_text *t, const object *o, const material *m)
+{
+    const map_layout *l = &o->color_layout;
+    const bool flat = pov_is_flat(&o->shape_said);
+    pov_print(t, "    function { Checker((%s - %s)/%s, ", flat ? "x" : "atan2(z, x)", pov_exact(l->offset[0]).text,
+              pov_exact(l->size[0]).text);
+    pov_print(t, "(%s - %s)/%s) }\n", flat ? "y" : "atan2(sqrt(x*x + z*z), y)", pov_exact(l->offset[1]).text, pov_exact(l->size[1]).text);
+    pov_print(t, "    color_map { [0.25 color rgb %v] [0.25 color rgb %v] }\n", m->field[0], m->field[1]);
+}
+
+static void put_image_map(pov_text *t, const material *m)
+{
+    pov_print(t, "image_map { %s \"", m->exr ? "exr" : "png");
+    for (const char *c = m->file; *c; c++)
+        pov_print(t, *c == '"' || *c == '\\' ? "\\%s" : "%s", (char[2]){*c, 0});
+    pov_print(t, "\"%s%s }", m->exr ? "" : m->linear ? " gamma 1" : " gamma srgb", m->nearest ? "" : " interpolate 2");
+}
+
+/* In POV-Ray an image's lower left corner is in the origin. */
+static void put_flat_image(pov_text *t, const object *o, const material *m)
+{
+    const map_layout *l = &o->color_layout;
+    pov_print(t, "    ");
+    put_image_map(t, m);
+    pov_print(t, "\n    scale <1, -1, 1> translate y // its first row at the lowest w\n");
+    pov_print(t, "    scale <%g, %g, 1> translate <%g, %g, 0>\n", l->size[0], l->size[1], l->offset[0], l->offset[1]);
+}
+
+/* `turns`: 1 for u below 0. */
+static void put_round_image(pov_text *t, const object *o, const material *m, int turns)
+{
+    const map_layout *l = &o->color_layout;
+    put_image_map(t, m);
+    pov_print(t, "\n      scale <%g, %g, 1> translate <%g, %g, 0> warp { spherical orientation z dist_exp 0 }\n", l->size[0] / (2 * PI),
+              l->size[1] / PI, l->offset[0] / (2 * PI) + turns, 1 - (l->offset[1] + l->size[1]) / PI);
+}
+
+/* An image that does not close around the sphere has its seam at u = pi, where z changes its sign behind the axis. */
+static void put_sphere_image(pov_text *t, const object *o, const material *m)
+{
+    const double times = 2 * PI / o->color_layout.size[0];
+    if (fabs(times - floor(times + 0.5)) < 1e-9) {
+        pov_print(t, "      ");
+        put_round_image(t, o, m, 0);
+        return;
+    }
+    pov_print(t, "    function { select(z, 0, 1) }\n    pigment_map {\n      [0.5 ");
+    put_round_image(t, o, m, 1);
+    pov_print(t, "      ]\n      [0.5 ");
+    put_round_image(t, o, m, 0);
+    pov_print(t, "      ]\n    }\n");
+}
+
+void pov_texture(pov_text *t, const scene *s, const object *o, int part)
+{
+    const material *m = &s->material[o->material];
+    if (!m->pattern) {
+        pov_print(t, "  texture { %s }\n", pov_identify("Material", m->name, o->material).text);
+        return;
+    }
+    pov_print(t, "  texture {\n    pigment { // in (u, w)\n");
+    if (m->pattern == PATTERN_CHECKER)
+        put_checker(t, o, m);
+    else if (pov_is_flat(&o->shape_said))
+        put_flat_image(t, o, m);
+    else
+        put_sphere_image(t, o, m);
+    if (pov_is_flat(&o->shape_said)) {
+        const pov_flat p = pov_flat_of(&o->shape_said, part);
+        pov_print(t, "    matrix <%g, %g, %g,  %g, %g, %g,  %g, %g, %g,  %g, %g, %g>\n", p.U.x, p.U.y, p.U.z, p.W.x, p.W.y, p.W.z, p.y.x,
+                  p.y.y, p.y.z, p.O.x, p.O.y, p.O.z);
+    } else
+        pov_print(t, "    translate %v\n", o->shape_said.a);
+    pov_print(t, "    }\n    finish { %s }\n  }\n", pov_identify("Finish", m->name, o->material).text);
+}
+
+bool pov_by_parts(const scene *s, const object *o) { return s->material[o->material].pattern && o->shape->is->parts > 1; }
