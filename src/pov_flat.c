@@ -57,6 +57,13 @@ static void hold_casters(region *r, double u, double w, double share)
     hold(r, u1 + share * (u - u1), w1 + share * (w - w1));
 }
 
+/* Where an orthographic camera's ray meets the ground; not before the ray begins, and not beyond all measure where it runs along. */
+static double meet(const scene *s, double t)
+{
+    double end = 100 * (s->view.width + vec3_length(vec3_sub(s->view.at, s->camera.from)));
+    return t > 0 ? fmin(t, end) : 0;
+}
+
 /* The edge of what is seen runs along rays through the picture's edge: where they meet the planes at Pmin and Pmax. Those that
  * do not are followed to where the ground is within half a pixel of the horizon. */
 void pov_plane_region(const scene *s, const object *o, double u[2], double w[2])
@@ -79,12 +86,18 @@ void pov_plane_region(const scene *s, const object *o, double u[2], double w[2])
     for (int side = 0; side < 4; side++)
         for (int i = 0; i <= STEPS; i++) {
             double x = side < 2 ? 2.0 * i / STEPS - 1 : side == 2 ? -1 : 1, y = side < 2 ? 2 * side - 1 : 2.0 * i / STEPS - 1;
-            vec3 ray = vec3_add(c->forward, vec3_add(vec3_scale(c->right, x), vec3_scale(c->up, y)));
+            vec3 off = vec3_add(vec3_scale(c->right, x), vec3_scale(c->up, y));
+            vec3 ray = c->orthographic ? c->forward : vec3_add(c->forward, off);
+            vec3 start = c->orthographic ? vec3_add(c->from, off) : c->from;
             double slope = vec3_dot(n, ray);
             vec3 along = vec3_sub(ray, vec3_scale(n, slope));
             double t_far = far / fmax(vec3_length(along), 1e-9);
             for (int k = 0; k < 2; k++) {
-                double t = (level[k] - eye) / slope;
+                double t = (level[k] - vec3_dot(n, vec3_sub(start, f->a))) / slope;
+                if (c->orthographic) {
+                    hold_place(&r, vec3_add(start, vec3_scale(along, meet(s, t))));
+                    continue;
+                }
                 t = t > 0 && t < t_far ? t : t_far;
                 /* up and away from the plane nothing is seen */
                 if (t == t_far && ((eye > level[1] && slope > 0) || (eye < level[0] && slope < 0)) && t_far * fabs(slope) > far)

@@ -36,13 +36,13 @@ typedef struct tessellation {
 
 /* ---- where a cell is on the screen ---- */
 
-/* Depth along the view, and pixels from the middle times depth. */
+/* Depth along the view, and places on the screen times depth; orthographic, as for depth 1. */
 static vec3 project(const scene *s, vec3 p)
 {
     const camera *c = &s->camera;
     vec3 d = vec3_sub(p, c->from);
     return (vec3){vec3_dot(d, c->right) / vec3_dot(c->right, c->right), vec3_dot(d, c->up) / vec3_dot(c->up, c->up),
-                  vec3_dot(d, c->forward)};
+                  c->orthographic ? 1 : vec3_dot(d, c->forward)};
 }
 
 typedef struct corners {
@@ -146,7 +146,7 @@ static int cell_division(const tessellation *x, int64_t i, int64_t j)
         return 0;
     corners c = block_corners(x, i, j, 1);
     int k = x->tolerance > FINE ? 1 : 2;
-    vec3 view = vec3_sub(c.Q[0], x->s->camera.from);
+    vec3 view = x->s->camera.orthographic ? x->s->camera.forward : vec3_sub(c.Q[0], x->s->camera.from);
     bool away = !x->flat && vec3_dot(c.n, view) > 0.4 * vec3_length(view); /* beyond what bumps bring into sight */
     if (away || !block_seen(x, &c))
         return 1;

@@ -37,9 +37,15 @@ static void put_head(pov_text *t, const scene *s, const pov_options *o)
 static void put_camera(pov_text *t, const scene *s)
 {
     const camera_view *v = &s->view;
-    pov_print(t, "camera {\n  perspective\n  location %v\n  sky %v\n  right x*image_width/image_height\n  up y\n"
-                 "  angle %g // horizontal\n  look_at %v\n}\n\nbackground { color rgb %v }\n\n",
-              s->camera.from, v->up, v->fov, v->at, s->background);
+    if (s->camera.orthographic)
+        pov_print(t, "camera {\n  orthographic\n  location %v\n  sky %v\n  right x*%g\n  up y*%g*image_height/image_width\n"
+                     "  look_at %v\n}\n\n",
+                  s->camera.from, v->up, v->width, v->width, v->at);
+    else
+        pov_print(t, "camera {\n  perspective\n  location %v\n  sky %v\n  right x*image_width/image_height\n  up y\n"
+                     "  angle %g // horizontal\n  look_at %v\n}\n\n",
+                  s->camera.from, v->up, v->fov, v->at);
+    pov_print(t, "background { color rgb %v }\n\n", s->background);
 }
 
 /* An area is halved down to each of its samples (`adaptive`), as here none is left out. */

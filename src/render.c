@@ -1,5 +1,7 @@
 #include "render.h"
 
+#include "lane.h"
+
 #include <stdlib.h>
 
 #if defined(_OPENMP)
@@ -33,22 +35,30 @@ typedef struct tile {
     int x0, y0, width, height;
 } tile;
 
-/* r: all rays begin at the eye. s = forward + x right + y up, x and y in -1..1 from the left and from the bottom. */
-STAGE static void camera_rays(const camera *c, int n, const real *restrict x, const real *restrict y, vec3s *restrict s)
+/* base + x right + y up, x and y in -1..1 from the left and from the bottom. */
+STAGE static void over_image(const camera *c, vec3 base, int n, const real *restrict x, const real *restrict y, vec3s *restrict v)
 {
-    const real fx = (real)c->forward.x, fy = (real)c->forward.y, fz = (real)c->forward.z;
+    const real fx = (real)base.x, fy = (real)base.y, fz = (real)base.z;
     const real rx = (real)c->right.x, ry = (real)c->right.y, rz = (real)c->right.z;
     const real ux = (real)c->up.x, uy = (real)c->up.y, uz = (real)c->up.z;
     for (int i = 0; i < n; i++) {
-        s->x[i] = fx + x[i] * rx + y[i] * ux;
-        s->y[i] = fy + x[i] * ry + y[i] * uy;
-        s->z[i] = fz + x[i] * rz + y[i] * uz;
+        v->x[i] = fx + x[i] * rx + y[i] * ux;
+        v->y[i] = fy + x[i] * ry + y[i] * uy;
+        v->z[i] = fz + x[i] * rz + y[i] * uz;
     }
 }
 
-static void camera_eye(const camera *c, int n, vec3s *r)
+/* What all rays have in common: a pinhole's r, an orthographic camera's s. */
+static void camera_begin(const camera *c, int n, rays *x)
 {
-    vec3s_fill(r, n, (real)c->from.x, (real)c->from.y, (real)c->from.z);
+    const vec3 v = c->orthographic ? c->forward : c->from;
+    vec3s_fill(c->orthographic ? &x->s : &x->r, n, (real)v.x, (real)v.y, (real)v.z);
+}
+
+/* And what they have not. */
+static void camera_rays(const camera *c, int n, const real *x, const real *y, rays *to)
+{
+    over_image(c, c->orthographic ? c->from : c->forward, n, x, y, c->orthographic ? &to->r : &to->s);
 }
 
 /* The pixel's coordinate p (0..size, fractions within a pixel) on the picture from -1 to 1. */
@@ -56,11 +66,12 @@ static real screen(double p, int size) { return (real)(2 * p / size - 1); }
 
 void render_ray(const camera *c, int width, int height, double x, double y, workspace *v, int lane)
 {
-    vec3s one;
+    rays one;
     real sx = screen(x, width), sy = -screen(y, height);
+    camera_begin(c, 1, &one);
     camera_rays(c, 1, &sx, &sy, &one);
-    v->x.r.x[lane] = (real)c->from.x, v->x.r.y[lane] = (real)c->from.y, v->x.r.z[lane] = (real)c->from.z;
-    v->x.s.x[lane] = one.x[0], v->x.s.y[lane] = one.y[0], v->x.s.z[lane] = one.z[0];
+    lane_set(&v->x.r, lane, lane_get(&one.r, 0));
+    lane_set(&v->x.s, lane, lane_get(&one.s, 0));
 }
 
 static void tile_rays(const scene *s, const tile *b, int aa, int i, int j, workspace *v)
@@ -75,7 +86,7 @@ static void tile_rays(const scene *s, const tile *b, int aa, int i, int j, works
             y[k * b->width + c] = row;
         }
     }
-    camera_rays(&s->camera, b->width * b->height, x, y, &v->x.s);
+    camera_rays(&s->camera, b->width * b->height, x, y, &v->x);
 }
 
 /* Put the values of a tile's lanes on a plane, or add them to what is there. With a constant width the rows are a few
@@ -175,7 +186,7 @@ bool render(const tracer *k, const render_options *o, film *f, stats *sum, error
     {
         workspace *v = workspace_new(k->scene->lights);
         if (v)
-            camera_eye(&k->scene->camera, LANES, &v->x.r); /* no stage writes there, so once is enough */
+            camera_begin(&k->scene->camera, LANES, &v->x); /* no stage writes there, so once is enough */
         else {
 #pragma omp critical(kage_render)
             good = false;

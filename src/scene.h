@@ -9,22 +9,28 @@
 #include "pigment.h"
 #include "surface.h"
 
-/* A pinhole: the ray of a pixel is from + t (forward + x right + y up), x and y over the image, so s is no unit vector
- * and t is the depth along forward. */
+/* The ray of a pixel, with x and y in -1..1 over the image:
+ *     a pinhole      from + t (forward + x right + y up), so that s is no unit vector
+ *     orthographic   from + x right + y up + t forward
+ * In both t is the depth along forward. */
 typedef struct camera {
     vec3 from;
     vec3 forward;   /* unit */
-    vec3 right, up; /* to the edges of the image: half the picture's width and height at unit depth */
+    vec3 right, up; /* to the edges of the image: half the picture's width and height, a pinhole's at unit depth */
+    bool orthographic;
 } camera;
 
 /* A camera at `from` that looks at `at`; fov is the horizontal angle of the picture in degrees. False where the
  * directions have no sense: at = from, or up along the view. */
 bool camera_look(camera *c, vec3 from, vec3 at, vec3 up, double fov, int width, int height);
 
+/* Likewise an orthographic one, whose picture is `across` scene units wide. */
+bool camera_orthographic(camera *c, vec3 from, vec3 at, vec3 up, double across, int width, int height);
+
 /* The same as the file said it, for exports. */
 typedef struct camera_view {
     vec3 at, up;
-    double fov;
+    double fov, width; /* width: of an orthographic one */
 } camera_view;
 
 /* What a colour is made of. */

@@ -124,23 +124,29 @@ static void read_image(reader *r)
 static void read_camera(reader *r)
 {
     node *at = yaml_need(r->y, yaml_root(r->y), "camera", "the scene");
-    if (!at || !yaml_map(r->y, at, "camera", "from at up fov"))
+    if (!at || !yaml_map(r->y, at, "camera", "from at up fov width"))
         return;
     vec3 from = {0, 0, 0}, to = {0, 0, 0}, up = {0, 1, 0};
-    double fov = 40;
+    double fov = 40, width = 0;
+    node *across = yaml_get(at, "width");
     bool good = yaml_need(r->y, at, "from", "camera") && yaml_need(r->y, at, "at", "camera");
     good = reader_vector(r, at, "from", "the eye's place [x, y, z]", &from) && good;
     good = reader_vector(r, at, "at", "the place looked at [x, y, z]", &to) && good;
     good = reader_vector(r, at, "up", "a direction [x, y, z]", &up) && good;
     good = reader_number(r, at, "fov", 0, true, 175, "the horizontal angle in degrees, above 0 and up to 175", &fov) && good;
+    good = reader_number(r, at, "width", SMALL, false, BIG, "the width of an orthographic picture in scene units, from 1e-6 to 1e6", &width) && good;
+    if (across && yaml_get(at, "fov"))
+        good = yaml_error(r->y, across, "both 'width' and 'fov', expected the one for an orthographic camera or the other for a pinhole");
     if (!good)
         return;
-    r->s->view = (camera_view){to, up, fov};
+    camera *c = &r->s->camera;
+    const int columns = r->s->width, rows = r->s->height;
+    r->s->view = (camera_view){to, up, fov, width};
     if (vec3_length(vec3_sub(to, from)) < SMALL)
         yaml_error(r->y, yaml_get(at, "at"), "the camera looks at its own place, expected 'at' apart from 'from'");
     else if (vec3_length(up) < SMALL)
         yaml_error(r->y, yaml_get(at, "up"), "no direction, expected a vector with a length");
-    else if (!camera_look(&r->s->camera, from, to, up, fov, r->s->width, r->s->height))
+    else if (across ? !camera_orthographic(c, from, to, up, width, columns, rows) : !camera_look(c, from, to, up, fov, columns, rows))
         yaml_error(r->y, yaml_get(at, "up") ? yaml_get(at, "up") : at,
                    "'up' is along the view, expected a direction across it%s", yaml_get(at, "up") ? "" : " (it is [0, 1, 0])");
 }

@@ -69,6 +69,12 @@ SMOOTH = {
     "straight down": ("{from: [0, 6, 0], at: [0, 0, 0], up: [1, 0, 1]}", LIGHTS, FLOOR + BOX.replace("MATERIAL", "clay")),
     "fov 10": ("{from: [3, 9, -20], at: [0, 0.7, 0], fov: 10}", LIGHTS, FLOOR + BALL.replace("MATERIAL", "shiny")),
     "fov 120": ("{from: [0.3, 1.9, -2], at: [0, 0.5, 0], fov: 120}", LIGHTS, FLOOR + BOX.replace("MATERIAL", "glaze")),
+    "orthographic": ("{from: [0.3, 2.9, -5.2], at: [0, 0.5, 0], width: 4}", LIGHTS, FLOOR + BALL.replace("MATERIAL", "shiny")),
+    "orthographic, tilted": ("{from: [2, 2.9, -4], at: [0, 0.5, 0], up: [0.4, 1, -0.3], width: 6}", LIGHTS,
+                             FLOOR + BOX.replace("MATERIAL", "glaze")),
+    "orthographic, straight down": ("{from: [0, 6, 0], at: [0, 0, 0], up: [1, 0, 1], width: 5}", LIGHTS,
+                                    FLOOR + SHEET.replace("MATERIAL", "shiny")),
+    "orthographic, cut": ("{from: [0, 0.4, -1.2], at: [0, 0, 0.1], width: 5}", LIGHTS, FLOOR + BOX.replace("MATERIAL", "shiny")),
     "horizon": ("{from: [0, 1.2, -5], at: [0, 1.2, 0], fov: 70}", LIGHTS, FLOOR + BALL.replace("MATERIAL", "clay")),
     "from below": ("{from: [0, -2, -4], at: [0, 0, 0], fov: 50}", "{a: {at: [1, -6, -3]}}", FLOOR + BALL.replace("MATERIAL", "clay")),
     "spot": (CAMERA, "{a: {at: [-3, 5, -2], spot: {to: [0, 0.5, 0]}}}", FLOOR + BALL.replace("MATERIAL", "shiny")),
@@ -347,6 +353,23 @@ def test_a_warning_of_holes_is_seen(kage: Kage) -> None:
     text = (kage.folder / "rough.pov").read_text()
     (kage.folder / "low.pov").write_text(re.sub(r"max_gradient \S+", "max_gradient 0.5", text))
     assert "holes" in povray(kage.folder / "low.pov", (100, 75))[1]
+
+
+@needs_povray
+@pytest.mark.parametrize("camera", ["{from: [0, 2, -3], at: [0.5, 0, 0], up: [0.3, 1, 0], width: 3}",
+                                    "{from: [0, 9, -1], at: [0.5, 0, 0], width: 6}"])
+@pytest.mark.parametrize("name", ["plane", "plane, map"])
+def test_displaced_orthographic(kage: Kage, name: str, camera: str) -> None:
+    scene = write_displaced(kage, name, camera)
+    more = ["--surface", "displaced", "--set", "image.background=[0, 0, 9]"]
+    kage.good("pov", scene, "-o", "rough.pov", *more)
+    kage.good("render", scene, "-o", "rough.exr", "--quiet", *more)
+    picture = layers(kage.folder / "rough.exr")
+    theirs, words = povray(kage.folder / "rough.pov", (100, 75))
+    off = np.abs(np.stack([picture[channel] for channel in "RGB"], axis=-1) - theirs).max(axis=-1)
+    assert not words.strip()
+    assert theirs[..., 2].max() < 2
+    assert (off <= STEP).mean() > PARITY[True]
 
 
 @needs_povray
