@@ -91,6 +91,13 @@ static bool option(arguments *a, const char *name, const char *v)
         return whole_numbers(v, 0, 1, x) && x[0] >= 1 && x[0] <= SCENE_MAX_AA
                    ? add_set(a, "render.aa=%d", x[0])
                    : usage_error("--aa %s: expected the samples along a pixel's side, 1 to %d", v, SCENE_MAX_AA);
+    if (strcmp(name, "--aa-threshold") == 0) {
+        char *end;
+        double threshold = *v && strspn(v, "0123456789.") == strlen(v) ? strtod(v, &end) : -1;
+        return threshold >= 0 && threshold <= 3 && !*end
+                   ? add_set(a, "render.aa_threshold=%s", v)
+                   : usage_error("--aa-threshold %s: expected how much two pixels may differ, 0 to 3", v);
+    }
     if (strcmp(name, "--crop") == 0) {
         if (!whole_numbers(v, ',', 4, x) || x[0] >= x[2] || x[1] >= x[3])
             return usage_error("--crop %s: expected X0,Y0,X1,Y1 in pixels, with X0 < X1 and Y0 < Y1", v);
@@ -144,8 +151,8 @@ static const char *find(const char *const *names, const char *arg)
 
 bool arguments_read(arguments *a, int argc, char **argv)
 {
-    static const char *const render_values[] = {"-o",     "--shadow",  "--surface", "--size", "--aa", "--crop",
-                                                "--set",  "--threads", "--bits",    "--layers", NULL};
+    static const char *const render_values[] = {"-o",    "--shadow",  "--surface", "--size",   "--aa", "--aa-threshold", "--crop",
+                                                "--set", "--threads", "--bits",    "--layers", NULL};
     static const char *const render_flags[] = {"--no-guard", "--no-self-shadow", "--stats", "--quiet", NULL};
     static const char *const pov_values[] = {"-o", "--surface", "--size", "--set", NULL};
     static const char *const pov_flags[] = {"--no-self-shadow", "--no-cast", NULL};

@@ -99,8 +99,10 @@ static void print_scene(const scene *s, const seen *all)
     char name[METHOD_NAME_SIZE];
     int warnings = 0;
     method_name(s->shadow, name);
-    printf("%s: %d x %d pixels, %d x %d samples each, shadow %s%s\n", s->path, s->width, s->height, s->aa, s->aa, name,
-           s->guard ? "" : ", no guard");
+    printf("%s: %d x %d pixels, %d x %d samples each", s->path, s->width, s->height, s->aa, s->aa);
+    if (s->aa > 1 && s->aa_threshold >= 0)
+        printf(" that differs from a neighbour by more than %g", s->aa_threshold);
+    printf(", shadow %s%s\n", name, s->guard ? "" : ", no guard");
     for (int i = 0; i < s->lights; i++) {
         static const char *const kinds[] = {"", ", spot", ", parallel"};
         const light *l = &s->light[i];

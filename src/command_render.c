@@ -97,9 +97,9 @@ static bool write_output(const char *path, const scene *s, const arguments *a, c
     return good;
 }
 
-static void print_stats(const stats *t, const scene *s, double seconds, double output, double count)
+static void print_stats(const stats *t, const scene *s, double seconds, double output)
 {
-    double sum = 0, n = count;
+    double sum = 0, n = (double)t->rays;
     for (int k = 0; k < STAGES; k++)
         sum += t->seconds[k];
     printf("render    %9.2f ms  %8.2f ns a sample  %7.2f Mrays/s (camera and shadow)\n", seconds * 1e3, seconds * 1e9 / n,
@@ -185,9 +185,8 @@ static int render_outputs(const scene *s, const arguments *a, const char *const 
     progress p;
     tracer k = {.scene = s, .shadow = s->shadow, .guard = s->guard, .layers = layers, .displaced = s->displaced,
                 .self_shadow = s->self_shadow};
-    const double count = (double)(part.x1 - part.x0) * (part.y1 - part.y0) * s->aa * s->aa;
     progress_start(&p, a->quiet, base_name(s->path), (long)(part.x1 - part.x0) * (part.y1 - part.y0));
-    render_options o = {s->aa, a->threads, a->stats, p.on ? progress_show : NULL, &p};
+    render_options o = {s->aa, s->aa_threshold, a->threads, a->stats, p.on ? progress_show : NULL, &p};
     double start = stats_clock();
     bool good = render(&k, &o, f, &t, &e);
     double rendered = stats_clock();
@@ -207,7 +206,7 @@ static int render_outputs(const scene *s, const arguments *a, const char *const 
         fprintf(stderr, "%s: %ld hits of displaced surfaces are not confirmed to the last digits\n", base_name(s->path),
                 t.displaced.uncertain);
     if (a->stats)
-        print_stats(&t, s, rendered - start, written - rendered, count);
+        print_stats(&t, s, rendered - start, written - rendered);
     return 0;
 }
 

@@ -51,6 +51,16 @@ film *film_new(const scene *s, window part, bool layers, errors *e)
     return NULL;
 }
 
+void film_copy(film *f, const film *from)
+{
+    const window w = f->part;
+    const size_t width = (size_t)(w.x1 - w.x0), stride = (size_t)(from->part.x1 - from->part.x0);
+    for (int k = 0; k < f->planes; k++)
+        for (int y = w.y0; y < w.y1; y++)
+            memcpy(f->plane[k] + (size_t)(y - w.y0) * width,
+                   from->plane[k] + (size_t)(y - from->part.y0) * stride + (size_t)(w.x0 - from->part.x0), width * sizeof **f->plane);
+}
+
 void film_free(film *f)
 {
     if (!f)

@@ -42,6 +42,9 @@ typedef struct film {
 /* NULL: out of memory, with a message. */
 film *film_new(const scene *s, window part, bool layers, errors *e);
 
+/* The values of `from`, which has the same planes, and all of the part of f. */
+void film_copy(film *f, const film *from);
+
 void film_free(film *f);
 
 #endif

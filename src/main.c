@@ -28,6 +28,8 @@ static const char help[] =
     "  --no-self-shadow     displaced surfaces cast no shadows\n"
     "  --no-guard           the paper's bare formulas, also where they leave the slab between Pmin and Pmax\n"
     "  --aa N               N x N samples a pixel\n"
+    "  --aa-threshold T     these only where neighbours differ by more than T (0 to 3, red, green and blue together,\n"
+    "                       as displayed), elsewhere one\n"
     "  --crop X0,Y0,X1,Y1   only this part of the picture, in pixels from the top left, X1 and Y1 exclusive\n"
     "  --layers A,B,...     of an EXR: color, Z, P, N, uw, height, tau, order, visibility (all)\n"
     "  --bits 8|16          of a PNG (8)\n"

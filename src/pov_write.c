@@ -28,8 +28,12 @@ static void put_head(pov_text *t, const scene *s, const pov_options *o)
     bool images = false;
     for (int k = 0; k < s->materials; k++)
         images |= s->material[k].pattern == PATTERN_IMAGE;
-    pov_print(t, "// render:  povray +I<this file> +O<picture>.exr +FE +W%d +H%d -A -D%s\n\n", s->width, s->height,
-              images ? " +L<the scene's folder>" : "");
+    pov_print(t, "// render:  povray +I<this file> +O<picture>.exr +FE +W%d +H%d", s->width, s->height);
+    if (s->aa > 1 && s->aa_threshold >= 0)
+        pov_print(t, " +A%g +AM1 +R%d -J", s->aa_threshold, s->aa < 9 ? s->aa : 9);
+    else
+        pov_print(t, " -A");
+    pov_print(t, " -D%s\n\n", images ? " +L<the scene's folder>" : "");
     pov_print(t, "#version 3.7;\n"
                  "global_settings { assumed_gamma 1 ambient_light rgb 1 }\n\n");
 }

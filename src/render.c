@@ -1,8 +1,10 @@
 #include "render.h"
 
+#include "contrast.h"
 #include "lane.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 #if defined(_OPENMP)
 #include <omp.h>
@@ -171,14 +173,82 @@ static void render_tile(const tracer *k, int aa, const tile *b, film *f, workspa
         }
 }
 
-bool render(const tracer *k, const render_options *o, film *f, stats *sum, errors *e)
+/* The pixels of a tile that are marked. */
+typedef struct selection {
+    int count, x[LANES], y[LANES];
+    size_t place[LANES]; /* on the film */
+} selection;
+
+static void select_marked(const tile *b, const film *f, const unsigned char *marked, selection *p)
+{
+    const size_t stride = (size_t)(f->part.x1 - f->part.x0);
+    p->count = 0;
+    for (int y = b->y0; y < b->y0 + b->height; y++)
+        for (int x = b->x0; x < b->x0 + b->width; x++) {
+            const size_t at = (size_t)(y - f->part.y0) * stride + (size_t)(x - f->part.x0);
+            p->x[p->count] = x;
+            p->y[p->count] = y;
+            p->place[p->count] = at;
+            p->count += marked[at];
+        }
+}
+
+/* Add the wave's samples, which are numbers `first` and so on of all that the pixels have, to these. */
+static void add_samples(film *f, const selection *p, int each, int first, int n, int plane, const real *v)
+{
+    const float weight = 1.0f / (float)each;
+    for (int i = 0; i < n; i++) {
+        float *to = &f->plane[plane][p->place[(first + i) / each]], x = (float)v[i] * weight;
+        *to = (first + i) % each > 0 ? *to + x : x;
+    }
+}
+
+/* The marked pixels anew with aa x aa samples each: side by side in waves, pixel by pixel, so that each sums up its samples in the same
+ * order as in render_tile, to the same bytes. */
+static void refine_tile(const tracer *k, int aa, const tile *b, const unsigned char *marked, film *f, workspace *v)
+{
+    const scene *s = k->scene;
+    const int each = aa * aa;
+    selection p;
+    select_marked(b, f, marked, &p);
+    for (int first = 0; first < p.count * each; first += LANES) {
+        const int n = p.count * each - first < LANES ? p.count * each - first : LANES;
+        real x[LANES], y[LANES];
+        for (int i = 0; i < n; i++) {
+            const int pixel = (first + i) / each, sample = (first + i) % each;
+            x[i] = screen(p.x[pixel] + (sample % aa + 0.5) / aa, s->width);
+            y[i] = -screen(p.y[pixel] + (sample / aa + 0.5) / aa, s->height);
+        }
+        camera_rays(&s->camera, n, x, y, &v->x);
+        stats_stage(&v->stats, STAGE_CAMERA);
+        trace(k, n, v);
+        add_samples(f, &p, each, first, n, FILM_R, v->out.rgb.x);
+        add_samples(f, &p, each, first, n, FILM_G, v->out.rgb.y);
+        add_samples(f, &p, each, first, n, FILM_B, v->out.rgb.z);
+        for (int l = 0; k->layers && l < s->lights; l++)
+            add_samples(f, &p, each, first, n, FILM_LIGHTS + l, v->visibility[l]);
+        stats_stage(&v->stats, STAGE_FILM);
+    }
+}
+
+/* A pass over the film: every pixel with aa x aa samples, or the marked ones anew. */
+typedef struct pass {
+    int aa;
+    const unsigned char *marked; /* NULL: all */
+    long done, all;              /* tiles, of this pass and of those before and after it */
+} pass;
+
+static long tiles(window w)
+{
+    return (long)((w.x1 - w.x0 + TILE - 1) / TILE) * ((w.y1 - w.y0 + TILE_ROWS - 1) / TILE_ROWS);
+}
+
+static bool run(const tracer *k, const render_options *o, pass *p, film *f, stats *sum, errors *e)
 {
     const window part = f->part;
-    const int columns = (part.x1 - part.x0 + TILE - 1) / TILE, rows = (part.y1 - part.y0 + TILE_ROWS - 1) / TILE_ROWS;
-    const long all = (long)columns * rows;
-    long done = 0;
+    const int columns = (part.x1 - part.x0 + TILE - 1) / TILE;
+    const long count = tiles(part);
     bool good = true;
-    *sum = (stats){0};
 #if defined(_OPENMP)
     const int threads = o->threads ? o->threads : omp_get_num_procs();
 #endif
@@ -192,7 +262,7 @@ bool render(const tracer *k, const render_options *o, film *f, stats *sum, error
             good = false;
         }
 #pragma omp for schedule(dynamic, 4)
-        for (long n = 0; n < all; n++) {
+        for (long n = 0; n < count; n++) {
             if (!v)
                 continue;
             tile b = {part.x0 + (int)(n % columns) * TILE, part.y0 + (int)(n / columns) * TILE_ROWS, TILE, TILE_ROWS};
@@ -201,12 +271,15 @@ bool render(const tracer *k, const render_options *o, film *f, stats *sum, error
             v->stats.timing = o->timing && n % TIMED_TILES == 0;
             if (v->stats.timing)
                 v->stats.clock = stats_clock();
-            render_tile(k, o->aa, &b, f, v);
+            if (p->marked)
+                refine_tile(k, p->aa, &b, p->marked, f, v);
+            else
+                render_tile(k, p->aa, &b, f, v);
             if (o->progress && n % 16 == 15) {
 #pragma omp critical(kage_render)
                 {
-                    done += 16;
-                    o->progress(o->user, done, all);
+                    p->done += 16;
+                    o->progress(o->user, p->done, p->all);
                 }
             }
         }
@@ -217,4 +290,31 @@ bool render(const tracer *k, const render_options *o, film *f, stats *sum, error
         workspace_free(v);
     }
     return good || errors_add(e, "out of memory for the threads' waves");
+}
+
+/* One sample a pixel, then more where neighbours differ. Those of the pixels at a crop's edge are beyond it, so the first pass goes a
+ * pixel farther: what is in a picture does not depend on the crop. */
+static bool render_adaptive(const tracer *k, const render_options *o, film *f, stats *sum, errors *e)
+{
+    const window part = f->part, wide = {part.x0 - (part.x0 > 0), part.y0 - (part.y0 > 0), part.x1 + (part.x1 < k->scene->width),
+                                         part.y1 + (part.y1 < k->scene->height)};
+    pass first = {1, NULL, 0, tiles(wide) + tiles(part)}, second = {o->aa, NULL, tiles(wide), first.all};
+    film *margin = memcmp(&wide, &part, sizeof wide) ? film_new(k->scene, wide, k->layers, e) : f;
+    bool good = margin && run(k, o, &first, margin, sum, e);
+    if (good && margin != f)
+        film_copy(f, margin);
+    unsigned char *marked = good ? contrast_find(margin, part, o->threshold, o->threads, e) : NULL;
+    second.marked = marked;
+    good = marked && run(k, o, &second, f, sum, e);
+    free(marked);
+    if (margin != f)
+        film_free(margin);
+    return good;
+}
+
+bool render(const tracer *k, const render_options *o, film *f, stats *sum, errors *e)
+{
+    pass all = {o->aa, NULL, 0, tiles(f->part)};
+    *sum = (stats){0};
+    return o->aa > 1 && o->threshold >= 0 ? render_adaptive(k, o, f, sum, e) : run(k, o, &all, f, sum, e);
 }

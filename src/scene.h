@@ -98,6 +98,7 @@ typedef struct scene {
     bool displaced;   /* render.surface: bumped objects as what they stand for */
     bool self_shadow; /* and with the shadows that these cast */
     int aa;
+    double aa_threshold; /* < 0: none */
     light *light;
     int lights;
     material *material;

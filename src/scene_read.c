@@ -158,8 +158,9 @@ static void read_render(reader *r)
     s->shadow = (method){METHOD_ORDER, 0};
     s->guard = true;
     s->aa = 1;
+    s->aa_threshold = -1;
     s->self_shadow = true;
-    if (!at || !yaml_map(r->y, at, "render", "shadow guard aa surface self_shadow"))
+    if (!at || !yaml_map(r->y, at, "render", "shadow guard aa aa_threshold surface self_shadow"))
         return;
     if ((k = yaml_get(at, "shadow"))) {
         const char *text = yaml_text(r->y, k, method_expected);
@@ -170,6 +171,7 @@ static void read_render(reader *r)
         yaml_bool(r->y, k, "true or false", &s->guard);
     if ((k = yaml_get(at, "aa")))
         yaml_whole(r->y, k, 1, SCENE_MAX_AA, "samples along a pixel's side, 1 to 16", &s->aa);
+    reader_number(r, at, "aa_threshold", 0, false, 3, "how much two pixels may differ, red, green and blue together, 0 to 3", &s->aa_threshold);
     if ((k = yaml_get(at, "surface")))
         s->displaced = yaml_word(r->y, k, "smooth displaced", "smooth or displaced") == 1;
     if ((k = yaml_get(at, "self_shadow")))

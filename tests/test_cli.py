@@ -47,8 +47,8 @@ def same(a: dict[str, np.ndarray], b: dict[str, np.ndarray]) -> bool:
 
 def test_help_and_version(kage: Kage) -> None:
     text = kage.good("--help")
-    for word in ("render", "check", "pixel", "methods", "--set", "--size", "-o", "--shadow", "--no-guard", "--aa", "--crop",
-                 "--layers", "--bits", "--threads", "--stats", "--quiet"):
+    for word in ("render", "check", "pixel", "methods", "--set", "--size", "-o", "--shadow", "--no-guard", "--aa",
+                 "--aa-threshold", "--crop", "--layers", "--bits", "--threads", "--stats", "--quiet"):
         assert word in text
     assert max(map(len, text.splitlines())) <= 120
     assert kage.good("-h") == text == kage.good("render", "--help")

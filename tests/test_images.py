@@ -115,6 +115,54 @@ def test_layers_without_lights(tmp_path: Path) -> None:
     assert not any(name.startswith("visibility") for name in got)
 
 
+# ---- adaptive antialiasing ----
+
+LIT = """
+camera: {{from: [0, 3.9, -5.2], at: [0.25, 0.1, 0.05], {view}}}
+image: {{size: [150, 111], background: [0.1, 0.2, 0.4]}}
+lights:
+  lamp: {{at: [-4.5, 5.2, -2.2], area: {{u: [1, 0, 0], w: [0, 0, 1], samples: [3, 2]}}}}
+  sun: {{at: [3, 9, -4], color: [0.5, 0.5, 0.6]}}
+materials:
+  clay: {{color: [0.8, 0.7, 0.6]}}
+  tiles: {{color: {{checker: {{even: [0.9, 0.9, 0.9], odd: [0.2, 0.1, 0.1], size: [0.5, 0.5]}}}}}}
+objects:
+  ground: {{plane: {{origin: [0, 0, 0], u: [0, 0, 1], w: [1, 0, 0]}}, material: tiles, bump: {{function: "0.05*sin(7*u)*cos(5*w)"}}}}
+  ball: {{sphere: {{center: [0.5, 0.9, -0.4], radius: 0.6}}, material: clay}}
+"""
+
+
+def displayed(layers: dict[str, np.ndarray]) -> np.ndarray:
+    linear = np.clip(np.stack([layers[name] for name in "RGB"], axis=-1).astype(float), 0, 1)
+    return np.rint(65535 * np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055))
+
+
+@pytest.mark.parametrize("view", ["fov: 36", "width: 5"])
+@pytest.mark.parametrize(("aa", "threshold"), [("3", 0.1), ("2", 0.02), ("4", 0), ("5", 3)])
+def test_adaptive(tmp_path: Path, view: str, aa: str, threshold: float) -> None:
+    """Pixels that differ from a neighbour are those of --aa N to the last bit, all others those of --aa 1."""
+    scene = LIT.format(view=view)
+    one, all_of, got = render(tmp_path, scene), render(tmp_path, scene, "--aa", aa), render(
+        tmp_path, scene, "--aa", aa, "--aa-threshold", str(threshold))
+    code = displayed(one)
+    marked = np.zeros(code.shape[:2], bool)
+    across, down = (np.abs(np.diff(code, axis=axis)).sum(axis=-1) > threshold * 65535 for axis in (1, 0))
+    marked[:, 1:] |= across
+    marked[:, :-1] |= across
+    marked[1:] |= down
+    marked[:-1] |= down
+    assert (0.01 < marked.mean() < 0.9) if threshold and threshold < 3 else threshold == 0 or not marked.any()
+    for name in got:
+        want = np.where(marked, all_of[name], one[name]) if name in ("R", "G", "B") or name.startswith("visibility") else one[name]
+        assert got[name].tobytes() == want.tobytes(), name
+    for options in (["--threads", "1"], ["--threads", "5"]):
+        again = render(tmp_path, scene, "--aa", aa, "--aa-threshold", str(threshold), *options)
+        assert all(again[name].tobytes() == got[name].tobytes() for name in got)
+    for x0, y0, x1, y1 in ((20, 10, 90, 70), (0, 50, 37, 111), (149, 0, 150, 1)):
+        part = render(tmp_path, scene, "--aa", aa, "--aa-threshold", str(threshold), "--crop", f"{x0},{y0},{x1},{y1}")
+        assert all(part[name].tobytes() == got[name][y0:y1, x0:x1].tobytes() for name in got)
+
+
 FUNCTION = ', bump: {function: "0.05*sin(7*u)*cos(5*w) + 0.02*noise(3*u, 3*w) + 0.01*exp(-u^2)*tanh(w)"}'
 
 

@@ -23,7 +23,7 @@ REPLACED = [
     ("camera-key", "fov: 40", "fvo: 40", "1:58: camera has no 'fvo', did you mean 'fov'?"),
     ("camera-key-far", "fov: 40", "lens: 40", "1:58: camera has no 'lens', expected one of: from at up fov width"),
     ("image-key", "size: [40, 30]", "sise: [40, 30]", "2:9: image has no 'sise', did you mean 'size'?"),
-    ("render-key", "aa: 1", "antialias: 1", "3:34: render has no 'antialias', expected one of: shadow guard aa surface self_shadow"),
+    ("render-key", "aa: 1", "antialias: 1", "3:34: render has no 'antialias', expected one of: shadow guard aa aa_threshold surface self_shadow"),
     ("light-key", "color: [1, 1, 1]", "colour: [1, 1, 1]", "5:27: a light has no 'colour', did you mean 'color'?"),
     ("spot-key", "color: [1, 1, 1]", "spot: {to: [0, 0, 0], angle: 3}",
      "5:49: spot has no 'angle', expected one of: to radius falloff tightness"),
@@ -205,6 +205,8 @@ REPLACED = [
     ("aa-fraction", "aa: 1", "aa: 1.5",
      "3:38: 1.5 is no whole number, expected samples along a pixel's side, 1 to 16"),
     ("aa-large", "aa: 1", "aa: 17", "3:38: 17 is more than 16, expected samples along a pixel's side, 1 to 16"),
+    ("aa-threshold", "aa: 1", "aa: 4, aa_threshold: 3.5",
+     "3:55: 3.5 is more than 3, expected how much two pixels may differ, red, green and blue together, 0 to 3"),
     ("looks-at-itself", "at: [0, 0, 0]", "at: [0, 3, -5]",
      "1:32: the camera looks at its own place, expected 'at' apart from 'from'"),
     ("up-zero", "up: [0, 1, 0]", "up: [0, 0, 0]", "1:47: no direction, expected a vector with a length"),
@@ -618,7 +620,7 @@ def test_set_in_a_map_that_the_scene_lacks(bench: Kage) -> None:
     assert errors_in(lines) == [
         "--set:1:12: no '0' here: what stands before it is a single value, expected a map or a list",
         "--set:1:12: a single value, expected [width, height] in pixels, from 1 to 32768",
-        "--set:1:8: render has no 'foo', expected one of: shadow guard aa surface self_shadow",
+        "--set:1:8: render has no 'foo', expected one of: shadow guard aa aa_threshold surface self_shadow",
     ]
     assert lines[-1] == "3 errors"
 
@@ -659,7 +661,7 @@ COMMAND = [
      "--crop: no option of 'kage check'; see kage --help"),
     ("flag-value", ["render", "scene.yaml", "--quiet=1"], "--quiet takes no value; see kage --help"),
     *[(f"lacks{name}", ["render", "scene.yaml", name], f"{name} lacks its value; see kage --help")
-      for name in ("-o", "--shadow", "--size", "--aa", "--crop", "--threads", "--bits", "--set")],
+      for name in ("-o", "--shadow", "--size", "--aa", "--aa-threshold", "--crop", "--threads", "--bits", "--set")],
     ("ending", ["render", "scene.yaml", "-o", "out.jpg"],
      "-o out.jpg: no such kind of picture, expected a name that ends in .png or .exr"),
     ("ending-none", ["render", "scene.yaml", "-o", "out"],
@@ -672,6 +674,8 @@ COMMAND = [
      "--shadow march:0: no such method, expected none, 0, 1, 2, 2+, iter:K, march:N or exact"),
     *[(f"size-{size}", ["render", "scene.yaml", "--size", size], f"--size {size}: expected WIDTHxHEIGHT, each from 1 to 32768")
       for size in ("640", "640x", "640x480x2", "0x480", "-1x5", "640X480", "1e2x5", "32769x1", "99999999999x1", "")],
+    *[(f"aa-threshold-{t}", ["render", "scene.yaml", "--aa-threshold", t], f"--aa-threshold {t}: expected how much two pixels may differ, 0 to 3")
+      for t in ("x", "-1", "3.1", "1e-3", "0.1.2", "")],
     *[(f"aa-{aa}", ["render", "scene.yaml", "--aa", aa], f"--aa {aa}: expected the samples along a pixel's side, 1 to 16")
       for aa in ("0", "17", "two", "1.5")],
     *[(f"threads-{n}", ["render", "scene.yaml", "--threads", n], f"--threads {n}: expected a number from 1 to 1024")

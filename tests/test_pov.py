@@ -293,6 +293,27 @@ def test_area_light_as_adaptive_0(kage: Kage) -> None:
     assert 0.01 < ((visible > 0) & (visible < 1)).mean() < 0.5
 
 
+@needs_povray
+@pytest.mark.parametrize("name", ["box", "three lights", "area", "specular sphere"])
+def test_adaptive_samples(kage: Kage, name: str) -> None:
+    """POV-Ray compares other neighbours, in a gamma of 2.5, so this is not the same picture, but close."""
+    camera, lights, objects = SMOOTH[name]
+    scene = kage.folder / "adaptive.yaml"
+    scene.write_text(HEAD.format(camera=camera, lights=lights) + objects)
+    some = ["--set", "render={aa: 4, aa_threshold: 0.1}"]
+    kage.good("pov", scene, "-o", "adaptive.pov", "--surface", "smooth", *some)
+    found = re.search(r"// render:.* \+A0\.1 \+AM1 \+R4 -J -D$", (kage.folder / "adaptive.pov").read_text(), re.MULTILINE)
+    assert found
+    theirs, words = povray(kage.folder / "adaptive.pov", SIZE, "+A0.1", "+AM1", "+R4", "-J")
+    pictures = {}
+    for file, options in {"one": [], "adaptive": some}.items():
+        kage.good("render", scene, "-o", f"{file}.exr", "--quiet", *options)
+        picture = layers(kage.folder / f"{file}.exr")
+        pictures[file] = np.abs(np.stack([picture[channel] for channel in "RGB"], axis=-1) - theirs).mean()
+    assert not words.strip()
+    assert pictures["adaptive"] < 0.5 * STEP and pictures["adaptive"] < 0.5 * pictures["one"], pictures
+
+
 # ---- displaced ----
 
 FUNCTION = "{function: '0.03*(sin(6*u)*cos(5.4*w) + 0.5*sin(10.2*u + 6.6*w))'}"
