@@ -57,8 +57,13 @@ static void row(const tracer *k, int id, workspace *v, const char *label)
     bs_vec3 o = lane_at(&g->x, 0, g->t[0] + g->tau[0]);
     printf("%-10s %13.6g %13.6g  %11.6g %11.6g %11.6g  %-6s", label, (double)g->tau[0], (double)(g->t[0] + g->tau[0]),
            (double)o.x, (double)o.y, (double)o.z, g->order[0] == asked ? "" : method_code_name(g->order[0]));
-    for (int l = 0; l < k->scene->lights; l++)
-        printf(" %-9s", v->visibility[l][0] > 0 ? "lit" : "shadow");
+    for (int l = 0; l < k->scene->lights; l++) {
+        const double share = (double)v->visibility[l][0]; /* of an area's samples */
+        if (share > 0 && share < 1)
+            printf(" %-9.4g", share);
+        else
+            printf(" %-9s", share > 0 ? "lit" : "shadow");
+    }
     printf("  %.4f %.4f %.4f\n", (double)g->rgb.x[0], (double)g->rgb.y[0], (double)g->rgb.z[0]);
 }
 

@@ -35,7 +35,7 @@ typedef enum image_encoding { IMAGE_BY_KIND, IMAGE_SRGB, IMAGE_LINEAR } image_en
 /* Read a file in colour: four values a pixel, that is 4 x width values a row; linear red, green and blue, and alpha, which is 1.
  *
  * PNG: any kind; sRGB unless IMAGE_LINEAR is asked for. What else it says of its gamma is not looked at.
- * OpenEXR: as above; R, G and B, or Y or the only channel as a grey. Always linear; IMAGE_SRGB is an error.
+ * OpenEXR: as above; R, G and B, or Y as a grey. Always linear; IMAGE_SRGB is an error.
  * An image that is transparent anywhere is refused. exr: whether the file is one. */
 bool image_read_color(const char *path, image_encoding encoding, image *out, bool *exr, errors *e);
 

@@ -118,7 +118,7 @@ static bool choose_colors(exr_reader *r, const exr_attr_chlist_t *list, const ex
     if (out[0] || out[1] || out[2])
         return refuse(r, "not all of the channels R, G and B are there");
     const exr_attr_chlist_entry_t *grey;
-    if (!choose(r, list, NULL, &grey))
+    if (!choose(r, list, "Y", &grey))
         return false;
     out[0] = out[1] = out[2] = grey;
     return true;

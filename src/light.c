@@ -63,6 +63,14 @@ light light_sample(const light *l, int k, real *share)
     return one;
 }
 
+STAGE static void gather(const group *restrict g, real share, real *restrict sum)
+{
+    for (int i = 0; i < g->n; i++)
+        sum[i] += share * g->lit[i];
+}
+
+void light_gather(const group *g, real share, real *sum) { gather(g, share, sum); }
+
 int light_corners(const light *l) { return l->samples[0] * l->samples[1] > 1 ? 4 : 1; }
 
 vec3 light_corner(const light *l, int k, vec3 p)
@@ -77,7 +85,7 @@ vec3 light_corner(const light *l, int k, vec3 p)
 /* ---- what arrives ---- */
 
 /* How far p1 is from the light, or from its plane, and the cosine between the way there and its axis. */
-STAGE static void locate(const group *restrict g, const light *l, double *restrict distance, double *restrict cosine)
+STAGE static void place(const group *restrict g, const light *l, double *restrict distance, double *restrict cosine)
 {
     const real lx = (real)l->at.x, ly = (real)l->at.y, lz = (real)l->at.z;
     const real ax = (real)l->axis.x, ay = (real)l->axis.y, az = (real)l->axis.z, flat = l->kind == LIGHT_PARALLEL;
@@ -98,6 +106,7 @@ STAGE static void spot(int n, double outer, double inner, double tightness, cons
         double c = cosine[i], x = (c - outer) / width;
         x = x < 1 ? x : 1;
         x = x > 0 ? x : 0;
+        c = c < 1 ? c : 1;
         c = c > 1e-300 ? c : 1e-300;
         share[i] *= x * x * (3 - 2 * x) * km_exp(tightness * km_log(c));
     }
@@ -126,7 +135,7 @@ void light_fade(const light *l, group *g)
         return;
     for (int i = 0; i < g->n; i++)
         share[i] = 1;
-    locate(g, l, distance, cosine);
+    place(g, l, distance, cosine);
     if (l->kind == LIGHT_SPOT)
         spot(g->n, km_cos(l->falloff * degree), km_cos(l->radius * degree), l->tightness, cosine, share);
     if (l->fade_distance > 0)

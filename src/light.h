@@ -26,6 +26,9 @@ typedef struct light {
 /* The light as its sample k < samples[0] samples[1] has it, at a place of its own, and the share of the sample. */
 light light_sample(const light *l, int k, real *share);
 
+/* sum += what of a sample is lit. */
+void light_gather(const group *g, real share, real *sum);
+
 /* The segments r + s t, 0 < t < 1, from the lanes' smooth hits (or from the shifted ones, r + s (t_hit + tau)) to the light. */
 void light_aim(const light *l, group *g, bool shifted);
 

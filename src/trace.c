@@ -66,12 +66,6 @@ static void shadow_one(const tracer *k, int id, const light *l, group *g, stats 
     st->shadow_rays += g->n;
 }
 
-STAGE static void add_share(group *restrict g, real share, real *restrict sum)
-{
-    for (int i = 0; i < g->n; i++)
-        sum[i] += share * g->lit[i];
-}
-
 /* The share of a light that is seen: of an area, the samples that are. */
 static void shadow(const tracer *k, int id, const light *l, group *g, stats *st)
 {
@@ -84,7 +78,7 @@ static void shadow(const tracer *k, int id, const light *l, group *g, stats *st)
     for (int j = 0; j < places; j++) {
         const light one = light_sample(l, j, &share);
         shadow_one(k, id, &one, g, st);
-        add_share(g, share, sum);
+        light_gather(g, share, sum);
     }
     memcpy(g->lit, sum, sizeof sum);
 }

@@ -15,6 +15,7 @@ from pathlib import Path
 import numpy as np
 import OpenEXR
 import pytest
+from PIL import Image
 
 TOP = Path(__file__).resolve().parent.parent
 KAGE = Path(os.environ.get("KAGE", TOP / "build" / "float" / "kage"))
@@ -72,6 +73,27 @@ def test_constant_bump_is_the_offset_plane(tmp_path: Path, method: str, height: 
     assert shadows_differ(none, moved)[0] > 100  # while the smooth plane's is elsewhere
 
 
+@pytest.mark.parametrize("light", ["area: {u: [1.5, 0, 0], w: [0, 0, 1], samples: [4, 4]}", "parallel: {to: [0, 0, 0]}",
+                                   "spot: {to: [0, 0, 0], radius: 40, falloff: 50}"])
+def test_constant_bump_under_other_lights(tmp_path: Path, light: str) -> None:
+    """Every shadow ray begins at the shifted origin, those to each sample of an area, too."""
+
+    def with_light(**parts: str) -> str:
+        return SCENE.format(**parts).replace("lamp: {at: [-4.5, 5.2, -2.2]}", f"lamp: {{at: [-4.5, 5.2, -2.2], {light}}}")
+
+    bump = ', bump: {function: "0.08"}'
+    assert light in with_light(ground=FLAT, bump=bump)
+    bumped = render(tmp_path, with_light(ground=FLAT, bump=bump), "--shadow", "2")
+    moved = render(tmp_path, with_light(ground=FLAT.replace("[0, 0, 0]", "[0, 0.08, 0]"), bump=""))
+    differ, shadow = shadows_differ(bumped, moved)
+    assert shadow > 2000
+    assert differ <= (30 if "area" in light else 3)
+    none = render(tmp_path, with_light(ground=FLAT, bump=bump), "--shadow", "none")
+    assert shadows_differ(none, moved)[0] > 100
+    if "area" in light:
+        assert set(np.unique(bumped["visibility.lamp"] * 16) % 1) == {0} and len(np.unique(bumped["visibility.lamp"])) == 17
+
+
 @pytest.mark.parametrize("method, exact", [("1", True), ("2", True), ("2+", True), ("0", False)])
 def test_linear_bump_is_the_tilted_plane(tmp_path: Path, method: str, exact: bool) -> None:
     """P linear: from order 1 on the shadow is that on the tilted plane, and n' is its normal."""
@@ -123,8 +145,10 @@ image: {{size: [150, 111], background: [0.1, 0.2, 0.4]}}
 lights:
   lamp: {{at: [-4.5, 5.2, -2.2], area: {{u: [1, 0, 0], w: [0, 0, 1], samples: [3, 2]}}}}
   sun: {{at: [3, 9, -4], color: [0.5, 0.5, 0.6]}}
+  low: {{at: [9, 4, -4], color: [0.3, 0.2, 0.1], parallel: {{to: [0, 0, 0]}}, fade: {{distance: 9, power: 1.7}}}}
+  spot: {{at: [1, 4, -3], color: [0.2, 0.5, 0.3], spot: {{to: [0, 0, 0], radius: 8, falloff: 14, tightness: 3.5}}}}
 materials:
-  clay: {{color: [0.8, 0.7, 0.6]}}
+  clay: {{color: [0.8, 0.7, 0.6], phong: 0.4, specular: 0.3}}
   tiles: {{color: {{checker: {{even: [0.9, 0.9, 0.9], odd: [0.2, 0.1, 0.1], size: [0.5, 0.5]}}}}}}
 objects:
   ground: {{plane: {{origin: [0, 0, 0], u: [0, 0, 1], w: [1, 0, 0]}}, material: tiles, bump: {{function: "0.05*sin(7*u)*cos(5*w)"}}}}
@@ -169,8 +193,13 @@ FUNCTION = ', bump: {function: "0.05*sin(7*u)*cos(5*w) + 0.02*noise(3*u, 3*w) + 
 def hashes(kage: Path, tmp_path: Path) -> dict[str, str]:
     """A digest of the pictures and all layers of scenes that use every stage."""
     (tmp_path / "function.yaml").write_text(SCENE.format(ground=FLAT, bump=FUNCTION))
+    (tmp_path / "lit.yaml").write_text(LIT.format(view="width: 5"))
+    (tmp_path / "image.yaml").write_text(
+        SCENE.format(ground=FLAT, bump="").replace("{color: [0.8, 0.7, 0.6]}", "{color: {image: {file: color.png, size: [1.3, 0.7]}}}"))
+    columns, rows = np.meshgrid(np.arange(31), np.arange(17))
+    Image.fromarray(np.stack([columns * 8, rows * 15, columns * rows % 251], axis=-1).astype(np.uint8)).save(tmp_path / "color.png")
     result = {}
-    for scene in [*sorted((TOP / "scenes").glob("*.yaml")), tmp_path / "function.yaml"]:
+    for scene in [*sorted((TOP / "scenes").glob("*.yaml")), *(tmp_path / f"{name}.yaml" for name in ("function", "lit", "image"))]:
         for method in ["0", "2+", "march:4", "iter:3"]:
             out = [tmp_path / f"{scene.stem}.exr", tmp_path / f"{scene.stem}.png"]
             subprocess.run(

@@ -163,7 +163,7 @@ REPLACED = [
     ("image-alpha", "color: [0.8, 0.7, 0.6]", "color: {image: {file: alpha.png, size: [1, 1]}}",
      "7:32: 'alpha.png' can't be used: the pixel in column 3 of row 2 (both from 0) is transparent; an opaque image is expected"),
     ("image-exr-channels", "color: [0.8, 0.7, 0.6]", "color: {image: {file: two.exr, size: [1, 1]}}",
-     "7:32: 'two.exr' can't be used: which channel is meant? The file has a, b"),
+     "7:32: 'two.exr' can't be used: there is no channel 'Y'; the file has a, b"),
     ("image-exr-nan", "color: [0.8, 0.7, 0.6]", "color: {image: {file: nan.exr, size: [1, 1]}}",
      "7:32: 'nan.exr' can't be used: the sample in column 2 of row 1 (both from 0) is NaN"),
     ("image-exr-srgb", "color: [0.8, 0.7, 0.6]", "color: {image: {file: rgb.exr, encoding: srgb, size: [1, 1]}}",
