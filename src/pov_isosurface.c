@@ -54,7 +54,7 @@ static double of_zone(const expr *e, double scale, double r, double w0, double w
 static double of_sphere(const object *o)
 {
     const double CAP = 1e-3, GROWTH = 1.05, WIDEST = 0.05, half = 3.14159265358979323846 / 2;
-    double r = o->shape_said.radius + (double)o->bump->Pmin, scale = fabs(o->bump_said.scale), worst = 0;
+    double r = o->shape_said.radius[0] + (double)o->bump->Pmin, scale = fabs(o->bump_said.scale), worst = 0;
     expr_error wrong;
     expr *e = r > 0 ? expr_parse(o->bump_said.function, &wrong) : NULL;
     if (!e)
@@ -117,7 +117,7 @@ static void put_flat(pov_text *t, const scene *s, const object *o, int part, con
 
 static void put_sphere(pov_text *t, const scene *s, const object *o, const char *name)
 {
-    double y[2], radius = o->shape_said.radius;
+    double y[2], radius = o->shape_said.radius[0];
     levels(o, y);
     pov_print(t, "isosurface {\n  function {\n    sqrt(x*x + y*y + z*z) - %s\n    - %s(atan2(z, x), atan2(sqrt(x*x + z*z), y))\n  }\n",
               pov_exact(radius).text, name);

@@ -271,7 +271,7 @@ static void lay(tessellation *x, int part)
     double range[2][2];
     pov_lattice *l = &x->v.lattice;
     l->part = part;
-    o->shape->is->extent(o->shape, range[0], range[1]);
+    o->shape->is->extent(o->shape, part, range[0], range[1]);
     for (int a = 0; a < 2; a++) {
         l->lo[a] = range[a][0];
         l->hi[a] = range[a][1];

@@ -32,6 +32,9 @@ void pov_isosurface(pov_text *t, const scene *s, const object *o, const char *na
 /* The displaced object as one mesh. False: out of memory. */
 bool pov_mesh(pov_text *t, const scene *s, const object *o, pov_report *report);
 
+/* A transformation that puts x, y, z and 0 where these are; without a new line. */
+void pov_matrix(pov_text *t, vec3 x, vec3 y, vec3 z, vec3 origin);
+
 /* The end of an object: its material, its shadow, the brace. */
 void pov_object_end(pov_text *t, const scene *s, const pov_options *how, const object *o);
 

@@ -1,4 +1,4 @@
-/* What the parts of the scene reader share: its state, and the small readers. Private to scene_read.c and scene_objects.c. */
+/* What the parts of the scene reader share: its state, and the small readers. Private to scene_*.c. */
 #ifndef KAGE_SCENE_READER_H
 #define KAGE_SCENE_READER_H
 
@@ -29,6 +29,10 @@ char *reader_name(reader *r, node *map, node *key);
 
 /* A map of named things: makes room for them. Returns their map, NULL where there is none or it is wrong. */
 node *reader_named(reader *r, const char *key, const char *what, bool need, size_t size, void *array, int *count);
+
+/* The surface of an object, by the one key of READER_SHAPES that it has. NULL: an error is told. (scene_surfaces.c) */
+#define READER_SHAPES "plane rectangle disc box sphere cylinder cone torus"
+surface *reader_surface(reader *r, node *at, shape_spec *said);
 
 /* The objects with their surfaces and bumps; after the materials, whose names they give. (scene_objects.c) */
 void reader_objects(reader *r);

@@ -152,7 +152,7 @@ static surface *make_surface(int surface_kind)
 static perturb *make_bump(int surface_kind, int bump, const surface *f)
 {
     double u[2], w[2];
-    f->is->extent(f, u, w);
+    f->is->extent(f, 0, u, w);
     if (bump == SMOOTH_BUMP) {
         expr_error e;
         return perturb_function(expr_parse(surface_kind == SPHERE ? "0.06*(sin(2*u)*cos(w) + 0.5*sin(w+1))"
