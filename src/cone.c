@@ -287,7 +287,7 @@ STAGE static void cone_side_shell(const cone *restrict base, int n, const rays *
          * in through the outer cone has met the rough side before it, unless the foot was beyond an end. */
         int hollow = (core.in <= core.out) & (inner > 0), within = hollow & (core.in <= from) & (core.out >= from);
         int crossed = exact & hollow & (core.in > from) & (from == k.in);
-        out = crossed ? core.in : out;
+        out = crossed ? real_min(core.in, out) : out;
         t0[i] = within ? core.out : from;
         t1[i] = in <= out ? real_min(out, end[i]) : R(-1);
     }

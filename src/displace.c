@@ -116,7 +116,8 @@ static displace_end refine(const surface *f, const perturb *P, int part, const s
         one.t[0] = next;
     }
     *t = best;
-    return least <= s->tolerance[i] ? DISPLACE_HIT : DISPLACE_UNCERTAIN;
+    /* a ray from the surface itself was let go on until it was clearly below, so that its bracket can begin there */
+    return least <= (s->own[i] ? 2 : 1) * s->tolerance[i] ? DISPLACE_HIT : DISPLACE_UNCERTAIN;
 }
 
 /* Whether the foot of a hit is on the part, and not on what extends it. */
