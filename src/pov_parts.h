@@ -14,8 +14,17 @@ typedef struct pov_flat {
 
 pov_flat pov_flat_of(const shape_spec *f, int part);
 
-/* Whether part of an object's shape is flat. */
-bool pov_is_flat(const shape_spec *f);
+/* Whether part of a shape is flat. */
+bool pov_is_flat(const shape_spec *f, int part);
+
+/* The radius of a disc, or of a flat part that is one; it may be 0, and then there is no such part. Negative: no disc. */
+double pov_rim(const shape_spec *f, int part);
+
+/* Of an object's displaced disc, which is made as a square, leave what is on the disc. */
+void pov_clip_rim(pov_text *t, const object *o, int part);
+
+/* P's range with some air: a container must hold all of the surface. */
+void pov_levels(const object *o, double y[2]);
 
 /* The part of an unbounded plane that matters for the picture, as ranges of u and w: what the camera sees of the rough surface,
  * and what of it can shade that. */
