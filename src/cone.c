@@ -128,7 +128,8 @@ STAGE static void cone_part(const cone *restrict base, int n, const rays *restri
                             int32_t *restrict part)
 {
     const cone f = *base;
-    const real top = (f.capped & (f.to > 0)) ? f.length : REAL_FAR, bottom = (f.capped & (f.from > 0)) ? 0 : -REAL_FAR;
+    const real none = (real)HUGE_VAL;
+    const real top = (f.capped & (f.to > 0)) ? f.length : none, bottom = (f.capped & (f.from > 0)) ? 0 : -none;
     for (int i = 0; i < n; i++) {
         local l = local_of(&f, x, i);
         real px = l.ox + l.sx * t[i], py = l.oy + l.sy * t[i], pz = l.oz + l.sz * t[i];
@@ -261,10 +262,10 @@ STAGE static void cone_capped_occlude_own(const surface *base, int n, const rays
         real a = l.sx * l.sx + l.sz * l.sz - grow * grow, b = l.ox * l.sx + l.oz * l.sz - grow * r;
         real across = a > 0 ? -2 * b / a : REAL_FAR; /* a <= 0: it widens as the ray goes on */
         spans k = spans_of(&f, l);
-        real end = ((l.sy > 0 ? f.length : 0) - l.oy) / l.sy; /* a cap that the ray comes from is not ahead of it */
+        real end = (l.sy > 0 ? f.length - l.oy : l.oy) / real_abs(l.sy); /* the cap ahead */
         real away = part[i] == 0 ? b : part[i] == 1 ? l.sy : -l.sy;
-        real out = real_min(part[i] == 0 ? across : k.out, end);
-        lit[i] = ((away < 0) & (out < 1)) ? 0 : lit[i];
+        real out = real_min(end, part[i] == 0 ? across : k.out);
+        lit[i] = ((away < 0) & (out > 0) & (out < 1)) ? 0 : lit[i];
     }
 }
 

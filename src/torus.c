@@ -88,14 +88,15 @@ KM_INLINE levels level_places(double M, double m, local l)
     return z;
 }
 
-/* The places between which each root of a ray is alone, from way `from` to `to`; all in the sphere about the torus. */
+/* The places between which each root of a ray is alone, from way `from` to `to`; all in a sphere about the torus, so large that its
+ * surface is outside. */
 typedef struct stretches {
     double e[5];
 } stretches;
 
 KM_INLINE stretches stretches_of(double M, double m, local l, double from, double to)
 {
-    double B2 = (M + m) * (M + m) - (l.ox * l.ox + l.oy * l.oy + l.oz * l.oz), B = sqrt(most(B2, 0));
+    double B2 = 1.1 * (M + m) * (M + m) - (l.ox * l.ox + l.oy * l.oy + l.oz * l.oz), B = sqrt(most(B2, 0));
     double lo = most(from, -B), hi = least(to, B);
     hi = B2 >= 0 ? most(hi, lo) : lo; /* nothing */
     levels z = level_places(M, m, l);
