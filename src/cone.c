@@ -148,8 +148,8 @@ STAGE static void cone_place(const cone *restrict base, int n, const rays *restr
         real px = l.ox + l.sx * t[i], py = l.oy + l.sy * t[i], pz = l.oz + l.sz * t[i];
         real turn = (real)km_atan2((double)pz, (double)px);
         real down = (real_sqrt(px * px + pz * pz) - f.to) * f.sin + (f.length - py) * f.cos;
-        u[i] = part[i] == 0 ? turn : part[i] == 1 ? pz : px;
-        w[i] = part[i] == 0 ? down : part[i] == 1 ? px : pz;
+        u[i] = part[i] == 0 ? turn : px;
+        w[i] = part[i] == 0 ? down : part[i] == 1 ? -pz : pz;
     }
 }
 
@@ -193,7 +193,7 @@ STAGE static void cone_side_eval(const cone *restrict base, int n, const real *r
     vec3s_fill(&q->Qww, n, 0, 0, 0);
 }
 
-/* Of lanes on caps: both are flat, and differ in their place and in that u and w change over. */
+/* Of lanes on caps: both are flat, and differ in their place and in the way of w. */
 STAGE static void cone_caps_eval(const cone *restrict base, int n, const int32_t *restrict part, const real *restrict u,
                                  const real *restrict w, partials *restrict q)
 {
@@ -204,10 +204,9 @@ STAGE static void cone_caps_eval(const cone *restrict base, int n, const int32_t
         real *restrict Qw = k == 0 ? q->Qw.x : k == 1 ? q->Qw.y : q->Qw.z;
         const real X = f.X[k], Z = f.Z[k], low = f.F[k], high = low + f.length * f.Y[k];
         for (int i = 0; i < n; i++) {
-            real U = part[i] == 1 ? Z : X, W = part[i] == 1 ? X : Z, O = part[i] == 1 ? high : low;
-            real at = O + u[i] * U + w[i] * W;
+            real W = part[i] == 1 ? -Z : Z, O = part[i] == 1 ? high : low, at = O + u[i] * X + w[i] * W;
             Q[i] = part[i] == 0 ? Q[i] : at;
-            Qu[i] = part[i] == 0 ? Qu[i] : U;
+            Qu[i] = part[i] == 0 ? Qu[i] : X;
             Qw[i] = part[i] == 0 ? Qw[i] : W;
         }
     }
@@ -413,7 +412,7 @@ surface *cone_new(vec3 from, double from_radius, vec3 to, double to_radius, bool
     f->sin = (real)((from_radius - to_radius) / side);
     f->cos = (real)(length / side);
     f->capped = !open;
-    disc_set(&f->cap[0], to, a.z, a.x, to_radius);
+    disc_set(&f->cap[0], to, a.x, vec3_scale(a.z, -1), to_radius);
     disc_set(&f->cap[1], from, a.x, a.z, from_radius);
     return &f->base;
 }

@@ -277,7 +277,7 @@ surface *disc_new(vec3 centre, vec3 normal, double radius)
     if (!f)
         return NULL;
     const frame a = frame_about(normal);
-    disc_set(f, centre, a.z, a.x, radius);
+    disc_set(f, centre, a.x, vec3_scale(a.z, -1), radius);
     return &f->base;
 }
 

@@ -55,10 +55,10 @@ static pov_flat disc(const shape_spec *f, int part)
 {
     if (f->kind == SHAPE_DISC) {
         const frame a = frame_about(f->u);
-        return (pov_flat){.O = f->a, .U = a.z, .W = a.x};
+        return (pov_flat){.O = f->a, .U = a.x, .W = vec3_scale(a.z, -1)};
     }
     const frame a = frame_about(vec3_sub(f->u, f->a));
-    return part == 1 ? (pov_flat){.O = f->u, .U = a.z, .W = a.x} : (pov_flat){.O = f->a, .U = a.x, .W = a.z};
+    return part == 1 ? (pov_flat){.O = f->u, .U = a.x, .W = vec3_scale(a.z, -1)} : (pov_flat){.O = f->a, .U = a.x, .W = a.z};
 }
 
 pov_flat pov_flat_of(const shape_spec *f, int part)

@@ -76,7 +76,7 @@ surface *box_new(vec3 from, vec3 to);
 surface *sphere_new(vec3 centre, double radius);
 
 /* Q = centre + u U + w W, u^2 + w^2 <= radius^2, U and W unit vectors at right angles to each other and to the normal: with
- * frame.h's about it, U = z and W = x. NULL where radius <= 0 or the normal has no direction. */
+ * frame.h's about it, U = x and W = -z. NULL where radius <= 0 or the normal has no direction. */
 surface *disc_new(vec3 centre, vec3 normal, double radius);
 
 /* The cone between two discs across the axis from..to; with equal radii a cylinder. Q = from + rho (cos u X + sin u Z) + y Y,

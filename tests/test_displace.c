@@ -85,8 +85,8 @@ static wide turned_foot(int kind, int part, const wide X[3], wide *u, wide *w, i
     }
     if (kind == DISC || part > 0) {
         const bool low = part == 2;
-        *u = low ? p[0] : p[2];
-        *w = low ? p[2] : p[0];
+        *u = p[0];
+        *w = low ? p[2] : -p[2];
         *inside = d <= (part == 1 ? R1 : R0);
         return kind == DISC ? p[1] : low ? -p[1] : p[1] - l;
     }
@@ -388,9 +388,7 @@ static void own_shadows(void **state)
             for (int k = 0; k < 3; k++) {
                 o[k] += d[k] * off;
             }
-            int in, below = 0;
-            for (int part = 0; part < f->is->parts; part++)
-                below |= gap_at(kind, MAP_BUMP, part, o, &in) < 0 && in && f->is->parts == 1;
+            int in, below = gap_at(kind, MAP_BUMP, on[i], o, &in) < 0 && in;
             want = !(below || first_crossing(kind, MAP_BUMP, o, d, 1 - off, &doubt) >= 0);
             wrong += (lit[i] > 0) != want;
             dark += !want;
