@@ -283,12 +283,11 @@ STAGE static void cone_side_shell(const cone *restrict base, int n, const rays *
         local l = local_of(&f, x, i);
         spans k = cone_spans(&f, outer, lo, hi, l), core = cone_spans(&f, inner, lo, hi, l);
         real in = real_max(k.from, k.in), out = real_min(k.to, k.out), from = real_max(in, 0);
-        /* Within the core the gap is below 0. A ray that begins there meets the rough side only beyond it; one that has come
-         * in through the outer cone has met the rough side before it, unless the foot was beyond an end. */
-        int hollow = (core.in <= core.out) & (inner > 0), within = hollow & (core.in <= from) & (core.out >= from);
-        int crossed = exact & hollow & (core.in > from) & (from == k.in);
+        /* Within the core the gap is below 0, so that a ray that has come in through the outer cone has met the rough side before
+         * it, unless the foot was beyond an end. */
+        int crossed = exact & (inner > 0) & (core.in <= core.out) & (core.in > from) & (from == k.in);
         out = crossed ? real_min(core.in, out) : out;
-        t0[i] = within ? core.out : from;
+        t0[i] = from;
         t1[i] = in <= out ? real_min(out, end[i]) : R(-1);
     }
 }

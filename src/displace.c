@@ -24,7 +24,7 @@ typedef struct search {
     rays x;
     real t[LANES], gap[LANES], end[LANES], shortest[LANES], tolerance[LANES];
     real side[LANES]; /* 1: the ray comes from above the rough surface; -1: from below; 0: not known yet */
-    int32_t own[LANES], open[LANES]; /* starts on this part; is still searched */
+    int32_t own[LANES], left[LANES], open[LANES]; /* starts on this part; has clearly left it; is still searched */
     feet p;
     heights h;
     real rate[LANES], reach[LANES];
@@ -74,6 +74,7 @@ static void keep(search *s, int from, int to)
     s->tolerance[to] = s->tolerance[from];
     s->side[to] = s->side[from];
     s->own[to] = s->own[from];
+    s->left[to] = s->left[from];
     s->open[to] = s->open[from];
 }
 
@@ -158,6 +159,7 @@ static void begin(const surface *f, const perturb *P, int part, int n, const ray
         s->shortest[k] = real_max((t1[i] - t0[i]) / STEPS, s->tolerance[k] / real_sqrt(bs_dot(d, d)));
         s->side[k] = 0;
         s->own[k] = on && on[i] == part;
+        s->left[k] = !s->own[k];
         s->open[k] = 1;
     }
 }
@@ -190,9 +192,10 @@ void displace_search(const surface *f, const perturb *P, int part, int n, const 
             if (s.side[i] == 0)
                 s.side[i] = side_of(&s, i, slope[i]);
             real above = s.side[i] * s.gap[i];
+            s.left[i] |= above > s.tolerance[i];
             /* At the end of the shell, P = Pmin below it, rounding must not let the ray slip through. */
             bool last = s.t[i] >= s.end[i], touches = last && above <= s.tolerance[i] && s.side[i] * slope[i] < 0;
-            if (above <= -least || (touches && !s.own[i])) {
+            if (above <= -least || (touches && s.left[i])) {
                 /* no step goes past a crossing by more than the shortest does */
                 real from = real_max(s.t[i] - s.shortest[i], 0), at;
                 displace_end end_of = refine(f, P, part, &s, i, from, s.t[i], &at);

@@ -440,6 +440,48 @@ static void flat_and_exact(void **state)
     perturb_free(P);
 }
 
+/* A constant P on a tube or a torus is a wider one, with a shell of no thickness. */
+static void constant_bumps(void **state)
+{
+    (void)state;
+    const double all[2] = {-HUGE_VAL, HUGE_VAL}, levels[] = {0.1, -0.1, 1e-6, 0};
+    for (int kind = TUBE; kind <= TORUS; kind += TORUS - TUBE)
+        for (int k = 0; k < 4; k++) {
+            const turned *t = &turns[kind - DISC];
+            const double h = levels[k];
+            expr_error e;
+            perturb *P = perturb_function(expr_parse("1", &e), h, all, all);
+            surface *f = make_surface(kind), *wider = kind == TORUS ? torus_new(t->a, t->b, t->r[0], t->r[1] + h)
+                                                                    : cone_new(t->a, t->r[0] + h, t->b, t->r[1] + h, true);
+            int met = 0, other = 0;
+            for (int round = 0; round < 8; round++) {
+                static rays x;
+                static hits rough, smooth;
+                long uncertain = 0;
+                wide r[3], s[3];
+                for (int i = 0; i < LANES; i++) {
+                    random_ray(&x, i, r, s);
+                    if (round % 2) /* from within, where a tube is open */
+                        lane_set(&x.r, i, (bs_vec3){R(0.1), R(0.1), R(0.1)});
+                    rough.t[i] = smooth.t[i] = R(3);
+                    rough.id[i] = smooth.id[i] = -1;
+                }
+                displace_hit(f, P, LANES, &x, 0, &rough, &uncertain);
+                wider->is->hit(wider, LANES, &x, 0, &smooth);
+                for (int i = 0; i < LANES; i++) {
+                    met += smooth.id[i] == 0;
+                    other += rough.id[i] != smooth.id[i] || !(fabs((double)(rough.t[i] - smooth.t[i])) < AGREE);
+                }
+                assert_int_equal(uncertain, 0);
+            }
+            print_message("%s, P = %g: %d hits, %d otherwise\n", names[kind], h, met, other);
+            assert_true(met > 300 && other <= 2); /* at a rim or tangent */
+            perturb_free(P);
+            surface_free(f);
+            surface_free(wider);
+        }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -447,6 +489,7 @@ int main(void)
         cmocka_unit_test(normals_are_gradients),
         cmocka_unit_test(own_shadows),
         cmocka_unit_test(flat_and_exact),
+        cmocka_unit_test(constant_bumps),
     };
     return cmocka_run_group_tests_name("true displacement", tests, NULL, NULL);
 }
