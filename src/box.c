@@ -185,16 +185,17 @@ static void box_steep(const surface *base, int part, int n, const rays *x, const
     }
 }
 
-static void box_extent(const surface *base, double u[2], double w[2])
+static void box_extent(const surface *base, int part, double u[2], double w[2])
 {
     (void)base;
+    (void)part;
     u[0] = w[0] = 0;
     u[1] = w[1] = 1;
 }
 
 static const surface_methods box_methods = {
     "box", box_hit,   box_locate, box_eval,  box_occlude, box_occlude_own, box_extent,
-    6,     box_shell, box_foot,   box_steep,
+    6,     box_shell, box_foot,   box_steep, false,
 };
 
 surface *box_new(vec3 from, vec3 to)

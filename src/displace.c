@@ -24,7 +24,7 @@ typedef struct search {
     rays x;
     real t[LANES], gap[LANES], end[LANES], shortest[LANES], tolerance[LANES];
     real side[LANES]; /* 1: the ray comes from above the rough surface; -1: from below; 0: not known yet */
-    int32_t own[LANES], open[LANES]; /* starts on this part; is still searched */
+    int32_t own[LANES], left[LANES], open[LANES]; /* starts on this part; has clearly left it; is still searched */
     feet p;
     heights h;
     real rate[LANES], reach[LANES];
@@ -42,10 +42,25 @@ STAGE static void gaps(search *restrict s, real *restrict slope)
     }
 }
 
+/* (u,w) where the foot is beyond the part's extent, and P has no bounds: that of the nearest end, so that the rough surface goes on
+ * from there. */
+static void within_extent(const surface *f, int part, int n, const feet *p, real *u, real *w)
+{
+    double U[2], W[2];
+    f->is->extent(f, part, U, W);
+    for (int i = 0; i < n; i++) {
+        u[i] = real_min(real_max(p->u[i], (real)U[0]), (real)U[1]);
+        w[i] = real_min(real_max(p->w[i], (real)W[0]), (real)W[1]);
+    }
+}
+
 static void look(const surface *f, const perturb *P, int part, search *s, real *slope)
 {
+    real u[LANES], w[LANES];
     f->is->foot(f, part, s->n, &s->x, s->t, &s->p);
-    P->is->eval(P, s->n, s->p.u, s->p.w, 1, &s->h);
+    if (f->is->loose)
+        within_extent(f, part, s->n, &s->p, u, w);
+    P->is->eval(P, s->n, f->is->loose ? u : s->p.u, f->is->loose ? w : s->p.w, 1, &s->h);
     s->looks += s->n;
     gaps(s, slope);
 }
@@ -61,6 +76,7 @@ static void keep(search *s, int from, int to)
     s->tolerance[to] = s->tolerance[from];
     s->side[to] = s->side[from];
     s->own[to] = s->own[from];
+    s->left[to] = s->left[from];
     s->open[to] = s->open[from];
 }
 
@@ -105,7 +121,23 @@ static displace_end refine(const surface *f, const perturb *P, int part, search 
     }
     s->looks += one.looks;
     *t = best;
-    return least <= s->tolerance[i] ? DISPLACE_HIT : DISPLACE_UNCERTAIN;
+    /* a ray from the surface itself was let go on until it was clearly below, so that its bracket can begin there */
+    return least <= (s->own[i] ? 2 : 1) * s->tolerance[i] ? DISPLACE_HIT : DISPLACE_UNCERTAIN;
+}
+
+/* Whether the foot of a hit is on the part, and not on what extends it. */
+static bool counts(const surface *f, int part, const search *s, int i, real t)
+{
+    rays x;
+    feet p;
+    real u, w;
+    if (!f->is->loose)
+        return true;
+    lane_set(&x.r, 0, lane_get(&s->x.r, i));
+    lane_set(&x.s, 0, lane_get(&s->x.s, i));
+    f->is->foot(f, part, 1, &x, &t, &p);
+    within_extent(f, part, 1, &p, &u, &w);
+    return u == p.u[0] && w == p.w[0];
 }
 
 /* Open the search on the rays whose shell is not empty. */
@@ -132,6 +164,7 @@ static void begin(const surface *f, const perturb *P, int part, int n, const ray
         s->shortest[k] = real_max((t1[i] - t0[i]) / STEPS, s->tolerance[k] / real_sqrt(bs_dot(d, d)));
         s->side[k] = 0;
         s->own[k] = on && on[i] == part;
+        s->left[k] = !s->own[k];
         s->open[k] = 1;
     }
 }
@@ -164,14 +197,21 @@ long displace_search(const surface *f, const perturb *P, int part, int n, const 
             if (s.side[i] == 0)
                 s.side[i] = side_of(&s, i, slope[i]);
             real above = s.side[i] * s.gap[i];
+            s.left[i] |= above > s.tolerance[i];
             /* At the end of the shell, P = Pmin below it, rounding must not let the ray slip through. */
             bool last = s.t[i] >= s.end[i], touches = last && above <= s.tolerance[i] && s.side[i] * slope[i] < 0;
-            if (above <= -least || (touches && !s.own[i])) {
+            if (above <= -least || (touches && s.left[i])) {
                 /* no step goes past a crossing by more than the shortest does */
-                real from = real_max(s.t[i] - s.shortest[i], 0);
-                found[s.lane[i]] = (int32_t)refine(f, P, part, &s, i, from, s.t[i], &t[s.lane[i]]);
-                s.open[i] = 0;
-                continue;
+                real from = real_max(s.t[i] - s.shortest[i], 0), at;
+                displace_end end_of = refine(f, P, part, &s, i, from, s.t[i], &at);
+                if (counts(f, part, &s, i, at)) {
+                    t[s.lane[i]] = at;
+                    found[s.lane[i]] = (int32_t)end_of;
+                    s.open[i] = 0;
+                    continue;
+                }
+                s.side[i] = -s.side[i]; /* through what extends the surface, to its other side */
+                above = -above;
             }
             if (last) {
                 s.open[i] = 0;

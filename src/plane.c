@@ -1,15 +1,13 @@
-/* Plane and rectangle: Q(u,w) = O + u U + w W, also skewed or scaled. */
+/* Plane, rectangle and disc: Q(u,w) = O + u U + w W, also skewed or scaled. */
+#include "plane.h"
+
 #include "clip.h"
-#include "surface.h"
+#include "frame.h"
 
 #include <stdlib.h>
 
-typedef struct plane {
-    surface base;
-    real O[3], U[3], W[3];
-    real N[3];         /* U x W */
-    real Du[3], Dw[3]; /* the dual basis: Du.U = 1, Du.W = 0; so u = Du.(p - O) */
-} plane;
+/* Where the plane ends: a constant in each of the stages. */
+enum bounds { NOWHERE, AT_SIDES, AT_RIM };
 
 /* t of the crossing with the plane. A ray along the plane gives an infinite or undefined t, for which
  * every comparison below is false. */
@@ -24,38 +22,40 @@ static inline real plane_coord(const plane *f, const real *D, real px, real py, 
     return (px - f->O[0]) * D[0] + (py - f->O[1]) * D[1] + (pz - f->O[2]) * D[2];
 }
 
-/* Whether r + s t is within the rectangle. */
-static inline int plane_inside(const plane *f, const rays *x, int i, real t)
+/* Whether r + s t is within the rectangle, or on the disc. */
+static inline int plane_inside(const plane *f, const rays *x, int i, enum bounds end, real t)
 {
     real px = x->r.x[i] + x->s.x[i] * t, py = x->r.y[i] + x->s.y[i] * t, pz = x->r.z[i] + x->s.z[i] * t;
     real u = plane_coord(f, f->Du, px, py, pz), w = plane_coord(f, f->Dw, px, py, pz);
-    return (u >= 0) & (u <= 1) & (w >= 0) & (w <= 1);
+    return end == AT_RIM ? u * u + w * w <= f->R * f->R : (u >= 0) & (u <= 1) & (w >= 0) & (w <= 1);
 }
 
-/* t of the hit, by a ray with t in (0, end), and `end` without one. */
-static inline real plane_cut(const plane *f, const rays *x, int i, int bounded, real end)
+/* t of the hit, by a ray with t in (0, last), and `last` without one. */
+static inline real plane_cut(const plane *f, const rays *x, int i, enum bounds end, real last)
 {
     real t = plane_t(f, x->r.x[i], x->r.y[i], x->r.z[i], x->s.x[i], x->s.y[i], x->s.z[i]);
-    int in = bounded ? plane_inside(f, x, i, t) : 1;
-    return (in & (t > 0) & (t < end)) ? t : end;
+    int in = end == NOWHERE ? 1 : plane_inside(f, x, i, end, t);
+    return (in & (t > 0) & (t < last)) ? t : last;
 }
 
-static inline void hit(const surface *base, int bounded, int n, const rays *x, int32_t id, hits *h)
+static inline void hit(const surface *base, enum bounds end, int n, const rays *x, int32_t id, hits *h)
 {
     const plane f = *(const plane *)base;
     for (int i = 0; i < n; i++) {
-        real t = plane_cut(&f, x, i, bounded, h->t[i]);
+        real t = plane_cut(&f, x, i, end, h->t[i]);
         h->id[i] = t < h->t[i] ? id : h->id[i];
         h->t[i] = t;
     }
 }
 
-STAGE static void plane_hit(const surface *base, int n, const rays *x, int32_t id, hits *h) { hit(base, 0, n, x, id, h); }
+STAGE static void plane_hit(const surface *base, int n, const rays *x, int32_t id, hits *h) { hit(base, NOWHERE, n, x, id, h); }
 
 STAGE static void rectangle_hit(const surface *base, int n, const rays *x, int32_t id, hits *h)
 {
-    hit(base, 1, n, x, id, h);
+    hit(base, AT_SIDES, n, x, id, h);
 }
+
+STAGE static void disc_hit(const surface *base, int n, const rays *x, int32_t id, hits *h) { hit(base, AT_RIM, n, x, id, h); }
 
 STAGE static void plane_locate(const surface *base, int n, const rays *x, const real *t, int32_t *part, real *u,
                                real *w)
@@ -88,20 +88,38 @@ STAGE static void plane_eval(const surface *base, int n, const int32_t *part, co
     }
 }
 
-static inline void occlude(const surface *base, int bounded, int n, const rays *x, real *lit)
+static inline void occlude(const surface *base, enum bounds end, int n, const rays *x, real *lit)
 {
     const plane f = *(const plane *)base;
     for (int i = 0; i < n; i++)
-        lit[i] = plane_cut(&f, x, i, bounded, 1) < 1 ? 0 : lit[i];
+        lit[i] = plane_cut(&f, x, i, end, 1) < 1 ? 0 : lit[i];
 }
 
-STAGE static void plane_occlude(const surface *base, int n, const rays *x, real *lit) { occlude(base, 0, n, x, lit); }
+STAGE static void plane_occlude(const surface *base, int n, const rays *x, real *lit) { occlude(base, NOWHERE, n, x, lit); }
 
-STAGE static void rectangle_occlude(const surface *base, int n, const rays *x, real *lit) { occlude(base, 1, n, x, lit); }
+STAGE static void rectangle_occlude(const surface *base, int n, const rays *x, real *lit)
+{
+    occlude(base, AT_SIDES, n, x, lit);
+}
+
+STAGE static void disc_occlude(const surface *base, int n, const rays *x, real *lit) { occlude(base, AT_RIM, n, x, lit); }
 
 /* ---- for true displacement ---- */
 
-static inline void shell(const surface *base, int bounded, int n, const rays *x, const real *end, real Pmin, real Pmax,
+/* Narrow t0..t1 to where |(u,w) + t (du,dw)| <= rim: like a sphere's roots, from the foot of the perpendicular. */
+static inline void clip_rim(real u, real w, real du, real dw, real rim, real *t0, real *t1)
+{
+    real a = du * du + dw * dw, tc = -(u * du + w * dw) / a, fu = u + tc * du, fw = w + tc * dw;
+    real d = rim * rim - (fu * fu + fw * fw), h = real_sqrt(real_max(d, 0) / a);
+    real from = d >= 0 ? tc - h : R(1), to = d >= 0 ? tc + h : R(-1);
+    int in = u * u + w * w <= rim * rim; /* a = 0: along the normal all is inside, or nothing */
+    from = a > 0 ? from : in ? *t0 : R(1);
+    to = a > 0 ? to : in ? *t1 : R(-1);
+    *t0 = real_max(from, *t0);
+    *t1 = real_min(to, *t1);
+}
+
+static inline void shell(const surface *base, enum bounds bound, int n, const rays *x, const real *end, real Pmin, real Pmax,
                          real *restrict t0, real *restrict t1)
 {
     const plane f = *(const plane *)base;
@@ -110,10 +128,13 @@ static inline void shell(const surface *base, int bounded, int n, const rays *x,
         real sx = x->s.x[i], sy = x->s.y[i], sz = x->s.z[i];
         real from = 0, to = end[i];
         clip(rx * f.N[0] + ry * f.N[1] + rz * f.N[2], sx * f.N[0] + sy * f.N[1] + sz * f.N[2], Pmin, Pmax, &from, &to);
-        if (bounded) {
+        if (bound == AT_SIDES) {
             clip(rx * f.Du[0] + ry * f.Du[1] + rz * f.Du[2], sx * f.Du[0] + sy * f.Du[1] + sz * f.Du[2], 0, 1, &from, &to);
             clip(rx * f.Dw[0] + ry * f.Dw[1] + rz * f.Dw[2], sx * f.Dw[0] + sy * f.Dw[1] + sz * f.Dw[2], 0, 1, &from, &to);
         }
+        if (bound == AT_RIM)
+            clip_rim(rx * f.Du[0] + ry * f.Du[1] + rz * f.Du[2], rx * f.Dw[0] + ry * f.Dw[1] + rz * f.Dw[2],
+                     sx * f.Du[0] + sy * f.Du[1] + sz * f.Du[2], sx * f.Dw[0] + sy * f.Dw[1] + sz * f.Dw[2], f.R, &from, &to);
         t0[i] = from;
         t1[i] = to;
     }
@@ -123,14 +144,21 @@ static void plane_shell(const surface *base, int part, int n, const rays *x, con
                         real *t1)
 {
     (void)part;
-    shell(base, 0, n, x, end, Pmin, Pmax, t0, t1);
+    shell(base, NOWHERE, n, x, end, Pmin, Pmax, t0, t1);
 }
 
 static void rectangle_shell(const surface *base, int part, int n, const rays *x, const real *end, real Pmin, real Pmax,
                             real *t0, real *t1)
 {
     (void)part;
-    shell(base, 1, n, x, end, Pmin, Pmax, t0, t1);
+    shell(base, AT_SIDES, n, x, end, Pmin, Pmax, t0, t1);
+}
+
+static void disc_shell(const surface *base, int part, int n, const rays *x, const real *end, real Pmin, real Pmax, real *t0,
+                       real *t1)
+{
+    (void)part;
+    shell(base, AT_RIM, n, x, end, Pmin, Pmax, t0, t1);
 }
 
 /* The dual basis is in the plane, so Du.(X - O) is u of the foot. */
@@ -164,28 +192,43 @@ STAGE static void plane_steep(const surface *base, int part, int n, const rays *
     }
 }
 
-static void plane_extent(const surface *base, double u[2], double w[2])
+static void plane_extent(const surface *base, int part, double u[2], double w[2])
 {
     (void)base;
+    (void)part;
     u[0] = w[0] = -HUGE_VAL;
     u[1] = w[1] = HUGE_VAL;
 }
 
-static void rectangle_extent(const surface *base, double u[2], double w[2])
+static void rectangle_extent(const surface *base, int part, double u[2], double w[2])
 {
     (void)base;
+    (void)part;
     u[0] = w[0] = 0;
     u[1] = w[1] = 1;
 }
 
+static void disc_extent(const surface *base, int part, double u[2], double w[2])
+{
+    const double R = (double)((const plane *)base)->R;
+    (void)part;
+    u[0] = w[0] = -R;
+    u[1] = w[1] = R;
+}
+
 static const surface_methods plane_methods = {
     "plane", plane_hit,    plane_locate, plane_eval, plane_occlude, NULL, plane_extent,
-    1,       plane_shell, plane_foot,   plane_steep,
+    1,       plane_shell, plane_foot,   plane_steep,  false,
 };
 
 static const surface_methods rectangle_methods = {
     "rectangle", rectangle_hit,   plane_locate, plane_eval, rectangle_occlude, NULL, rectangle_extent,
-    1,           rectangle_shell, plane_foot,   plane_steep,
+    1,           rectangle_shell, plane_foot,   plane_steep, false,
+};
+
+static const surface_methods disc_methods = {
+    "disc", disc_hit,   plane_locate, plane_eval,  disc_occlude, NULL, disc_extent,
+    1,      disc_shell, plane_foot,   plane_steep, false,
 };
 
 static void store(real to[3], vec3 v)
@@ -212,6 +255,29 @@ surface *plane_new(vec3 origin, vec3 U, vec3 W, bool bounded)
     store(f->N, vec3_unit(N));
     store(f->Du, vec3_scale(vec3_cross(W, N), 1 / n2));
     store(f->Dw, vec3_scale(vec3_cross(N, U), 1 / n2));
+    return &f->base;
+}
+
+void disc_set(plane *f, vec3 centre, vec3 U, vec3 W, double radius)
+{
+    f->base.is = &disc_methods;
+    store(f->O, centre);
+    store(f->U, U);
+    store(f->W, W);
+    store(f->N, vec3_cross(U, W));
+    store(f->Du, U);
+    store(f->Dw, W);
+    f->R = (real)radius;
+}
+
+surface *disc_new(vec3 centre, vec3 normal, double radius)
+{
+    const double l = vec3_length(normal);
+    plane *f = l > 0 && l < HUGE_VAL && radius > 0 && radius < HUGE_VAL ? calloc(1, sizeof *f) : NULL;
+    if (!f)
+        return NULL;
+    const frame a = frame_about(normal);
+    disc_set(f, centre, a.x, vec3_scale(a.z, -1), radius);
     return &f->base;
 }
 

@@ -1,7 +1,38 @@
 /* Flat surfaces for the POV-Ray writer: their frames, and how much of an unbounded one is needed. */
 #include "pov_parts.h"
 
-bool pov_is_flat(const shape_spec *f) { return f->kind != SHAPE_SPHERE; }
+#include "frame.h"
+
+bool pov_is_flat(const shape_spec *f, int part)
+{
+    bool round = f->kind == SHAPE_SPHERE || f->kind == SHAPE_TORUS, side = f->kind == SHAPE_CYLINDER || f->kind == SHAPE_CONE;
+    return !round && !(side && part == 0);
+}
+
+double pov_rim(const shape_spec *f, int part)
+{
+    if (f->kind == SHAPE_DISC)
+        return f->radius[0];
+    if (part > 0 && (f->kind == SHAPE_CYLINDER || f->kind == SHAPE_CONE))
+        return f->radius[part == 1];
+    return -1;
+}
+
+void pov_levels(const object *o, double y[2])
+{
+    double air = 1e-3 * ((double)o->bump->Pmax - (double)o->bump->Pmin) + 1e-6;
+    y[0] = (double)o->bump->Pmin - air;
+    y[1] = (double)o->bump->Pmax + air;
+}
+
+void pov_clip_rim(pov_text *t, const object *o, int part)
+{
+    const pov_flat p = pov_flat_of(&o->shape_said, part);
+    double y[2];
+    pov_levels(o, y);
+    pov_print(t, "  clipped_by { cylinder { %v, %v, %g } }\n", vec3_add(p.O, vec3_scale(p.y, y[0])),
+              vec3_add(p.O, vec3_scale(p.y, y[1])), pov_rim(&o->shape_said, part));
+}
 
 static double *axis(vec3 *v, int k) { return k == 0 ? &v->x : k == 1 ? &v->y : &v->z; }
 
@@ -19,9 +50,22 @@ static pov_flat box_face(const shape_spec *f, int part)
     return p;
 }
 
+/* A disc, or a cap of a cylinder or cone: part 1 is at its upper end, where the axis is n. */
+static pov_flat disc(const shape_spec *f, int part)
+{
+    if (f->kind == SHAPE_DISC) {
+        const frame a = frame_about(f->u);
+        return (pov_flat){.O = f->a, .U = a.x, .W = vec3_scale(a.z, -1)};
+    }
+    const frame a = frame_about(vec3_sub(f->u, f->a));
+    return part == 1 ? (pov_flat){.O = f->u, .U = a.x, .W = vec3_scale(a.z, -1)} : (pov_flat){.O = f->a, .U = a.x, .W = a.z};
+}
+
 pov_flat pov_flat_of(const shape_spec *f, int part)
 {
-    pov_flat p = f->kind == SHAPE_BOX ? box_face(f, part) : (pov_flat){.O = f->a, .U = f->u, .W = f->w};
+    pov_flat p = f->kind == SHAPE_BOX        ? box_face(f, part)
+                 : pov_rim(f, part) >= 0 ? disc(f, part)
+                                         : (pov_flat){.O = f->a, .U = f->u, .W = f->w};
     p.x = vec3_unit(p.U);
     p.y = vec3_unit(vec3_cross(p.U, p.W));
     p.z = vec3_unit(p.W);

@@ -1,11 +1,12 @@
 /* Displaced objects as isosurfaces: height over the smooth surface less P is 0 on the rough one.
  *
- * max_gradient is a bound, not a guess: from P's Lipschitz constants on flat surfaces, from interval arithmetic on a sphere. POV-Ray
+ * max_gradient is a bound, not a guess: from P's Lipschitz constants, on a sphere from interval arithmetic. POV-Ray
  * drops a stretch of a ray in which the function could not reach 0 by this bound, so too low a one makes holes.
  */
 #include "pov_parts.h"
 
 #include "expr_pov.h"
+#include "frame.h"
 
 #include <stdlib.h>
 
@@ -54,7 +55,7 @@ static double of_zone(const expr *e, double scale, double r, double w0, double w
 static double of_sphere(const object *o)
 {
     const double CAP = 1e-3, GROWTH = 1.05, WIDEST = 0.05, half = 3.14159265358979323846 / 2;
-    double r = o->shape_said.radius + (double)o->bump->Pmin, scale = fabs(o->bump_said.scale), worst = 0;
+    double r = o->shape_said.radius[0] + (double)o->bump->Pmin, scale = fabs(o->bump_said.scale), worst = 0;
     expr_error wrong;
     expr *e = r > 0 ? expr_parse(o->bump_said.function, &wrong) : NULL;
     if (!e)
@@ -68,25 +69,49 @@ static double of_sphere(const object *o)
     return worst;
 }
 
+/* By how much P can change with an angle, against the length of a way that ends at a distance r from where the angle turns: within
+ * half of r, where it turns ever faster, by its whole range on a way of r/2 and more. */
+static double turning(const object *o, double slope, double r)
+{
+    double range = (double)o->bump->Pmax - (double)o->bump->Pmin;
+    return r > 0 ? 2 * fmax(slope, range) / r : HUGE_VAL;
+}
+
+static double of_cylinder(const object *o)
+{
+    return 1 + (double)o->bump->Pw_max + turning(o, (double)o->bump->Pu_max, o->shape_said.radius[0] + (double)o->bump->Pmin);
+}
+
+static double of_torus(const object *o)
+{
+    double major = o->shape_said.radius[0], minor = o->shape_said.radius[1];
+    return 1 + turning(o, (double)o->bump->Pu_max, major - minor - (double)o->bump->Pmax) +
+           turning(o, (double)o->bump->Pw_max, minor + (double)o->bump->Pmin);
+}
+
+static double of_part(const object *o, int part)
+{
+    const shape_spec *f = &o->shape_said;
+    if (pov_is_flat(f, part))
+        return of_flat(o, part);
+    if (f->kind == SHAPE_SPHERE)
+        return of_sphere(o);
+    if (f->kind == SHAPE_TORUS)
+        return of_torus(o);
+    return f->radius[0] == f->radius[1] ? of_cylinder(o) : HUGE_VAL; /* a displaced cone ends on cones, which no container does */
+}
+
 double pov_isosurface_gradient(const object *o, int part)
 {
     if (!o->bump_said.function)
         return HUGE_VAL;
-    double g = pov_is_flat(&o->shape_said) ? of_flat(o, part) : of_sphere(o);
+    double g = of_part(o, part);
     return g < STEEPEST ? g * (1 + 1e-6) : HUGE_VAL;
 }
 
 /* ---- writing ---- */
 
 static double accuracy(const scene *s) { return 1e-7 * vec3_length(vec3_sub(s->view.at, s->camera.from)); }
-
-/* P's range with some air: a container must hold all of the surface. */
-static void levels(const object *o, double y[2])
-{
-    double air = 1e-3 * ((double)o->bump->Pmax - (double)o->bump->Pmin) + 1e-6;
-    y[0] = (double)o->bump->Pmin - air;
-    y[1] = (double)o->bump->Pmax + air;
-}
 
 static void put_over(pov_text *t, const char *x, double length)
 {
@@ -98,7 +123,12 @@ static void put_flat(pov_text *t, const scene *s, const object *o, int part, con
     const pov_flat p = pov_flat_of(&o->shape_said, part);
     const double lu = vec3_length(p.U), lw = vec3_length(p.W);
     double u[2] = {0, 1}, w[2] = {0, 1}, y[2];
-    levels(o, y);
+    pov_levels(o, y);
+    const double rim = pov_rim(&o->shape_said, part);
+    if (rim >= 0) {
+        u[0] = w[0] = -rim;
+        u[1] = w[1] = rim;
+    }
     if (o->shape_said.kind == SHAPE_PLANE) {
         pov_plane_region(s, o, u, w);
         pov_print(t, "// The plane has no end; here it is cut to what the camera sees and what can shade that.\n");
@@ -111,14 +141,16 @@ static void put_flat(pov_text *t, const scene *s, const object *o, int part, con
               w[1] * lw);
     pov_print(t, "  open\n  accuracy %g\n  max_gradient %g // a bound: none is steeper\n", accuracy(s),
               pov_isosurface_gradient(o, part));
-    pov_print(t, "  matrix <%g, %g, %g,  %g, %g, %g,  %g, %g, %g,  %g, %g, %g> // x along u, y the height, z along w, origin\n",
-              p.x.x, p.x.y, p.x.z, p.y.x, p.y.y, p.y.z, p.z.x, p.z.y, p.z.z, p.O.x, p.O.y, p.O.z);
+    pov_matrix(t, p.x, p.y, p.z, p.O);
+    pov_print(t, " // x along u, y the height, z along w, origin\n");
+    if (rim >= 0)
+        pov_clip_rim(t, o, part);
 }
 
 static void put_sphere(pov_text *t, const scene *s, const object *o, const char *name)
 {
-    double y[2], radius = o->shape_said.radius;
-    levels(o, y);
+    double y[2], radius = o->shape_said.radius[0];
+    pov_levels(o, y);
     pov_print(t, "isosurface {\n  function {\n    sqrt(x*x + y*y + z*z) - %s\n    - %s(atan2(z, x), atan2(sqrt(x*x + z*z), y))\n  }\n",
               pov_exact(radius).text, name);
     pov_print(t, "  contained_by { sphere { 0, %g } }\n  accuracy %g\n", radius + y[1], accuracy(s));
@@ -126,18 +158,60 @@ static void put_sphere(pov_text *t, const scene *s, const object *o, const char 
               pov_isosurface_gradient(o, 0), o->shape_said.a);
 }
 
+/* The side of a cylinder; y is its axis. */
+static void put_side(pov_text *t, const scene *s, const object *o, const char *name)
+{
+    const shape_spec *f = &o->shape_said;
+    const vec3 axis = vec3_sub(f->u, f->a);
+    const frame a = frame_about(axis);
+    double y[2], radius = f->radius[0], length = vec3_length(axis);
+    pov_levels(o, y);
+    pov_print(t, "isosurface {\n  function {\n    sqrt(x*x + z*z) - %s\n    - %s(atan2(z, x), ", pov_exact(radius).text, name);
+    pov_print(t, "%s - y)\n  }\n", pov_exact(length).text);
+    pov_print(t, "  contained_by { box { <%g, 0, %g>, <%g, %g, %g> } }\n", -radius - y[1], -radius - y[1], radius + y[1], length,
+              radius + y[1]);
+    pov_print(t, "  open\n  accuracy %g\n  max_gradient %g // a bound: none is steeper\n", accuracy(s),
+              pov_isosurface_gradient(o, 0));
+    pov_matrix(t, a.x, a.y, a.z, f->a);
+    pov_print(t, " // y is the axis\n");
+}
+
+static void put_torus(pov_text *t, const scene *s, const object *o, const char *name)
+{
+    const shape_spec *f = &o->shape_said;
+    const frame a = frame_about(f->u);
+    double y[2];
+    pov_levels(o, y);
+    const double wide = f->radius[0] + f->radius[1] + y[1], high = f->radius[1] + y[1];
+    const pov_digits major = pov_exact(f->radius[0]);
+    pov_print(t, "isosurface {\n  function {\n    sqrt(pow(sqrt(x*x + z*z) - %s, 2) + y*y) - %s\n", major.text,
+              pov_exact(f->radius[1]).text);
+    pov_print(t, "    - %s(atan2(z, x), atan2(-y, sqrt(x*x + z*z) - %s))\n  }\n", name, major.text);
+    pov_print(t, "  contained_by { box { <%g, %g, %g>, <%g, %g, %g> } }\n", -wide, -high, -wide, wide, high, wide);
+    pov_print(t, "  accuracy %g\n  max_gradient %g // a bound: none is steeper\n", accuracy(s), pov_isosurface_gradient(o, 0));
+    pov_matrix(t, a.x, a.y, a.z, f->a);
+    pov_print(t, " // y is the axis\n");
+}
+
+static void put_part(pov_text *t, const scene *s, const object *o, int part, const char *name)
+{
+    const shape_kind kind = o->shape_said.kind;
+    if (pov_is_flat(&o->shape_said, part))
+        put_flat(t, s, o, part, name);
+    else
+        (kind == SHAPE_SPHERE ? put_sphere : kind == SHAPE_TORUS ? put_torus : put_side)(t, s, o, name);
+}
+
 void pov_isosurface(pov_text *t, const scene *s, const object *o, const char *name)
 {
-    if (o->shape_said.kind == SHAPE_SPHERE)
-        put_sphere(t, s, o, name);
-    else if (o->shape_said.kind == SHAPE_BOX) {
+    const int parts = o->shape->is->parts;
+    if (parts > 1)
         pov_print(t, "union {\n");
-        for (int part = 0; part < 6; part++) {
-            put_flat(t, s, o, part, name);
-            if (pov_by_parts(s, o))
-                pov_texture(t, s, o, part);
+    for (int part = 0; part < parts; part++) {
+        put_part(t, s, o, part, name);
+        if (pov_by_parts(s, o))
+            pov_texture(t, s, o, part);
+        if (parts > 1)
             pov_print(t, "}\n");
-        }
-    } else
-        put_flat(t, s, o, 0, name);
+    }
 }

@@ -28,6 +28,7 @@ typedef struct tessellation {
     double tolerance;         /* a facet's side in pixels */
     double tilt;              /* what its normals may be off */
     bool flat, unbounded;
+    bool closed; /* of the part no inner side is seen */
     int32_t (*face)[3];
     long faces, room, before; /* before: faces of the parts before */
     bool counting;            /* how many faces there would be, and no more */
@@ -147,7 +148,7 @@ static int cell_division(const tessellation *x, int64_t i, int64_t j)
     corners c = block_corners(x, i, j, 1);
     int k = x->tolerance > FINE ? 1 : 2;
     vec3 view = x->s->camera.orthographic ? x->s->camera.forward : vec3_sub(c.Q[0], x->s->camera.from);
-    bool away = !x->flat && vec3_dot(c.n, view) > 0.4 * vec3_length(view); /* beyond what bumps bring into sight */
+    bool away = x->closed && vec3_dot(c.n, view) > 0.4 * vec3_length(view); /* beyond what bumps bring into sight */
     if (away || !block_seen(x, &c))
         return 1;
     const double pixels = block_pixels(x, &c), tilt = block_tilt(&c) / x->tilt;
@@ -272,7 +273,9 @@ static void lay(tessellation *x, int part)
     double range[2][2];
     pov_lattice *l = &x->v.lattice;
     l->part = part;
-    o->shape->is->extent(o->shape, range[0], range[1]);
+    x->flat = pov_is_flat(&o->shape_said, part);
+    x->closed = !x->flat && !o->shape_said.open;
+    o->shape->is->extent(o->shape, part, range[0], range[1]);
     for (int a = 0; a < 2; a++) {
         l->lo[a] = range[a][0];
         l->hi[a] = range[a][1];
@@ -341,6 +344,8 @@ static void fit(tessellation *x)
         x->before = 0;
         x->full = false;
         for (int part = 0; part < x->o->shape->is->parts && !x->full; part++) {
+            if (pov_rim(&x->o->shape_said, part) == 0)
+                continue;
             tessellate(x, part);
             x->before += x->faces;
         }
@@ -365,7 +370,7 @@ static void put_note(pov_text *t, const tessellation *x)
 bool pov_mesh(pov_text *t, const scene *s, const object *o, pov_report *report)
 {
     const int parts = o->shape->is->parts;
-    tessellation x = {.s = s, .o = o, .memory = true, .flat = pov_is_flat(&o->shape_said), .unbounded = o->shape_said.kind == SHAPE_PLANE};
+    tessellation x = {.s = s, .o = o, .memory = true, .unbounded = o->shape_said.kind == SHAPE_PLANE};
     x.v.f = o->shape;
     x.v.P = o->bump;
     fit(&x);
@@ -377,10 +382,15 @@ bool pov_mesh(pov_text *t, const scene *s, const object *o, pov_report *report)
     if (parts > 1)
         pov_print(t, "union {\n");
     for (int part = 0; part < parts && x.memory; part++) {
+        const double rim = pov_rim(&o->shape_said, part);
+        if (rim == 0)
+            continue;
         tessellate(&x, part);
         put_mesh(t, &x);
         if (pov_by_parts(s, o))
             pov_texture(t, s, o, part);
+        if (rim > 0)
+            pov_clip_rim(t, o, part);
         if (parts > 1)
             pov_print(t, "}\n");
     }

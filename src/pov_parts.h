@@ -14,8 +14,17 @@ typedef struct pov_flat {
 
 pov_flat pov_flat_of(const shape_spec *f, int part);
 
-/* Whether part of an object's shape is flat. */
-bool pov_is_flat(const shape_spec *f);
+/* Whether part of a shape is flat. */
+bool pov_is_flat(const shape_spec *f, int part);
+
+/* The radius of a disc, or of a flat part that is one; it may be 0, and then there is no such part. Negative: no disc. */
+double pov_rim(const shape_spec *f, int part);
+
+/* Of an object's displaced disc, which is made as a square, leave what is on the disc. */
+void pov_clip_rim(pov_text *t, const object *o, int part);
+
+/* P's range with some air: a container must hold all of the surface. */
+void pov_levels(const object *o, double y[2]);
 
 /* The part of an unbounded plane that matters for the picture, as ranges of u and w: what the camera sees of the rough surface,
  * and what of it can shade that. */
@@ -43,6 +52,9 @@ void pov_isosurface(pov_text *t, const scene *s, const object *o, const char *na
 
 /* The displaced object as one mesh. False: out of memory. */
 bool pov_mesh(pov_text *t, const scene *s, const object *o, pov_report *report);
+
+/* A transformation that puts x, y, z and 0 where these are; without a new line. */
+void pov_matrix(pov_text *t, vec3 x, vec3 y, vec3 z, vec3 origin);
 
 /* The end of an object: its material, its shadow, the brace. */
 void pov_object_end(pov_text *t, const scene *s, const pov_options *how, const object *o);

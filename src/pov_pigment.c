@@ -9,12 +9,19 @@
 
 /* ---- what has to do ---- */
 
+/* Whether POV-Ray is told how (u,w) lie on the surface. */
+static bool has_uw(const object *o)
+{
+    const shape_kind kind = o->shape_said.kind;
+    return kind != SHAPE_CYLINDER && kind != SHAPE_CONE && kind != SHAPE_TORUS;
+}
+
 /* Whether all of the surface is on the image. */
 static bool covers(const object *o)
 {
     double u[2], w[2];
     const map_layout *l = &o->color_layout;
-    o->shape->is->extent(o->shape, u, w);
+    o->shape->is->extent(o->shape, 0, u, w);
     return l->offset[0] <= u[0] && l->offset[0] + l->size[0] >= u[1] && l->offset[1] <= w[0] && l->offset[1] + l->size[1] >= w[1];
 }
 
@@ -24,7 +31,10 @@ bool pov_possible(const scene *s, errors *e)
     for (int k = 0; k < s->objects; k++) {
         const object *o = &s->object[k];
         const material *m = &s->material[o->material];
-        if (m->pattern == PATTERN_IMAGE && m->layout.wrap != MAP_REPEAT && !(m->layout.wrap == MAP_CLAMP && m->nearest && covers(o)))
+        if (m->pattern && !has_uw(o))
+            good = errors_add(e, "%s: object %s: the colours of material %s can't be laid on a %s in POV-Ray, expected a constant color",
+                              s->path, o->name, m->name, o->shape->is->kind);
+        else if (m->pattern == PATTERN_IMAGE && m->layout.wrap != MAP_REPEAT && !(m->layout.wrap == MAP_CLAMP && m->nearest && covers(o)))
             good = errors_add(e, "%s: object %s: POV-Ray's images repeat and do nothing else, expected 'wrap: repeat' in material %s%s", s->path,
                               o->name, m->name,
                               m->layout.wrap == MAP_CLAMP ? ", or 'interpolation: nearest' on an image as large as the surface" : "");
@@ -58,10 +68,10 @@ void pov_materials(pov_text *t, const scene *s)
                      "#declare Checker = function(u, w) { 0.5*(floor(u) + floor(w)) - floor(0.5*(floor(u) + floor(w))) }\n\n");
 }
 
-static void put_checker(pov_text *t, const object *o, const material *m)
+static void put_checker(pov_text *t, const object *o, int part, const material *m)
 {
     const map_layout *l = &o->color_layout;
-    const bool flat = pov_is_flat(&o->shape_said);
+    const bool flat = pov_is_flat(&o->shape_said, part);
     pov_print(t, "    function { Checker((%s - %s)/%s, ", flat ? "x" : "atan2(z, x)", pov_exact(l->offset[0]).text,
               pov_exact(l->size[0]).text);
     pov_print(t, "(%s - %s)/%s) }\n", flat ? "y" : "atan2(sqrt(x*x + z*z), y)", pov_exact(l->offset[1]).text, pov_exact(l->size[1]).text);
@@ -120,15 +130,16 @@ void pov_texture(pov_text *t, const scene *s, const object *o, int part)
     }
     pov_print(t, "  texture {\n    pigment { // in (u, w)\n");
     if (m->pattern == PATTERN_CHECKER)
-        put_checker(t, o, m);
-    else if (pov_is_flat(&o->shape_said))
+        put_checker(t, o, part, m);
+    else if (pov_is_flat(&o->shape_said, part))
         put_flat_image(t, o, m);
     else
         put_sphere_image(t, o, m);
-    if (pov_is_flat(&o->shape_said)) {
+    if (pov_is_flat(&o->shape_said, part)) {
         const pov_flat p = pov_flat_of(&o->shape_said, part);
-        pov_print(t, "    matrix <%g, %g, %g,  %g, %g, %g,  %g, %g, %g,  %g, %g, %g>\n", p.U.x, p.U.y, p.U.z, p.W.x, p.W.y, p.W.z, p.y.x,
-                  p.y.y, p.y.z, p.O.x, p.O.y, p.O.z);
+        pov_print(t, "  ");
+        pov_matrix(t, p.U, p.W, p.y, p.O);
+        pov_print(t, "\n");
     } else
         pov_print(t, "    translate %v\n", o->shape_said.a);
     pov_print(t, "    }\n    finish { %s }\n  }\n", pov_identify("Finish", m->name, o->material).text);

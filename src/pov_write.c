@@ -1,6 +1,8 @@
 /* The POV-Ray file as a whole: camera, lights, materials, objects. Displaced objects are in pov_isosurface.c and pov_mesh.c. */
 #include "pov_parts.h"
 
+#include "frame.h"
+
 #include <string.h>
 
 pov_identifier pov_identify(const char *kind, const char *name, int index)
@@ -74,6 +76,12 @@ static void put_lights(pov_text *t, const scene *s)
     pov_print(t, "\n");
 }
 
+void pov_matrix(pov_text *t, vec3 x, vec3 y, vec3 z, vec3 origin)
+{
+    pov_print(t, "  matrix <%g, %g, %g,  %g, %g, %g,  %g, %g, %g,  %g, %g, %g>", x.x, x.y, x.z, y.x, y.y, y.z, z.x, z.y, z.z,
+              origin.x, origin.y, origin.z);
+}
+
 void pov_object_end(pov_text *t, const scene *s, const pov_options *how, const object *o)
 {
     bool displaced = s->displaced && o->bump;
@@ -88,9 +96,9 @@ void pov_object_end(pov_text *t, const scene *s, const pov_options *how, const o
 static void put_rectangle(pov_text *t, vec3 O, vec3 U, vec3 W)
 {
     vec3 n = vec3_unit(vec3_cross(U, W));
-    pov_print(t, "polygon {\n  5, <0, 0>, <1, 0>, <1, 1>, <0, 1>, <0, 0>\n"
-                 "  matrix <%g, %g, %g,  %g, %g, %g,  %g, %g, %g,  %g, %g, %g> // u, w, n, origin\n",
-              U.x, U.y, U.z, W.x, W.y, W.z, n.x, n.y, n.z, O.x, O.y, O.z);
+    pov_print(t, "polygon {\n  5, <0, 0>, <1, 0>, <1, 1>, <0, 1>, <0, 0>\n");
+    pov_matrix(t, U, W, n, O);
+    pov_print(t, " // u, w, n, origin\n");
 }
 
 /* A box whose faces have colours of their own. */
@@ -117,6 +125,9 @@ static void put_smooth(pov_text *t, const scene *s, const object *o)
     case SHAPE_RECTANGLE:
         put_rectangle(t, f->a, f->u, f->w);
         break;
+    case SHAPE_DISC:
+        pov_print(t, "disc {\n  %v, %v, %g\n", f->a, f->u, f->radius[0]);
+        break;
     case SHAPE_BOX:
         if (pov_by_parts(s, o))
             put_faces(t, s, o);
@@ -124,8 +135,21 @@ static void put_smooth(pov_text *t, const scene *s, const object *o)
             pov_print(t, "box {\n  %v, %v\n", f->a, f->u);
         break;
     case SHAPE_SPHERE:
-        pov_print(t, "sphere {\n  %v, %g\n", f->a, f->radius);
+        pov_print(t, "sphere {\n  %v, %g\n", f->a, f->radius[0]);
         break;
+    case SHAPE_CYLINDER:
+        pov_print(t, "cylinder {\n  %v, %v, %g%s\n", f->a, f->u, f->radius[0], f->open ? " open" : "");
+        break;
+    case SHAPE_CONE:
+        pov_print(t, "cone {\n  %v, %g, %v, %g%s\n", f->a, f->radius[0], f->u, f->radius[1], f->open ? " open" : "");
+        break;
+    case SHAPE_TORUS: {
+        const frame a = frame_about(f->u);
+        pov_print(t, "torus {\n  %g, %g\n  sturm\n", f->radius[0], f->radius[1]);
+        pov_matrix(t, a.x, a.y, a.z, f->a);
+        pov_print(t, " // y is the axis\n");
+        break;
+    }
     }
 }
 

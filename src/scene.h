@@ -1,4 +1,4 @@
-/* A scene, as the tracer needs it. Read from a file by scene_read.c and scene_objects.c; owns all it points to. */
+/* A scene, as the tracer needs it. Read from a file by scene_*.c; owns all it points to. */
 #ifndef KAGE_SCENE_H
 #define KAGE_SCENE_H
 
@@ -59,12 +59,23 @@ typedef struct map_note {
 } map_note;
 
 /* A shape as the file said it, for exports. */
-typedef enum shape_kind { SHAPE_PLANE, SHAPE_RECTANGLE, SHAPE_BOX, SHAPE_SPHERE } shape_kind;
+typedef enum shape_kind {
+    SHAPE_PLANE,
+    SHAPE_RECTANGLE,
+    SHAPE_DISC,
+    SHAPE_BOX,
+    SHAPE_SPHERE,
+    SHAPE_CYLINDER,
+    SHAPE_CONE,
+    SHAPE_TORUS,
+} shape_kind;
 
 typedef struct shape_spec {
     shape_kind kind;
-    vec3 a, u, w;  /* plane, rectangle: origin, u, w; box: a and u are opposite corners; sphere: a is the centre */
-    double radius;
+    vec3 a, u, w; /* plane, rectangle: origin, u, w; box: a and u are opposite corners; sphere, disc, torus: a is the centre, u
+                     the normal or axis; cylinder, cone: a and u are the ends */
+    double radius[2]; /* cylinder, cone: at a, at u; torus: major, minor */
+    bool open;
 } shape_spec;
 
 /* A bump likewise: a function's text and scale, or where a map's samples lie (how many: map_note). */

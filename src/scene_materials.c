@@ -110,7 +110,7 @@ static bool lay_image(reader *r, node *at, const material *m, const surface *f, 
 {
     double u[2], w[2];
     node *said = yaml_get(yaml_get(yaml_get(yaml_get(yaml_root(r->y), "materials"), m->name), "color"), "image");
-    f->is->extent(f, u, w);
+    f->is->extent(f, 0, u, w);
     if (!yaml_get(said, "size") && !(u[1] - u[0] < HUGE_VAL && w[1] - w[0] < HUGE_VAL))
         return yaml_error(r->y, at, "the image of '%s' has no 'size', expected one for a surface without ends", m->name);
     *l = (map_layout){.size = {1, 1}};

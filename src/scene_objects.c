@@ -1,4 +1,4 @@
-/* The scene reader's objects: their surfaces, and the bumps on them. */
+/* The scene reader's objects, and the bumps on their surfaces. */
 #include "displace.h"
 #include "scene_reader.h"
 
@@ -8,83 +8,6 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* ---- surfaces ---- */
-
-static surface *read_plane(reader *r, node *at, const char *kind, bool bounded, shape_spec *said)
-{
-    vec3 O = {0, 0, 0}, U = {0, 0, 0}, W = {0, 0, 0};
-    if (!yaml_map(r->y, at, kind, "origin u w"))
-        return NULL;
-    bool good = yaml_need(r->y, at, "origin", kind) && yaml_need(r->y, at, "u", kind) && yaml_need(r->y, at, "w", kind);
-    good = reader_vector(r, at, "origin", "the place of u = w = 0, [x, y, z]", &O) && good;
-    good = reader_vector(r, at, "u", "the edge along u, [x, y, z]", &U) && good;
-    good = reader_vector(r, at, "w", "the edge along w, [x, y, z]", &W) && good;
-    if (!good)
-        return NULL;
-    if (vec3_length(U) < SMALL || vec3_length(W) < SMALL) {
-        yaml_error(r->y, yaml_get(at, vec3_length(U) < SMALL ? "u" : "w"), "no direction, expected an edge with a length");
-        return NULL;
-    }
-    *said = (shape_spec){.kind = bounded ? SHAPE_RECTANGLE : SHAPE_PLANE, .a = O, .u = U, .w = W};
-    surface *f = plane_new(O, U, W, bounded);
-    if (!f)
-        yaml_error(r->y, at, "u and w are parallel, expected two directions");
-    return f;
-}
-
-static surface *read_box(reader *r, node *at, shape_spec *said)
-{
-    vec3 from = {0, 0, 0}, to = {0, 0, 0};
-    if (!yaml_map(r->y, at, "box", "from to"))
-        return NULL;
-    bool good = yaml_need(r->y, at, "from", "box") && yaml_need(r->y, at, "to", "box");
-    good = reader_vector(r, at, "from", "a corner [x, y, z]", &from) && good;
-    good = reader_vector(r, at, "to", "the opposite corner [x, y, z]", &to) && good;
-    *said = (shape_spec){.kind = SHAPE_BOX, .a = from, .u = to};
-    surface *f = good ? box_new(from, to) : NULL;
-    if (good && !f)
-        yaml_error(r->y, yaml_get(at, "to"), "a box without thickness, expected 'to' apart from 'from' along x, y and z");
-    return f;
-}
-
-static surface *read_sphere(reader *r, node *at, shape_spec *said)
-{
-    vec3 c = {0, 0, 0};
-    double radius = 1;
-    if (!yaml_map(r->y, at, "sphere", "center radius"))
-        return NULL;
-    bool good = yaml_need(r->y, at, "center", "sphere") && yaml_need(r->y, at, "radius", "sphere");
-    good = reader_vector(r, at, "center", "a place [x, y, z]", &c) && good;
-    good = reader_number(r, at, "radius", SMALL, false, BIG, "a length from 1e-6 to 1e6", &radius) && good;
-    *said = (shape_spec){.kind = SHAPE_SPHERE, .a = c, .radius = radius};
-    return good ? sphere_new(c, radius) : NULL;
-}
-
-static surface *read_surface(reader *r, node *at, shape_spec *said)
-{
-    static const char *const kinds[] = {"plane", "rectangle", "box", "sphere"};
-    node *shape = NULL;
-    int kind = -1;
-    for (int k = 0; k < 4; k++) {
-        node *v = yaml_get(at, kinds[k]);
-        if (v && shape) {
-            yaml_error(r->y, v, "a second shape, '%s' beside '%s', expected one", kinds[k], kinds[kind]);
-            return NULL;
-        }
-        if (v) {
-            shape = v;
-            kind = k;
-        }
-    }
-    if (!shape) {
-        yaml_error(r->y, at, "an object lacks its shape, expected one of: plane rectangle box sphere");
-        return NULL;
-    }
-    if (kind < 2)
-        return read_plane(r, shape, kinds[kind], kind == 1, said);
-    return kind == 2 ? read_box(r, shape, said) : read_sphere(r, shape, said);
-}
 
 /* ---- bumps ---- */
 
@@ -186,23 +109,38 @@ static perturb *read_map(reader *r, node *at, const double u[2], const double w[
     return p;
 }
 
-static perturb *read_function(reader *r, node *at, const double u[2], const double w[2], bump_spec *said)
+/* All the (u,w) of a surface's parts, on which a function must have its bounds. */
+static void widest_extent(const surface *f, double u[2], double w[2])
 {
-    double scale = 1;
+    f->is->extent(f, 0, u, w);
+    for (int part = 1; part < f->is->parts; part++) {
+        double pu[2], pw[2];
+        f->is->extent(f, part, pu, pw);
+        u[0] = fmin(u[0], pu[0]);
+        u[1] = fmax(u[1], pu[1]);
+        w[0] = fmin(w[0], pw[0]);
+        w[1] = fmax(w[1], pw[1]);
+    }
+}
+
+static perturb *read_function(reader *r, node *at, const surface *f, bump_spec *said)
+{
+    double scale = 1, u[2], w[2];
     bool good = yaml_map(r->y, at, "a bump with a function", "function scale");
     good = reader_number(r, at, "scale", -BIG, false, BIG, "a factor", &scale) && good;
-    node *f = yaml_get(at, "function");
-    const char *text = yaml_text(r->y, f, "a function of u and w");
+    node *function = yaml_get(at, "function");
+    const char *text = yaml_text(r->y, function, "a function of u and w");
     expr_error wrong;
     expr *e = text ? expr_parse(text, &wrong) : NULL;
     if (text && !e)
-        yaml_error_in(r->y, f, wrong.offset, "%s", wrong.message);
+        yaml_error_in(r->y, function, wrong.offset, "%s", wrong.message);
     if (!good || !e) {
         expr_free(e);
         return NULL;
     }
     said->function = reader_copy(r, text);
     said->scale = scale;
+    widest_extent(f, u, w);
     perturb *p = perturb_function(e, scale, u, w);
     if (!p)
         errors_add(r->e, "out of memory");
@@ -219,8 +157,8 @@ static perturb *read_bump(reader *r, node *at, const surface *f, map_note *note,
         yaml_error(r->y, at, "a bump with %s, expected either 'map' or 'function'", map ? "both map and function" : "neither map nor function");
         return NULL;
     }
-    f->is->extent(f, u, w);
-    return map ? read_map(r, at, u, w, note, said) : read_function(r, at, u, w, said);
+    f->is->extent(f, 0, u, w);
+    return map ? read_map(r, at, u, w, note, said) : read_function(r, at, f, said);
 }
 
 /* ---- objects ---- */
@@ -256,9 +194,9 @@ void reader_objects(reader *r)
         node *v = yaml_pair(at, i, &key), *m, *bump;
         object *o = &s->object[i];
         o->name = reader_name(r, at, key);
-        if (!yaml_map(r->y, v, "an object", "plane rectangle box sphere material bump"))
+        if (!yaml_map(r->y, v, "an object", READER_SHAPES " material bump"))
             continue;
-        o->shape = read_surface(r, v, &o->shape_said);
+        o->shape = reader_surface(r, v, &o->shape_said);
         if ((m = yaml_need(r->y, v, "material", "an object")))
             o->material = find_material(r, m);
         if (m && o->shape && s->material)

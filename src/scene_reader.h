@@ -46,6 +46,10 @@ bool reader_layout(reader *r, node *at, const double u[2], const double w[2], ma
 void reader_materials(reader *r);
 void reader_pigment(reader *r, node *at, object *o);
 
+/* The surface of an object, by the one key of READER_SHAPES that it has. NULL: an error is told. (scene_surfaces.c) */
+#define READER_SHAPES "plane rectangle disc box sphere cylinder cone torus"
+surface *reader_surface(reader *r, node *at, shape_spec *said);
+
 /* The objects with their surfaces and bumps; after the materials, whose names they give. (scene_objects.c) */
 void reader_objects(reader *r);
 

@@ -176,10 +176,11 @@ STAGE static void sphere_steep(const surface *base, int part, int n, const rays 
     }
 }
 
-static void sphere_extent(const surface *base, double u[2], double w[2])
+static void sphere_extent(const surface *base, int part, double u[2], double w[2])
 {
     const double pi = 3.14159265358979323846;
     (void)base;
+    (void)part;
     u[0] = -pi;
     u[1] = pi;
     w[0] = 0;
@@ -188,7 +189,7 @@ static void sphere_extent(const surface *base, double u[2], double w[2])
 
 static const surface_methods sphere_methods = {
     "sphere", sphere_hit,   sphere_locate, sphere_eval, sphere_occlude, sphere_occlude_own, sphere_extent,
-    1,        sphere_shell, sphere_foot,   sphere_steep,
+    1,        sphere_shell, sphere_foot,   sphere_steep,  false,
 };
 
 surface *sphere_new(vec3 centre, double radius)

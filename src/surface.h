@@ -35,11 +35,12 @@ typedef struct surface_methods {
      * that leaves the surface meets it again. */
     void (*occlude_own)(const surface *f, int n, const rays *x, const int32_t *part, real *lit);
 
-    /* The range of (u,w). Ends are infinite where the surface has none. */
-    void (*extent)(const surface *f, double u[2], double w[2]);
+    /* The range of (u,w) on a part. Ends are infinite where the surface has none. */
+    void (*extent)(const surface *f, int part, double u[2], double w[2]);
 
-    /* For true displacement (displace.c), with `part` of the surface in 0..parts-1 taken as if it alone were there. */
-    int parts;
+    int parts; /* part is in 0..parts-1 */
+
+    /* For true displacement (displace.c), with a part of the surface taken as if it alone were there. */
 
     /* The stretch t0 <= t <= t1 of each ray, within 0..end[i], that may meet Q + P n/|n| for Pmin <= P <= Pmax: all such places
      * are in it. t0 > t1: there is none. */
@@ -53,6 +54,9 @@ typedef struct surface_methods {
      * height - P can change with t, and how far in t that holds. */
     void (*steep)(const surface *f, int part, int n, const rays *x, const feet *p, real Pu_max, real Pw_max, real *rate,
                   real *reach);
+
+    /* Whether a stretch may also lead over places beyond the part's extent, so that hits there are none. */
+    bool loose;
 } surface_methods;
 
 struct surface {
@@ -70,6 +74,20 @@ surface *box_new(vec3 from, vec3 to);
 /* Q = centre + radius (sin w cos u, cos w, sin w sin u); u the longitude in -pi..pi, w the angle from the upper pole in
  * 0..pi, in radians. NULL where radius <= 0. */
 surface *sphere_new(vec3 centre, double radius);
+
+/* Q = centre + u U + w W, u^2 + w^2 <= radius^2, U and W unit vectors at right angles to each other and to the normal: with
+ * frame.h's about it, U = x and W = -z. NULL where radius <= 0 or the normal has no direction. */
+surface *disc_new(vec3 centre, vec3 normal, double radius);
+
+/* The cone between two discs across the axis from..to; with equal radii a cylinder. Q = from + rho (cos u X + sin u Z) + y Y,
+ * Y along the axis and X and Z across it as frame.h has them; u the angle in -pi..pi, w the way down the side from `to`, in scene
+ * units. Unless `open`, with caps: part 1 at `to`, 2 at `from`, each with disc_new's (u,w) about its own n. NULL where from = to,
+ * or no radius is above 0. */
+surface *cone_new(vec3 from, double from_radius, vec3 to, double to_radius, bool open);
+
+/* Q = centre + (major + minor cos w) (cos u X + sin u Z) - minor sin w Y: u the angle around the axis, w that around the tube, 0 on
+ * the outside and downwards positive, both in -pi..pi. NULL unless 0 < minor < major and the axis has a direction. */
+surface *torus_new(vec3 centre, vec3 axis, double major, double minor);
 
 void surface_free(surface *f);
 

@@ -190,6 +190,17 @@ def test_adaptive(tmp_path: Path, view: str, aa: str, threshold: float) -> None:
 FUNCTION = ', bump: {function: "0.05*sin(7*u)*cos(5*w) + 0.02*noise(3*u, 3*w) + 0.01*exp(-u^2)*tanh(w)"}'
 
 
+#: Shapes that turn about an axis, bumped and not; `exact` also takes the stages of true displacement.
+TURNED = """
+  ring: {{torus: {{center: [-1.4, 0.5, 0.4], axis: [0.2, 1, -0.3], major: 0.6, minor: 0.25}}, material: clay{bump}}}
+  drum: {{cylinder: {{from: [1, 0, 0.9], to: [1.2, 0.9, 0.8], radius: 0.4}}, material: clay{bump}}}
+  pipe: {{cylinder: {{from: [-0.9, 0.3, -1.2], to: [-0.2, 0.4, -1.1], radius: 0.3, open: true}}, material: clay{bump}}}
+  bell: {{cone: {{from: [0, 0, 1.2], from_radius: 0.5, to: [0, 1, 1.2], to_radius: 0.3}}, material: clay{bump}}}
+  hat: {{cone: {{from: [0.4, 0, -1.3], from_radius: 0.4, to: [0.4, 0.7, -1.2], to_radius: 0, open: true}}, material: clay}}
+  plate: {{disc: {{center: [1.3, 0.3, -1.1], normal: [0.1, 1, -0.4], radius: 0.4}}, material: clay{bump}}}
+"""
+
+
 def hashes(kage: Path, tmp_path: Path) -> dict[str, str]:
     """A digest of the pictures and all layers of scenes that use every stage."""
     (tmp_path / "function.yaml").write_text(SCENE.format(ground=FLAT, bump=FUNCTION))
@@ -198,9 +209,12 @@ def hashes(kage: Path, tmp_path: Path) -> dict[str, str]:
         SCENE.format(ground=FLAT, bump="").replace("{color: [0.8, 0.7, 0.6]}", "{color: {image: {file: color.png, size: [1.3, 0.7]}}}"))
     columns, rows = np.meshgrid(np.arange(31), np.arange(17))
     Image.fromarray(np.stack([columns * 8, rows * 15, columns * rows % 251], axis=-1).astype(np.uint8)).save(tmp_path / "color.png")
+    turned = TURNED.format(bump=', bump: {function: "0.03*sin(7*u)*cos(5*w)"}')
+    (tmp_path / "turned.yaml").write_text(SCENE.format(ground=FLAT, bump="") + turned.lstrip("\n"))
     result = {}
-    for scene in [*sorted((TOP / "scenes").glob("*.yaml")), *(tmp_path / f"{name}.yaml" for name in ("function", "lit", "image"))]:
-        for method in ["0", "2+", "march:4", "iter:3"]:
+    made = (tmp_path / f"{name}.yaml" for name in ("function", "lit", "image", "turned"))
+    for scene in [*sorted((TOP / "scenes").glob("*.yaml")), *made]:
+        for method in ["0", "2+", "march:4", "iter:3", *(["exact"] if scene.stem == "turned" else [])]:
             out = [tmp_path / f"{scene.stem}.exr", tmp_path / f"{scene.stem}.png"]
             subprocess.run(
                 [kage, "render", scene, "--shadow", method, "--size", "201x149", "-o", out[0], "-o", out[1]],

@@ -41,6 +41,17 @@ BALL = "  ball: {sphere: {center: [0, 1, 0], radius: 0.8}, material: MATERIAL}\n
 BOX = "  block: {box: {from: [-0.6, 0.55, -0.6], to: [0.6, 1.75, 0.6]}, material: MATERIAL}\n"
 SHEET = "  sheet: {rectangle: {origin: [-1, 0.5, 0.2], u: [2, 0.4, 0.3], w: [0.5, 1.2, 0.4]}, material: MATERIAL}\n"
 TILTED = "  floor: {plane: {origin: [0, -1, 0], u: [2, 0.5, 0.3], w: [0.4, 0.2, -3]}, material: MATERIAL}\n"
+ROUND_ONES = {
+    "disc": "disc: {center: [0, 0.9, 0.3], normal: [0.2, 1, -0.8], radius: 1.1}",
+    "cylinder": "cylinder: {from: [-0.2, 0.1, 0.2], to: [0.3, 1.4, 0.1], radius: 0.8}",
+    "open cylinder": "cylinder: {from: [-0.2, 0.1, 0.2], to: [0.3, 1.4, -0.2], radius: 0.8, open: true}",
+    "lying cylinder": "cylinder: {from: [-1, 0.6, 0], to: [1, 0.6, 0], radius: 0.6}",
+    "cone": "cone: {from: [-0.2, 0, 0.2], from_radius: 1, to: [0.1, 1.5, 0.1], to_radius: 0.5}",
+    "pointed cone": "cone: {from: [-0.2, 0, 0.2], from_radius: 1, to: [0.1, 1.8, 0.1], to_radius: 0}",
+    "open cone": "cone: {from: [0.1, 0.1, 0.2], from_radius: 0.4, to: [0.1, 1.2, 0.1], to_radius: 1.1, open: true}",
+    "torus": "torus: {center: [0, 0.7, 0], axis: [0.2, 1, -0.3], major: 1, minor: 0.4}",
+    "standing torus": "torus: {center: [0, 1, 0], axis: [0.4, 0, 1], major: 0.8, minor: 0.2}",
+}
 
 #: name: (camera, lights, objects)
 SMOOTH = {
@@ -96,6 +107,23 @@ SMOOTH = {
                     FLOOR + BOX.replace("MATERIAL", "clay")),
     "area row, spot": (CAMERA, "{a: {at: [-3, 5, -2], spot: {to: [0, 0, 0]}, area: {u: [2, 0, 0], w: [0, 0, 1], samples: [6, 1]}}}",
                        FLOOR + BOX.replace("MATERIAL", "glaze") + SHEET.replace("MATERIAL", "clay")),
+    **{
+        f"{material} {name}".replace("clay ", ""): (CAMERA, LIGHTS, f"{FLOOR}  it: {{{shape}, material: {material}}}\n")
+        for name, shape in ROUND_ONES.items()
+        for material in ("clay", "shiny", "glaze")
+    },
+    "eye in a cylinder": (
+        "{from: [0, 1.1, 0], at: [0.3, 0.4, 1], fov: 90}", "{a: {at: [0.2, 1.2, 0.1]}}",
+        f"  it: {{{ROUND_ONES['cylinder']}, material: shiny}}\n",
+    ),
+    "eye in a torus": (
+        "{from: [1, 0.5, 0], at: [1, 0.6, 1], fov: 90}", "{a: {at: [1.1, 0.5, 0.1]}}",
+        "  it: {torus: {center: [0, 0.5, 0], axis: [0, 1, 0], major: 1, minor: 0.5}, material: shiny}\n",
+    ),
+    "through the hole": (
+        "{from: [0, 4, 0], at: [0, 0, 0], up: [1, 0, 1], fov: 40}", LIGHTS,
+        f"{FLOOR}  it: {{torus: {{center: [0, 1, 0], axis: [0, 1, 0], major: 0.5, minor: 0.45}}, material: clay}}\n",
+    ),
     "eye within": ("{from: [0, 1.1, 0], at: [0.3, 0.4, 1], fov: 90}", "{a: {at: [0.2, 1.4, 0.1]}}", BOX.replace("MATERIAL", "shiny")),
 }
 
@@ -319,6 +347,7 @@ def test_adaptive_samples(kage: Kage, name: str) -> None:
 FUNCTION = "{function: '0.03*(sin(6*u)*cos(5.4*w) + 0.5*sin(10.2*u + 6.6*w))'}"
 NOISE = "{function: '0.05*noise(4*u, 4*w)'}"
 ROUND = "{function: '0.05*sin(8*u)*sin(8*w)*sin(w)^2'}"
+WAVES = "{function: '0.04*sin(8*u)*sin(7*w)'}"
 MAP = "{map: {file: map.png}, scale: 0.1, zero: 0.5, sign: up, size: [2, 2]}"
 PLANE = "plane: {origin: [0, 0, 0], u: [0, 0, 1], w: [1, 0, 0]}"
 SKEWED = "rectangle: {origin: [-2, 0.1, -2], u: [4, 0.4, 0], w: [1, 0, 5]}"
@@ -337,6 +366,18 @@ DISPLACED = {
     "rectangle, map": (SKEWED, MAP.replace("[2, 2]", "[0.5, 0.4]"), "mesh2"),
     "box, map": (CUBE, MAP.replace("[2, 2]", "[1, 1]"), "mesh2"),
     "sphere, map": (GLOBE, MAP.replace("[2, 2]", "[0.8, 0.7]"), "mesh2"),
+    "disc": (ROUND_ONES["disc"], WAVES, "isosurface"),
+    "cylinder": (ROUND_ONES["cylinder"], WAVES, "isosurface"),
+    "open cylinder": (ROUND_ONES["open cylinder"], WAVES, "isosurface"),
+    "cone": (ROUND_ONES["cone"], WAVES, "mesh2"),
+    "pointed cone": (ROUND_ONES["pointed cone"], WAVES.replace("sin(7*w)", "sin(7*w)*min(w, 1)"), "mesh2"),
+    "open cone": (ROUND_ONES["open cone"], WAVES, "mesh2"),
+    "torus": (ROUND_ONES["torus"], WAVES, "isosurface"),
+    "standing torus, thin": (ROUND_ONES["standing torus"], WAVES.replace("0.04", "-0.03"), "isosurface"),
+    "disc, map": (ROUND_ONES["disc"], MAP.replace("[2, 2]", "[1, 1]"), "mesh2"),
+    "cylinder, map": (ROUND_ONES["cylinder"], MAP.replace("size: [2, 2]", "repeat: [8, 2]"), "mesh2"),
+    "cone, map": (ROUND_ONES["cone"], MAP.replace("size: [2, 2]", "repeat: [8, 2]"), "mesh2"),
+    "torus, map": (ROUND_ONES["torus"], MAP.replace("size: [2, 2]", "repeat: [8, 4]"), "mesh2"),
 }
 
 

@@ -4,12 +4,14 @@
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
 #include <cmocka.h>
 
+#include "frame.h"
 #include "lane.h"
 #include "random_in.h"
 #include "surface.h"
@@ -21,19 +23,39 @@
 #define EPS 1.2e-7
 #endif
 
-enum { KINDS = 4 };
+enum { PLANE, RECTANGLE, BOX, SPHERE, DISC, DRUM, TUBE, BELL, CUP, HAT, TORUS, THIN, KINDS };
+
+/* The surfaces with an inside that no ray from outside sees, and those of them that never shade themselves from outside. */
+static bool is_closed(int kind) { return kind != PLANE && kind != RECTANGLE && kind != DISC && kind != TUBE && kind != CUP; }
+static bool is_convex(int kind) { return is_closed(kind) && kind != TORUS && kind != THIN; }
 
 static surface *make(int kind)
 {
     switch (kind) {
-    case 0:
+    case PLANE:
         return plane_new((vec3){0.1, -0.3, 0.2}, (vec3){0.2, 0.1, 1.4}, (vec3){1.1, -0.2, 0.3}, false);
-    case 1:
+    case RECTANGLE:
         return plane_new((vec3){-1, 0.1, -1}, (vec3){0.2, 0.1, 2.4}, (vec3){2.1, -0.2, 0.3}, true);
-    case 2:
+    case BOX:
         return box_new((vec3){0.7, -0.8, 1.1}, (vec3){-0.9, 0.5, -0.6});
-    default:
+    case SPHERE:
         return sphere_new((vec3){0.3, -0.2, 0.1}, 1.2);
+    case DISC:
+        return disc_new((vec3){0.1, -0.2, 0.1}, (vec3){0.3, 1.5, -0.4}, 1.3);
+    case DRUM:
+        return cone_new((vec3){-0.1, -0.9, 0.2}, 0.9, (vec3){0.3, 0.8, -0.1}, 0.9, false);
+    case TUBE:
+        return cone_new((vec3){-0.8, 0.1, 0.2}, 0.8, (vec3){0.8, -0.1, -0.1}, 0.8, true);
+    case BELL:
+        return cone_new((vec3){-0.1, -0.7, 0.1}, 1.1, (vec3){0.2, 0.7, 0.2}, 0.5, false);
+    case CUP:
+        return cone_new((vec3){-0.1, -0.2, 0.1}, 0.3, (vec3){0.2, 0.6, 0.2}, 1.2, true);
+    case HAT:
+        return cone_new((vec3){-0.1, 0.6, 0.1}, 1.2, (vec3){0.2, -0.9, 0.2}, 0, false);
+    case TORUS:
+        return torus_new((vec3){0.1, -0.1, 0.2}, (vec3){0.3, 1, 0.5}, 0.9, 0.4);
+    default:
+        return torus_new((vec3){0.1, -0.1, 0.2}, (vec3){1, 0.1, -0.2}, 1.2, 0.05);
     }
 }
 
@@ -90,13 +112,13 @@ static void hits_are_on_the_surface(void **state)
                     print_error("%s: Q(u,w) is %g off r + s t\n", f->is->kind, off);
                     fail();
                 }
-                /* on boxes and spheres, seen from outside, the first hit's n faces the viewer */
+                /* on what is closed, seen from outside, the first hit's n faces the viewer */
                 bs_vec3 n = bs_normal(lane_get(&q.Qu, i), lane_get(&q.Qw, i));
-                if (kind >= 2)
+                if (is_closed(kind))
                     assert_true(bs_dot(n, lane_get(&x.s, i)) < R(1e-4));
             }
         }
-        assert_true(met > 500);
+        assert_true(met > (kind == THIN ? 200 : 500));
         surface_free(f);
     }
 }
@@ -110,11 +132,16 @@ static void partials_are_derivatives(void **state)
         for (int round = 0; round < 200; round++) {
             static partials q[5];
             real u[1], w[1];
-            int32_t part[1] = {round % 6};
+            int32_t part[1] = {round % f->is->parts};
             double u0 = random_in(0.3, 0.7), w0 = random_in(0.4, 0.6), du[5] = {0, h, -h, 0, 0}, dw[5] = {0, 0, 0, h, -h};
             double du_[5], dw_[5];
-            if (kind == 3)
-                w0 = random_in(0.2, 2.9), u0 = random_in(-3, 3);
+            if (kind != PLANE) {
+                double U[2], W[2];
+                f->is->extent(f, part[0], U, W);
+                u0 = random_in(U[0] + 0.1, U[1] - 0.1), w0 = random_in(W[0] + 0.1, W[1] - 0.1);
+                if (!(U[0] < U[1])) /* a hat has no upper cap */
+                    continue;
+            }
             for (int k = 0; k < 5; k++) {
                 u[0] = (real)(u0 + du[k]);
                 w[0] = (real)(w0 + dw[k]);
@@ -148,7 +175,7 @@ static void partials_are_derivatives(void **state)
 static void box_faces(void **state)
 {
     (void)state;
-    surface *f = make(2);
+    surface *f = make(BOX);
     static partials q;
     int32_t part[6] = {0, 1, 2, 3, 4, 5};
     real u[6], w[6];
@@ -207,7 +234,9 @@ static void shadows_agree_with_hits(void **state)
 static void own_shadow(void **state)
 {
     (void)state;
-    for (int kind = 2; kind < 4; kind++) {
+    for (int kind = 0; kind < KINDS; kind++) {
+        if (!is_convex(kind))
+            continue;
         surface *f = make(kind);
         for (int round = 0; round < 40; round++) {
             static rays x, out;
@@ -252,16 +281,20 @@ static void own_shadow(void **state)
         }
         surface_free(f);
     }
-    surface *f = make(0);
-    assert_null(f->is->occlude_own);
-    surface_free(f);
+    for (int kind = 0; kind < KINDS; kind++) {
+        surface *f = make(kind);
+        assert_true((f->is->occlude_own == NULL) == (kind == PLANE || kind == RECTANGLE || kind == DISC));
+        surface_free(f);
+    }
 }
 
 /* Rays from within see the inner side. */
 static void from_inside(void **state)
 {
     (void)state;
-    for (int kind = 2; kind < 4; kind++) {
+    for (int kind = 0; kind < KINDS; kind++) {
+        if (!is_convex(kind))
+            continue;
         surface *f = make(kind);
         static rays x;
         static hits h;
@@ -289,6 +322,9 @@ static void odd_rays(void **state)
         {-3, 0.5, 0, 1, 0, 0},      {0.7, 0.5, 5, 0, 0, -1},     {0.3, 5, 0.1, 0, -1, 0},   {0.3, -5, 0.1, 0, 1, 0},
         {1.5, -5, 0.1, 0, 1, 0},    {1.5, 0, 0.1, 0, 0, 1},      {0.1, -0.3, 0.2, 1, 0, 0}, {1e30, 1e30, 1e30, -1, -1, -1},
         {0, 0, 0, 1e30, 1e30, 1e30}, {0, 0, 0, 1e-30, 1e-30, 0}, {0.1, 5, 0.2, 0, -1e-20, 0},
+        /* along axes of cylinders, cones and tori, and along their sides */
+        {-0.3, -1.75, 0.35, 0.4, 1.7, -0.3}, {-0.1, -0.9, 0.2, 0.4, 1.7, -0.3}, {0.1, -0.1, 0.2, 0.3, 1, 0.5},
+        {-0.5, -2.1, -0.8, 0.3, 1, 0.5},     {0.2, -0.9, 0.2, -0.3, 1.5, -0.1}, {-2.4, 0.3, 0.5, 1.6, -0.2, -0.3},
     };
     enum { ODD = sizeof odd / sizeof *odd };
     for (int kind = 0; kind < KINDS; kind++) {
@@ -313,10 +349,52 @@ static void odd_rays(void **state)
             assert_true(h.id[i] == -1 || h.id[i] == 0);
             assert_true(h.t[i] > 0 && h.t[i] <= REAL_FAR);
             assert_true(lit[i] == 0 || lit[i] == 1);
-            assert_true(part[i] >= 0 && part[i] < 6);
+            assert_true(part[i] >= 0 && part[i] < f->is->parts);
         }
         surface_free(f);
     }
+}
+
+/* Round surfaces have their seams where the documentation says, and u to the right where w goes down. */
+static void ways_around(void **state)
+{
+    (void)state;
+    surface *const f[] = {cone_new((vec3){1, 0, 0}, 2, (vec3){1, 3, 0}, 1, false), torus_new((vec3){0, 1, 0}, (vec3){0, 2, 0}, 2, 0.5),
+                          disc_new((vec3){0, 1, 0}, (vec3){0, 3, 0}, 2)};
+    const struct {
+        int f, part;
+        double u, w, Q[3];
+    } want[] = {
+        {0, 0, 0, 0, {2, 3, 0}},        {0, 0, 1.5707963, 0, {1, 3, 1}},         {0, 0, 0, 3.1622777, {3, 0, 0}},
+        {0, 0, 3.1415927, 3.1622777, {-1, 0, 0}}, {0, 1, 0.5, 0.25, {1.5, 3, -0.25}}, {0, 2, 0.5, 0.25, {1.5, 0, 0.25}},
+        {1, 0, 0, 0, {2.5, 1, 0}},      {1, 0, 0, -1.5707963, {2, 1.5, 0}},      {1, 0, 1.5707963, 3.1415927, {0, 1, 1.5}},
+        {2, 0, 0.5, 0.25, {0.5, 1, -0.25}},
+    };
+    for (int k = 0; k < (int)(sizeof want / sizeof *want); k++) {
+        static partials q;
+        int32_t part = want[k].part;
+        real u = (real)want[k].u, w = (real)want[k].w;
+        f[want[k].f]->is->eval(f[want[k].f], 1, &part, &u, &w, 1, &q);
+        bs_vec3 Q = {(real)want[k].Q[0], (real)want[k].Q[1], (real)want[k].Q[2]};
+        assert_true(distance(lane_get(&q.Q, 0), Q) < 1e-6);
+    }
+    for (int k = 0; k < 3; k++)
+        surface_free(f[k]);
+}
+
+/* The frame: unit vectors at right angles, of the scene's hand, about any axis. */
+static void frames(void **state)
+{
+    (void)state;
+    const vec3 axes[] = {{0, 1, 0}, {1, 0, 0}, {0, 0, 1}, {0, -2, 0}, {-1, 0, 0}, {0.9, 0.1, 0.3}, {1e-6, 0, 0}, {3e5, 2e5, 1e5}};
+    for (int k = 0; k < (int)(sizeof axes / sizeof *axes); k++) {
+        frame a = frame_about(axes[k]);
+        assert_true(vec3_length(vec3_sub(vec3_cross(a.x, a.y), a.z)) < 1e-15);
+        assert_true(vec3_length(vec3_sub(vec3_cross(a.y, a.z), a.x)) < 1e-15);
+        assert_true(vec3_length(vec3_sub(a.y, vec3_unit(axes[k]))) < 1e-15);
+    }
+    frame up = frame_about((vec3){0, 7, 0});
+    assert_true(up.x.x == 1 && up.y.y == 1 && up.z.z == 1);
 }
 
 /* A small ball far away keeps its round shadow: the discriminant does not cancel. */
@@ -350,6 +428,19 @@ static void constructors_refuse_nonsense(void **state)
     assert_null(sphere_new(o, 0));
     assert_null(sphere_new(o, -1));
     assert_null(sphere_new(o, (double)NAN));
+    assert_null(disc_new(o, o, 1));
+    assert_null(disc_new(o, nan, 1));
+    assert_null(disc_new(o, x, 0));
+    assert_null(cone_new(o, 1, o, 1, false));
+    assert_null(cone_new(o, 0, x, 0, false));
+    assert_null(cone_new(o, -1, x, 1, true));
+    assert_null(cone_new(o, 1, inf, 1, true));
+    assert_null(cone_new(o, (double)NAN, x, 1, true));
+    assert_null(torus_new(o, x, 1, 1));
+    assert_null(torus_new(o, x, 1, 0));
+    assert_null(torus_new(o, o, 2, 1));
+    assert_null(torus_new(o, x, (double)INFINITY, 1));
+    assert_null(torus_new(o, x, (double)NAN, 1));
 }
 
 int main(void)
@@ -362,6 +453,8 @@ int main(void)
         cmocka_unit_test(own_shadow),
         cmocka_unit_test(from_inside),
         cmocka_unit_test(odd_rays),
+        cmocka_unit_test(ways_around),
+        cmocka_unit_test(frames),
         cmocka_unit_test(small_and_far),
         cmocka_unit_test(constructors_refuse_nonsense),
     };
