@@ -457,7 +457,7 @@ static void constant_bumps(void **state)
             for (int round = 0; round < 8; round++) {
                 static rays x;
                 static hits rough, smooth;
-                long uncertain = 0;
+                displace_counts counts = {0};
                 wide r[3], s[3];
                 for (int i = 0; i < LANES; i++) {
                     random_ray(&x, i, r, s);
@@ -466,13 +466,13 @@ static void constant_bumps(void **state)
                     rough.t[i] = smooth.t[i] = R(3);
                     rough.id[i] = smooth.id[i] = -1;
                 }
-                displace_hit(f, P, LANES, &x, 0, &rough, &uncertain);
+                displace_hit(f, P, LANES, &x, 0, &rough, &counts);
                 wider->is->hit(wider, LANES, &x, 0, &smooth);
                 for (int i = 0; i < LANES; i++) {
                     met += smooth.id[i] == 0;
                     other += rough.id[i] != smooth.id[i] || !(fabs((double)(rough.t[i] - smooth.t[i])) < AGREE);
                 }
-                assert_int_equal(uncertain, 0);
+                assert_int_equal(counts.uncertain, 0);
             }
             print_message("%s, P = %g: %d hits, %d otherwise\n", names[kind], h, met, other);
             assert_true(met > 300 && other <= 2); /* at a rim or tangent */
