@@ -16,6 +16,7 @@ TITLES = {
     "cube": "A cube over a bumpy plane (figures 4 to 7)",
     "sphere": "A box over a bumpy sphere (figure 8)",
     "terrain": "A ball over a terrain (observed data)",
+    "torus": "A cube over a bumpy torus (function data)",
     "waves": "A cube over waves (function data)",
 }
 

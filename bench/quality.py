@@ -25,6 +25,7 @@ Layers = dict[str, np.ndarray]
 
 ORDER_CODES = {"none": -1, "0": 0, "1": 1, "2": 2, "2+": 3, "iter": 4, "march": 5, "exact": 6}  # of the layer `order`
 CLOSE = 1 / 255
+OTHERS = "--no-self-shadow"  # the method is about the shadows of other objects
 TRUTH_LAYERS = "color,tau,order,visibility"
 FLAT_LAYERS = "N,P,visibility"
 CODE = programs.file_digest(*(Path(module.__file__ or "") for module in (images, masks)), Path(__file__))
@@ -80,8 +81,8 @@ def picture_size(bench: Bench) -> Size:
 
 def make_truth(bench: Bench, scene: Facts, name: str) -> Value:
     options, layers = {
-        "exact": (programs.method_options("exact"), TRUTH_LAYERS),
-        "flat": ((*programs.method_options("none"), *programs.set_options({f"objects.{scene.receiver}.bump.scale": 0})),
+        "exact": ((*programs.method_options("exact"), OTHERS), TRUTH_LAYERS),
+        "flat": ((OTHERS, *programs.method_options("none"), *programs.set_options({f"objects.{scene.receiver}.bump.scale": 0})),
                  FLAT_LAYERS),
     }[name]
     path = bench.truth(scene.name, name)
@@ -135,9 +136,7 @@ def against_displacement(bench: Bench, scene: Facts, method: str) -> dict[str, o
     truth = reference(bench.references, scene.name).pictures
     found: dict[str, object] = {}
     for kind in references.PICTURES:
-        options = programs.method_options(method)
-        if method == "displaced" and kind == "cast":
-            options = (*options, "--no-self-shadow")
+        options = (*programs.method_options(method), *([OTHERS] if kind == "cast" else []))
         got = references.stack(render(bench, scene, picture_size(bench), options, "color"))
         found[kind] = rounded(dict(images.measure(got, truth[kind])))
         found[f"{kind}_close"] = 100 * float((np.abs(got - truth[kind]) <= CLOSE).all(axis=-1).mean())
@@ -150,7 +149,7 @@ def measure(bench: Bench, scene: Facts, method: str) -> Value:
     png = bench.picture(scene.name, slug(method))
     png.parent.mkdir(parents=True, exist_ok=True)
     own = method == "displaced"
-    options = (*programs.method_options(method), *(["--no-self-shadow"] if own else []))
+    options = (*programs.method_options(method), OTHERS)
     got = render(bench, scene, mask_size(bench), options, TRUTH_LAYERS, png)
     counted = (exact["order"] >= 0) & faces_light(flat, scene)
     if own:

@@ -22,7 +22,7 @@ import numpy as np
 
 TOP = Path(__file__).resolve().parent.parent
 FOLDER = TOP / "reference"
-SCENES = ("cube", "sphere", "terrain", "waves")
+SCENES = ("cube", "sphere", "terrain", "torus", "waves")
 
 PICTURES = ("self", "cast")
 PICTURE_SIZE = (320, 240)

@@ -84,10 +84,9 @@ void pov_matrix(pov_text *t, vec3 x, vec3 y, vec3 z, vec3 origin)
 
 void pov_object_end(pov_text *t, const scene *s, const pov_options *how, const object *o)
 {
-    bool displaced = s->displaced && o->bump;
     if (!pov_by_parts(s, o))
         pov_texture(t, s, o, 0);
-    if ((displaced && !s->self_shadow) || (!o->bump && how->no_cast))
+    if ((o->bump && !s->self_shadow) || (!o->bump && how->no_cast))
         pov_print(t, "  no_shadow\n");
     pov_print(t, "}\n\n");
 }

@@ -107,7 +107,7 @@ typedef struct scene {
     method shadow;
     bool guard;
     bool displaced;   /* render.surface: bumped objects as what they stand for */
-    bool self_shadow; /* and with the shadows that these cast */
+    bool self_shadow; /* bumped objects cast shadows */
     int aa;
     double aa_threshold; /* < 0: none */
     light *light;

@@ -32,12 +32,14 @@ static void shadow_rough(const object *o, const light *l, group *g, stats *st)
     displace_occlude(o->shape, o->bump, g->n, &g->to_light, g->part, g->lit, &st->displaced);
 }
 
+/* Whether an object casts shadows. */
+static bool casts(const tracer *k, const object *o) { return k->self_shadow || !o->bump; }
+
 /* The receiver's own shadow on itself. */
 static void shadow_own(const tracer *k, const object *o, const light *l, group *g, stats *st)
 {
     if (is_rough(k, o)) {
-        if (k->self_shadow)
-            shadow_rough(o, l, g, st);
+        shadow_rough(o, l, g, st);
     } else if (o->shape->is->occlude_own) {
         light_aim(l, g, false);
         o->shape->is->occlude_own(o->shape, g->n, &g->to_light, g->part, g->lit);
@@ -52,15 +54,16 @@ static void shadow_one(const tracer *k, int id, const light *l, group *g, stats 
     const scene *sc = k->scene;
     for (int i = 0; i < g->n; i++)
         g->lit[i] = 1;
-    shadow_own(k, &sc->object[id], l, g, st);
+    if (casts(k, &sc->object[id]))
+        shadow_own(k, &sc->object[id], l, g, st);
     light_aim(l, g, true);
     for (int j = 0; j < sc->objects; j++) {
         const object *o = &sc->object[j];
-        if (j == id)
+        if (j == id || !casts(k, o))
             continue;
         if (!is_rough(k, o))
             o->shape->is->occlude(o->shape, g->n, &g->to_light, g->lit);
-        else if (k->self_shadow)
+        else
             displace_occlude(o->shape, o->bump, g->n, &g->to_light, NULL, g->lit, &st->displaced);
     }
     st->shadow_rays += g->n;

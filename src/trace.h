@@ -12,7 +12,7 @@ typedef struct tracer {
     method shadow;
     bool guard;
     bool displaced;   /* bumped objects are met, and shaded, where their displaced surface is; the method is not used */
-    bool self_shadow; /* then they cast shadows too, on themselves and on others */
+    bool self_shadow; /* bumped objects cast shadows too, on themselves and on others */
     bool layers;      /* also the layers beside the picture */
 } tracer;
 

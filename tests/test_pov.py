@@ -527,7 +527,8 @@ def test_shadows(kage: Kage) -> None:
     assert without("--surface", "displaced") == [False, False]
     assert without("--surface", "displaced", "--no-self-shadow") == [True, False]
     assert without("--surface", "displaced", "--no-cast") == [False, True]
-    assert without("--surface", "smooth", "--no-self-shadow", "--no-cast") == [False, True]
+    assert without("--surface", "smooth", "--no-self-shadow") == [True, False]
+    assert without("--surface", "smooth", "--no-cast") == [False, True]
 
 
 def test_names(kage: Kage) -> None:
