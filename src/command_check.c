@@ -105,7 +105,8 @@ static void print_scene(const scene *s, const seen *all)
         printf("light %s at %g, %g, %g\n", s->light[i].name, s->light[i].at.x, s->light[i].at.y, s->light[i].at.z);
     for (int i = 0; i < s->objects; i++) {
         const object *o = &s->object[i];
-        printf("object %s: %s, material %s%s%s\n", o->name, o->shape->is->kind, s->material[o->material].name,
+        printf("object %s: %s%s%s%s, material %s%s%s\n", o->name, o->shape->is->kind, o->copy_of ? ", copy of " : "",
+               o->copy_of ? o->copy_of : "", o->moved ? ", transformed" : "", s->material[o->material].name,
                o->bump ? ", bump by " : "", o->bump ? o->bump->is->kind : "");
         if (o->bump)
             warnings += print_bump(o, &all[i]);

@@ -118,6 +118,10 @@ static void put_smooth(pov_text *t, const object *o)
         break;
     }
     }
+    if (o->moved) {
+        pov_matrix(t, o->placed.x, o->placed.y, o->placed.z, o->placed.o);
+        pov_print(t, " // its transform\n");
+    }
 }
 
 static bool put_displaced(pov_text *t, const scene *s, int k, pov_report *report)
