@@ -146,8 +146,9 @@ static void rays_meet_alike(int kind, int map, const surface *own, const surface
     own->is->eval(own, LANES, other, v, z, 2, &p);
     for (int i = 0; i < LANES; i++) {
         const double s = (double)real_sqrt(bs_dot(lane_get(&y.s, i), lane_get(&y.s, i)));
+        const double size = 1 + (h.id[i] >= 0 ? s * (double)h.t[i] : 0); /* planes have hits far away, and flat to them */
         differ += lit[i] != dark[i];
-        if (h.id[i] != g.id[i] || (h.id[i] >= 0 && fabs((double)(h.t[i] - g.t[i])) * s > 300 * EPS)) {
+        if (h.id[i] != g.id[i] || (h.id[i] >= 0 && fabs((double)(h.t[i] - g.t[i])) * s > 100 * EPS * size * size)) {
             differ++;
             continue;
         }
@@ -169,8 +170,8 @@ static void rays_meet_alike(int kind, int map, const surface *own, const surface
         }
         /* u goes over its ends at +-pi */
         const double off = fabs((double)u[i] - turned(own, part[i], m, (double)v[i]));
-        differ += off > 3000 * EPS && fabs(off - 6.283185307179586) > 3000 * EPS;
-        differ += fabs((double)(w[i] - z[i])) > 3000 * EPS;
+        differ += off > 1000 * EPS * size && fabs(off - 6.283185307179586) > 1000 * EPS;
+        differ += fabs((double)(w[i] - z[i])) > 1000 * EPS * size;
         const bs_vec3 n = lane_unit(bs_normal(lane_get(&q.Qu, i), lane_get(&q.Qw, i)));
         if (is_closed(kind)) /* seen from outside */
             assert_true(bs_dot(n, lane_get(&x.s, i)) < R(1e-3));
