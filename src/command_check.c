@@ -113,8 +113,10 @@ static void print_scene(const scene *s, const seen *all)
     }
     for (int i = 0; i < s->objects; i++) {
         const object *o = &s->object[i];
-        printf("object %s: %s, material %s%s%s%s%s\n", o->name, o->shape->is->kind, s->material[o->material].name,
-               o->color ? ", color by " : "", o->color ? o->color->is->kind : "", o->bump ? ", bump by " : "", o->bump ? o->bump->is->kind : "");
+        printf("object %s: %s%s%s%s, material %s%s%s%s%s\n", o->name, o->shape->is->kind, o->copy_of ? ", copy of " : "",
+               o->copy_of ? o->copy_of : "", o->moved ? ", transformed" : "", s->material[o->material].name,
+               o->color ? ", color by " : "", o->color ? o->color->is->kind : "", o->bump ? ", bump by " : "",
+               o->bump ? o->bump->is->kind : "");
         if (o->bump)
             warnings += print_bump(o, &all[i]);
     }

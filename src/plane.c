@@ -238,25 +238,34 @@ static void store(real to[3], vec3 v)
     to[2] = (real)v.z;
 }
 
-surface *plane_new(vec3 origin, vec3 U, vec3 W, bool bounded)
+bool plane_place(plane *f, vec3 origin, vec3 U, vec3 W)
 {
     vec3 N = vec3_cross(U, W);
     double n2 = vec3_dot(N, N), e2 = vec3_dot(U, U) * vec3_dot(W, W);
     /* sin^2 of the angle between them: below this, float has no digit of N left */
     if (!(n2 > 1e-12 * e2) || !(e2 < HUGE_VAL))
-        return NULL;
-    plane *f = calloc(1, sizeof *f);
-    if (!f)
-        return NULL;
-    f->base.is = bounded ? &rectangle_methods : &plane_methods;
+        return false;
     store(f->O, origin);
     store(f->U, U);
     store(f->W, W);
     store(f->N, vec3_unit(N));
     store(f->Du, vec3_scale(vec3_cross(W, N), 1 / n2));
     store(f->Dw, vec3_scale(vec3_cross(N, U), 1 / n2));
+    return true;
+}
+
+surface *plane_new(vec3 origin, vec3 U, vec3 W, bool bounded)
+{
+    plane *f = calloc(1, sizeof *f);
+    if (!f || !plane_place(f, origin, U, W)) {
+        free(f);
+        return NULL;
+    }
+    f->base.is = bounded ? &rectangle_methods : &plane_methods;
     return &f->base;
 }
+
+void rectangle_set(plane *f) { f->base.is = &rectangle_methods; }
 
 void disc_set(plane *f, vec3 centre, vec3 U, vec3 W, double radius)
 {

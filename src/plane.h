@@ -13,6 +13,12 @@ typedef struct plane {
     real R;            /* a disc's radius */
 } plane;
 
+/* Put *f elsewhere; its methods and its radius stay. False where U and W are parallel, zero or not finite. */
+bool plane_place(plane *f, vec3 origin, vec3 U, vec3 W);
+
+/* Make *f a rectangle; it has no place yet. */
+void rectangle_set(plane *f);
+
 /* Make *f a disc; U and W as disc_new says. */
 void disc_set(plane *f, vec3 centre, vec3 U, vec3 W, double radius);
 

@@ -27,11 +27,12 @@ void pov_levels(const object *o, double y[2])
 
 void pov_clip_rim(pov_text *t, const object *o, int part)
 {
-    const pov_flat p = pov_flat_of(&o->shape_said, part);
+    const pov_flat p = pov_flat_of(o, part);
     double y[2];
     pov_levels(o, y);
-    pov_print(t, "  clipped_by { cylinder { %v, %v, %g } }\n", vec3_add(p.O, vec3_scale(p.y, y[0])),
-              vec3_add(p.O, vec3_scale(p.y, y[1])), pov_rim(&o->shape_said, part));
+    pov_print(t, "  clipped_by { cylinder { <0, %g, 0>, <0, %g, 0>, %g\n  ", y[0], y[1], pov_rim(&o->shape_said, part));
+    pov_matrix(t, p.U, p.y, p.W, p.O);
+    pov_print(t, " } }\n");
 }
 
 static double *axis(vec3 *v, int k) { return k == 0 ? &v->x : k == 1 ? &v->y : &v->z; }
@@ -61,11 +62,35 @@ static pov_flat disc(const shape_spec *f, int part)
     return part == 1 ? (pov_flat){.O = f->u, .U = a.x, .W = vec3_scale(a.z, -1)} : (pov_flat){.O = f->a, .U = a.x, .W = a.z};
 }
 
-pov_flat pov_flat_of(const shape_spec *f, int part)
+double pov_scale(const object *o) { return o->moved ? affine_scale(&o->placed) : 1; }
+
+bool pov_mirrored(const object *o) { return o->moved && affine_volume(&o->placed) < 0; }
+
+shape_spec pov_sized(const object *o)
 {
+    const double k = pov_scale(o);
+    shape_spec f = o->shape_said;
+    f.a = vec3_scale(f.a, k);
+    f.u = vec3_scale(f.u, k);
+    f.radius[0] *= k;
+    f.radius[1] *= k;
+    return f;
+}
+
+pov_flat pov_flat_of(const object *o, int part)
+{
+    const shape_spec *f = &o->shape_said;
     pov_flat p = f->kind == SHAPE_BOX        ? box_face(f, part)
                  : pov_rim(f, part) >= 0 ? disc(f, part)
                                          : (pov_flat){.O = f->a, .U = f->u, .W = f->w};
+    if (o->moved) {
+        const bool turned = pov_mirrored(o);
+        if (turned && (f->kind == SHAPE_BOX || f->kind == SHAPE_RECTANGLE))
+            p.O = vec3_add(p.O, p.U);
+        p.O = affine_point(&o->placed, p.O);
+        p.U = vec3_scale(affine_vector(&o->placed, p.U), turned ? -1 : 1);
+        p.W = affine_vector(&o->placed, p.W);
+    }
     p.x = vec3_unit(p.U);
     p.y = vec3_unit(vec3_cross(p.U, p.W));
     p.z = vec3_unit(p.W);
@@ -114,16 +139,16 @@ void pov_plane_region(const scene *s, const object *o, double u[2], double w[2])
 {
     enum { STEPS = 32 };
     const camera *c = &s->camera;
-    const shape_spec *f = &o->shape_said;
+    const pov_flat f = pov_flat_of(o, 0);
     const double level[2] = {(double)o->bump->Pmin, (double)o->bump->Pmax};
-    vec3 N = vec3_cross(f->u, f->w), n = vec3_unit(N);
+    vec3 N = vec3_cross(f.U, f.W), n = vec3_unit(N);
     double n2 = vec3_dot(N, N);
-    region r = {.O = f->a,
-                .Du = vec3_scale(vec3_cross(f->w, N), 1 / n2),
-                .Dw = vec3_scale(vec3_cross(N, f->u), 1 / n2),
+    region r = {.O = f.O,
+                .Du = vec3_scale(vec3_cross(f.W, N), 1 / n2),
+                .Dw = vec3_scale(vec3_cross(N, f.U), 1 / n2),
                 .u = {HUGE_VAL, -HUGE_VAL},
                 .w = {HUGE_VAL, -HUGE_VAL}};
-    double eye = vec3_dot(n, vec3_sub(c->from, f->a));
+    double eye = vec3_dot(n, vec3_sub(c->from, f.O));
     double far = fmax(fabs(eye - level[0]), fabs(eye - level[1])) * s->height / vec3_length(c->up);
     if (eye >= level[0] && eye <= level[1])
         hold_place(&r, c->from);
@@ -137,7 +162,7 @@ void pov_plane_region(const scene *s, const object *o, double u[2], double w[2])
             vec3 along = vec3_sub(ray, vec3_scale(n, slope));
             double t_far = far / fmax(vec3_length(along), 1e-9);
             for (int k = 0; k < 2; k++) {
-                double t = (level[k] - vec3_dot(n, vec3_sub(start, f->a))) / slope;
+                double t = (level[k] - vec3_dot(n, vec3_sub(start, f.O))) / slope;
                 if (c->orthographic) {
                     hold_place(&r, vec3_add(start, vec3_scale(along, meet(s, t))));
                     continue;
@@ -153,11 +178,11 @@ void pov_plane_region(const scene *s, const object *o, double u[2], double w[2])
         hold_place(&r, c->from);
     for (int k = 0; k < s->lights && s->self_shadow; k++)
         for (int j = 0; j < light_corners(&s->light[k]); j++) {
-            vec3 d = vec3_sub(light_corner(&s->light[k], j, f->a), f->a);
+            vec3 d = vec3_sub(light_corner(&s->light[k], j, f.O), f.O);
             double height = vec3_dot(n, d) - level[0];
             hold_casters(&r, vec3_dot(r.Du, d), vec3_dot(r.Dw, d), height > level[1] - level[0] ? (level[1] - level[0]) / height : 0);
         }
-    double mu = 0.01 * (r.u[1] - r.u[0]) + 1e-3 / vec3_length(f->u), mw = 0.01 * (r.w[1] - r.w[0]) + 1e-3 / vec3_length(f->w);
+    double mu = 0.01 * (r.u[1] - r.u[0]) + 1e-3 / vec3_length(f.U), mw = 0.01 * (r.w[1] - r.w[0]) + 1e-3 / vec3_length(f.W);
     u[0] = r.u[0] - mu;
     u[1] = r.u[1] + mu;
     w[0] = r.w[0] - mw;

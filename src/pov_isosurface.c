@@ -30,7 +30,7 @@ bool pov_function(pov_text *t, const object *o, const char *name)
 
 static double of_flat(const object *o, int part)
 {
-    pov_flat p = pov_flat_of(&o->shape_said, part);
+    pov_flat p = pov_flat_of(o, part);
     double x = (double)o->bump->Pu_max / vec3_length(p.U), z = (double)o->bump->Pw_max / vec3_length(p.W);
     return sqrt(1 + x * x + z * z);
 }
@@ -55,7 +55,7 @@ static double of_zone(const expr *e, double scale, double r, double w0, double w
 static double of_sphere(const object *o)
 {
     const double CAP = 1e-3, GROWTH = 1.05, WIDEST = 0.05, half = 3.14159265358979323846 / 2;
-    double r = o->shape_said.radius[0] + (double)o->bump->Pmin, scale = fabs(o->bump_said.scale), worst = 0;
+    double r = pov_sized(o).radius[0] + (double)o->bump->Pmin, scale = fabs(o->bump_said.scale), worst = 0;
     expr_error wrong;
     expr *e = r > 0 ? expr_parse(o->bump_said.function, &wrong) : NULL;
     if (!e)
@@ -79,12 +79,14 @@ static double turning(const object *o, double slope, double r)
 
 static double of_cylinder(const object *o)
 {
-    return 1 + (double)o->bump->Pw_max + turning(o, (double)o->bump->Pu_max, o->shape_said.radius[0] + (double)o->bump->Pmin);
+    const shape_spec f = pov_sized(o);
+    return 1 + (double)o->bump->Pw_max / pov_scale(o) + turning(o, (double)o->bump->Pu_max, f.radius[0] + (double)o->bump->Pmin);
 }
 
 static double of_torus(const object *o)
 {
-    double major = o->shape_said.radius[0], minor = o->shape_said.radius[1];
+    const shape_spec f = pov_sized(o);
+    double major = f.radius[0], minor = f.radius[1];
     return 1 + turning(o, (double)o->bump->Pu_max, major - minor - (double)o->bump->Pmax) +
            turning(o, (double)o->bump->Pw_max, minor + (double)o->bump->Pmin);
 }
@@ -120,7 +122,7 @@ static void put_over(pov_text *t, const char *x, double length)
 
 static void put_flat(pov_text *t, const scene *s, const object *o, int part, const char *name)
 {
-    const pov_flat p = pov_flat_of(&o->shape_said, part);
+    const pov_flat p = pov_flat_of(o, part);
     const double lu = vec3_length(p.U), lw = vec3_length(p.W);
     double u[2] = {0, 1}, w[2] = {0, 1}, y[2];
     pov_levels(o, y);
@@ -147,50 +149,69 @@ static void put_flat(pov_text *t, const scene *s, const object *o, int part, con
         pov_clip_rim(t, o, part);
 }
 
+/* Its own space into the scene's, but for the size, which pov_sized has. */
+static void put_motion(pov_text *t, const object *o)
+{
+    const double k = 1 / pov_scale(o);
+    if (!o->moved)
+        return;
+    pov_matrix(t, vec3_scale(o->placed.x, k), vec3_scale(o->placed.y, k), vec3_scale(o->placed.z, k), o->placed.o);
+    pov_print(t, " // the object's transform\n");
+}
+
+/* u of what turns about y. */
+static const char *around(const object *o) { return pov_mirrored(o) ? "atan2(-z, x)" : "atan2(z, x)"; }
+
 static void put_sphere(pov_text *t, const scene *s, const object *o, const char *name)
 {
-    double y[2], radius = o->shape_said.radius[0];
+    const shape_spec f = pov_sized(o);
+    double y[2], radius = f.radius[0];
     pov_levels(o, y);
-    pov_print(t, "isosurface {\n  function {\n    sqrt(x*x + y*y + z*z) - %s\n    - %s(atan2(z, x), atan2(sqrt(x*x + z*z), y))\n  }\n",
-              pov_exact(radius).text, name);
+    pov_print(t, "isosurface {\n  function {\n    sqrt(x*x + y*y + z*z) - %s\n    - %s(%s, atan2(sqrt(x*x + z*z), y))\n  }\n",
+              pov_exact(radius).text, name, around(o));
     pov_print(t, "  contained_by { sphere { 0, %g } }\n  accuracy %g\n", radius + y[1], accuracy(s));
     pov_print(t, "  max_gradient %g // a bound but for 0.001 radians around the poles\n  translate %v\n",
-              pov_isosurface_gradient(o, 0), o->shape_said.a);
+              pov_isosurface_gradient(o, 0), f.a);
+    put_motion(t, o);
 }
 
 /* The side of a cylinder; y is its axis. */
 static void put_side(pov_text *t, const scene *s, const object *o, const char *name)
 {
-    const shape_spec *f = &o->shape_said;
-    const vec3 axis = vec3_sub(f->u, f->a);
+    const shape_spec f = pov_sized(o);
+    const vec3 axis = vec3_sub(f.u, f.a);
     const frame a = frame_about(axis);
-    double y[2], radius = f->radius[0], length = vec3_length(axis);
+    double y[2], radius = f.radius[0], length = vec3_length(axis);
     pov_levels(o, y);
-    pov_print(t, "isosurface {\n  function {\n    sqrt(x*x + z*z) - %s\n    - %s(atan2(z, x), ", pov_exact(radius).text, name);
-    pov_print(t, "%s - y)\n  }\n", pov_exact(length).text);
+    pov_print(t, "isosurface {\n  function {\n    sqrt(x*x + z*z) - %s\n    - %s(%s, ", pov_exact(radius).text, name, around(o));
+    pov_print(t, pov_scale(o) == 1 ? "%s - y" : "(%s - y)", pov_exact(length).text);
+    put_over(t, "", pov_scale(o));
+    pov_print(t, ")\n  }\n");
     pov_print(t, "  contained_by { box { <%g, 0, %g>, <%g, %g, %g> } }\n", -radius - y[1], -radius - y[1], radius + y[1], length,
               radius + y[1]);
     pov_print(t, "  open\n  accuracy %g\n  max_gradient %g // a bound: none is steeper\n", accuracy(s),
               pov_isosurface_gradient(o, 0));
-    pov_matrix(t, a.x, a.y, a.z, f->a);
+    pov_matrix(t, a.x, a.y, a.z, f.a);
     pov_print(t, " // y is the axis\n");
+    put_motion(t, o);
 }
 
 static void put_torus(pov_text *t, const scene *s, const object *o, const char *name)
 {
-    const shape_spec *f = &o->shape_said;
-    const frame a = frame_about(f->u);
+    const shape_spec f = pov_sized(o);
+    const frame a = frame_about(f.u);
     double y[2];
     pov_levels(o, y);
-    const double wide = f->radius[0] + f->radius[1] + y[1], high = f->radius[1] + y[1];
-    const pov_digits major = pov_exact(f->radius[0]);
+    const double wide = f.radius[0] + f.radius[1] + y[1], high = f.radius[1] + y[1];
+    const pov_digits major = pov_exact(f.radius[0]);
     pov_print(t, "isosurface {\n  function {\n    sqrt(pow(sqrt(x*x + z*z) - %s, 2) + y*y) - %s\n", major.text,
-              pov_exact(f->radius[1]).text);
-    pov_print(t, "    - %s(atan2(z, x), atan2(-y, sqrt(x*x + z*z) - %s))\n  }\n", name, major.text);
+              pov_exact(f.radius[1]).text);
+    pov_print(t, "    - %s(%s, atan2(-y, sqrt(x*x + z*z) - %s))\n  }\n", name, around(o), major.text);
     pov_print(t, "  contained_by { box { <%g, %g, %g>, <%g, %g, %g> } }\n", -wide, -high, -wide, wide, high, wide);
     pov_print(t, "  accuracy %g\n  max_gradient %g // a bound: none is steeper\n", accuracy(s), pov_isosurface_gradient(o, 0));
-    pov_matrix(t, a.x, a.y, a.z, f->a);
+    pov_matrix(t, a.x, a.y, a.z, f.a);
     pov_print(t, " // y is the axis\n");
+    put_motion(t, o);
 }
 
 static void put_part(pov_text *t, const scene *s, const object *o, int part, const char *name)

@@ -284,7 +284,8 @@ static void lay(tessellation *x, int part)
         pov_plane_region(x->s, o, range[0], range[1]);
     for (int a = 0; a < 2; a++) {
         if (o->bump_said.function) {
-            double edge = vec3_length(a ? o->shape_said.w : o->shape_said.u), away = vec3_length(vec3_sub(x->s->view.at, x->s->camera.from));
+            const pov_flat f = pov_flat_of(o, 0);
+            double edge = vec3_length(a ? f.W : f.U), away = vec3_length(vec3_sub(x->s->view.at, x->s->camera.from));
             l->step[a] = x->unbounded ? away / edge / FUNCTION_CELLS : (range[a][1] - range[a][0]) / FUNCTION_CELLS;
             l->start[a] = x->unbounded ? 0 : range[a][0];
         } else {

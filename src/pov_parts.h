@@ -12,12 +12,21 @@ typedef struct pov_flat {
     vec3 x, y, z; /* unit */
 } pov_flat;
 
-pov_flat pov_flat_of(const shape_spec *f, int part);
+pov_flat pov_flat_of(const object *o, int part); /* in the scene */
 
 /* Whether part of a shape is flat. */
 bool pov_is_flat(const shape_spec *f, int part);
 
-/* The radius of a disc, or of a flat part that is one; it may be 0, and then there is no such part. Negative: no disc. */
+/* What the object's transform makes of lengths: 1 where it has none, 0 where not all grow alike. */
+double pov_scale(const object *o);
+
+/* Whether u runs the other way (surface_transformed). */
+bool pov_mirrored(const object *o);
+
+/* The shape before its transform, but for the size. */
+shape_spec pov_sized(const object *o);
+
+/* The radius of a disc, or of a flat part that is one; in units of u and w; it may be 0, and then there is no such part. Negative: no disc. */
 double pov_rim(const shape_spec *f, int part);
 
 /* Of an object's displaced disc, which is made as a square, leave what is on the disc. */

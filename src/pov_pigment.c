@@ -13,7 +13,7 @@
 static bool has_uw(const object *o)
 {
     const shape_kind kind = o->shape_said.kind;
-    return kind != SHAPE_CYLINDER && kind != SHAPE_CONE && kind != SHAPE_TORUS;
+    return kind != SHAPE_CYLINDER && kind != SHAPE_CONE && kind != SHAPE_TORUS && !(kind == SHAPE_SPHERE && pov_mirrored(o));
 }
 
 /* Whether all of the surface is on the image. */
@@ -32,8 +32,8 @@ bool pov_possible(const scene *s, errors *e)
         const object *o = &s->object[k];
         const material *m = &s->material[o->material];
         if (m->pattern && !has_uw(o))
-            good = errors_add(e, "%s: object %s: the colours of material %s can't be laid on a %s in POV-Ray, expected a constant color",
-                              s->path, o->name, m->name, o->shape->is->kind);
+            good = errors_add(e, "%s: object %s: the colours of material %s can't be laid on a %s%s in POV-Ray, expected a constant color",
+                              s->path, o->name, m->name, pov_mirrored(o) ? "mirrored " : "", o->shape->is->kind);
         else if (m->pattern == PATTERN_IMAGE && m->layout.wrap != MAP_REPEAT && !(m->layout.wrap == MAP_CLAMP && m->nearest && covers(o)))
             good = errors_add(e, "%s: object %s: POV-Ray's images repeat and do nothing else, expected 'wrap: repeat' in material %s%s", s->path,
                               o->name, m->name,
@@ -136,12 +136,18 @@ void pov_texture(pov_text *t, const scene *s, const object *o, int part)
     else
         put_sphere_image(t, o, m);
     if (pov_is_flat(&o->shape_said, part)) {
-        const pov_flat p = pov_flat_of(&o->shape_said, part);
+        const pov_flat p = pov_flat_of(o, part);
         pov_print(t, "  ");
         pov_matrix(t, p.U, p.W, p.y, p.O);
         pov_print(t, "\n");
-    } else
+    } else {
         pov_print(t, "    translate %v\n", o->shape_said.a);
+        if (o->moved) {
+            pov_print(t, "  ");
+            pov_matrix(t, o->placed.x, o->placed.y, o->placed.z, o->placed.o);
+            pov_print(t, "\n");
+        }
+    }
     pov_print(t, "    }\n    finish { %s }\n  }\n", pov_identify("Finish", m->name, o->material).text);
 }
 

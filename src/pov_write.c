@@ -100,12 +100,12 @@ static void put_rectangle(pov_text *t, vec3 O, vec3 U, vec3 W)
     pov_print(t, " // u, w, n, origin\n");
 }
 
-/* A box whose faces have colours of their own. */
+/* A box whose faces have colours of their own, each where it is in the scene. */
 static void put_faces(pov_text *t, const scene *s, const object *o)
 {
     pov_print(t, "union {\n");
     for (int part = 0; part < o->shape->is->parts; part++) {
-        const pov_flat p = pov_flat_of(&o->shape_said, part);
+        const pov_flat p = pov_flat_of(o, part);
         put_rectangle(t, p.O, p.U, p.W);
         pov_texture(t, s, o, part);
         pov_print(t, "}\n");
@@ -149,6 +149,10 @@ static void put_smooth(pov_text *t, const scene *s, const object *o)
         pov_print(t, " // y is the axis\n");
         break;
     }
+    }
+    if (o->moved && !pov_by_parts(s, o)) {
+        pov_matrix(t, o->placed.x, o->placed.y, o->placed.z, o->placed.o);
+        pov_print(t, " // its transform\n");
     }
 }
 

@@ -88,7 +88,12 @@ typedef struct bump_spec {
 typedef struct object {
     char *name;
     surface *shape;
-    shape_spec shape_said;
+    surface *own;         /* the shape before its transform: the same where it has none */
+    const char *copy_of;  /* the object whose `own` it is; NULL: its own */
+    bool moved;           /* it has a transform, or what it copies has: `placed` */
+    bool shares_bump;     /* bump, the texts of bump_said and map are another's */
+    affine placed;
+    shape_spec shape_said; /* before the transform */
     bump_spec bump_said;
     perturb *bump; /* NULL: smooth */
     pigment *color;          /* NULL: the material's */

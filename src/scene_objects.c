@@ -163,49 +163,147 @@ static perturb *read_bump(reader *r, node *at, const surface *f, map_note *note,
 
 /* ---- objects ---- */
 
+/* The number of the thing whose name is at the node, of those that begin with their name; -1: an error is told. */
+static int find(reader *r, node *at, const char *what, const char *among, const void *things, size_t size, int n)
+{
+    const char *name = yaml_text(r->y, at, what), *thing = strrchr(what, ' ') + 1;
+    char near[64], *names = NULL;
+    size_t length = 1;
+    for (int i = 0; name && i < n; i++) {
+        char *const *its = (char *const *)(const void *)((const char *)things + (size_t)i * size);
+        if (*its && strcmp(name, *its) == 0)
+            return i;
+        length += *its ? strlen(*its) + 1 : 0;
+    }
+    if (!name)
+        return -1;
+    if ((names = calloc(1, length)))
+        for (int i = 0; i < n; i++) {
+            char *const *its = (char *const *)(const void *)((const char *)things + (size_t)i * size);
+            if (*its)
+                strcat(strcat(names, *names ? " " : ""), *its);
+        }
+    text_nearest(name, names ? names : "", near, sizeof near);
+    yaml_error(r->y, at, "no %s '%.60s'%s%s%s%s", thing, name, *near ? ", did you mean '" : ", expected one of those under '",
+               *near ? near : among, "'", *near ? "?" : "");
+    free(names);
+    return -1;
+}
+
 static int find_material(reader *r, node *at)
 {
-    const char *name = yaml_text(r->y, at, "the name of a material");
-    char near[64], *names = NULL;
-    size_t size = 1;
-    if (!name || !r->s->material) /* without materials that alone is told */
-        return 0;
-    for (int i = 0; i < r->s->materials; i++) {
-        if (r->s->material[i].name && strcmp(name, r->s->material[i].name) == 0)
-            return i;
-        size += r->s->material[i].name ? strlen(r->s->material[i].name) + 1 : 0;
+    const scene *s = r->s;
+    /* without materials that alone is told */
+    int k = s->material ? find(r, at, "the name of a material", "materials", s->material, sizeof *s->material, s->materials) : 0;
+    return k < 0 ? 0 : k;
+}
+
+/* Objects are read in order, but what is copied before its copies. */
+typedef struct queue {
+    node *at;
+    char *state; /* of each object */
+} queue;
+
+enum { WAITING, BEGUN, DONE };
+
+static void read_object(reader *r, const queue *q, int i);
+
+/* What object i copies, read; NULL: an error is told. */
+static const object *read_original(reader *r, const queue *q, node *copy, int i)
+{
+    const scene *s = r->s;
+    const int k = find(r, copy, "the name of an object", "objects", s->object, sizeof *s->object, s->objects);
+    if (k == i)
+        yaml_error(r->y, copy, "'%s' copies itself, expected another object", s->object[i].name);
+    else if (k >= 0 && q->state[k] == BEGUN)
+        yaml_error(r->y, copy, "'%s' is a copy of this one, expected an object that does not lead back here", s->object[k].name);
+    if (k < 0 || q->state[k] == BEGUN)
+        return NULL;
+    if (q->state[k] == WAITING)
+        read_object(r, q, k);
+    return &s->object[k];
+}
+
+/* Shape, material and bump of another object; what it says itself comes on top. */
+static void take(object *o, const object *from)
+{
+    char *name = o->name;
+    *o = *from;
+    o->name = name;
+    o->copy_of = from->copy_of ? from->copy_of : from->name;
+    o->shape = from->own;
+    o->shares_bump = true;
+}
+
+/* The shape through its transform. Displaced, it must be one of which feet are known. */
+static void place(reader *r, node *v, object *o)
+{
+    node *transform = yaml_get(v, "transform"), *at = transform ? transform : yaml_get(v, "copy");
+    bool good = true;
+    if (transform) {
+        good = reader_transform(r, transform, &o->placed);
+        o->moved = true;
     }
-    if ((names = calloc(1, size)))
-        for (int i = 0; i < r->s->materials; i++)
-            if (r->s->material[i].name)
-                strcat(strcat(names, i ? " " : ""), r->s->material[i].name);
-    text_nearest(name, names ? names : "", near, sizeof near);
-    yaml_error(r->y, at, "no material '%.60s'%s%s%s", name, *near ? ", did you mean '" : ", expected one of those under 'materials'",
-               near, *near ? "'?" : "");
-    free(names);
-    return 0;
+    if (!good || !o->moved || !o->own)
+        return;
+    surface *f = reader_placed(r, at, o->own, &o->placed);
+    o->shape = f ? f : o->own;
+    if (f && o->bump && !f->is->foot && (r->s->displaced || r->s->shadow.kind == METHOD_EXACT))
+        yaml_error(r->y, at, "a %s with a bump is stretched more one way than another, expected the same scale all ways for %s",
+                   f->is->kind, r->s->displaced ? "surface displaced" : "shadow exact");
+}
+
+static void read_object(reader *r, const queue *q, int i)
+{
+    scene *s = r->s;
+    object *o = &s->object[i];
+    node *key, *v = yaml_pair(q->at, i, &key), *m, *bump, *copy;
+    q->state[i] = BEGUN;
+    o->placed = affine_identity();
+    if (yaml_map(r->y, v, "an object", READER_SHAPES " material bump transform copy")) {
+        if ((copy = yaml_get(v, "copy"))) {
+            const object *from = reader_no_shape(r, v) ? read_original(r, q, copy, i) : NULL;
+            if (from)
+                take(o, from);
+        } else
+            o->shape = o->own = reader_surface(r, v, &o->shape_said);
+        if ((m = copy ? yaml_get(v, "material") : yaml_need(r->y, v, "material", "an object")))
+            o->material = find_material(r, m);
+        o->color = NULL;
+        if ((m || copy) && o->own && s->material)
+            reader_pigment(r, m ? m : copy, o);
+        if ((bump = yaml_get(v, "bump")) && o->own) {
+            o->shares_bump = false;
+            o->map = (map_note){0};
+            o->bump_said = (bump_spec){0};
+            o->bump = read_bump(r, bump, o->own, &o->map, &o->bump_said);
+        }
+        if (bump && o->bump && (s->displaced || s->shadow.kind == METHOD_EXACT) && !displace_possible(o->bump))
+            yaml_error(r->y, bump, "no bounds of P or of its slope are known, expected them for %s: a function that is bounded, "
+                                   "without jumps, over the whole surface",
+                       s->displaced ? "surface displaced" : "shadow exact");
+        place(r, v, o);
+    }
+    q->state[i] = DONE;
 }
 
 void reader_objects(reader *r)
 {
     scene *s = r->s;
-    node *at = reader_named(r, "objects", "objects", true, sizeof *s->object, &s->object, &s->objects), *key;
-    for (int i = 0; at && i < s->objects; i++) {
-        node *v = yaml_pair(at, i, &key), *m, *bump;
-        object *o = &s->object[i];
-        o->name = reader_name(r, at, key);
-        if (!yaml_map(r->y, v, "an object", READER_SHAPES " material bump"))
-            continue;
-        o->shape = reader_surface(r, v, &o->shape_said);
-        if ((m = yaml_need(r->y, v, "material", "an object")))
-            o->material = find_material(r, m);
-        if (m && o->shape && s->material)
-            reader_pigment(r, m, o);
-        if ((bump = yaml_get(v, "bump")) && o->shape)
-            o->bump = read_bump(r, bump, o->shape, &o->map, &o->bump_said);
-        if (o->bump && (s->displaced || s->shadow.kind == METHOD_EXACT) && !displace_possible(o->bump))
-            yaml_error(r->y, bump, "no bounds of P or of its slope are known, expected them for %s: a function that is bounded, "
-                                   "without jumps, over the whole surface",
-                       s->displaced ? "surface displaced" : "shadow exact");
+    queue q = {reader_named(r, "objects", "objects", true, sizeof *s->object, &s->object, &s->objects), NULL};
+    node *key;
+    if (!q.at)
+        return;
+    if (!(q.state = calloc((size_t)s->objects + 1, 1))) {
+        errors_add(r->e, "out of memory");
+        return;
     }
+    for (int i = 0; i < s->objects; i++) {
+        yaml_pair(q.at, i, &key);
+        s->object[i].name = reader_name(r, q.at, key);
+    }
+    for (int i = 0; i < s->objects; i++)
+        if (q.state[i] == WAITING)
+            read_object(r, &q, i);
+    free(q.state);
 }

@@ -221,9 +221,14 @@ void scene_free(scene *s)
     for (int i = 0; i < s->objects; i++) {
         object *o = &s->object[i];
         free(o->name);
-        surface_free(o->shape);
-        perturb_free(o->bump);
+        if (o->shape != o->own)
+            surface_free(o->shape);
+        if (!o->copy_of)
+            surface_free(o->own);
         pigment_free(o->color);
+        if (o->shares_bump)
+            continue;
+        perturb_free(o->bump);
         free(o->bump_said.function);
         free(o->map.file);
     }

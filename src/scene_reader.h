@@ -49,6 +49,13 @@ void reader_pigment(reader *r, node *at, object *o);
 /* The surface of an object, by the one key of READER_SHAPES that it has. NULL: an error is told. (scene_surfaces.c) */
 #define READER_SHAPES "plane rectangle disc box sphere cylinder cone torus"
 surface *reader_surface(reader *r, node *at, shape_spec *said);
+bool reader_no_shape(reader *r, node *at); /* it has none; otherwise an error is told */
+
+/* What `transform` says, after what *m is already. False: an error is told. (scene_transform.c) */
+bool reader_transform(reader *r, node *at, affine *m);
+
+/* The image of a surface. NULL: an error is told, at the node. */
+surface *reader_placed(reader *r, node *at, const surface *f, const affine *m);
 
 /* The objects with their surfaces and bumps; after the materials, whose names they give. (scene_objects.c) */
 void reader_objects(reader *r);

@@ -136,18 +136,20 @@ static surface *read_torus(reader *r, node *at, shape_spec *said)
     return good ? torus_new(c, axis, major, minor) : NULL;
 }
 
+static const struct {
+    const char *kind;
+    surface *(*read)(reader *r, node *at, shape_spec *said);
+} shapes[] = {
+    {"plane", read_plane},   {"rectangle", read_rectangle}, {"disc", read_disc}, {"box", read_box},
+    {"sphere", read_sphere}, {"cylinder", read_cylinder},   {"cone", read_cone}, {"torus", read_torus},
+};
+enum { SHAPES = sizeof shapes / sizeof *shapes };
+
 surface *reader_surface(reader *r, node *at, shape_spec *said)
 {
-    static const struct {
-        const char *kind;
-        surface *(*read)(reader *r, node *at, shape_spec *said);
-    } shapes[] = {
-        {"plane", read_plane},   {"rectangle", read_rectangle}, {"disc", read_disc}, {"box", read_box},
-        {"sphere", read_sphere}, {"cylinder", read_cylinder},   {"cone", read_cone}, {"torus", read_torus},
-    };
     node *shape = NULL;
     int kind = 0;
-    for (int k = 0; k < (int)(sizeof shapes / sizeof *shapes); k++) {
+    for (int k = 0; k < SHAPES; k++) {
         node *v = yaml_get(at, shapes[k].kind);
         if (v && shape) {
             yaml_error(r->y, v, "a second shape, '%s' beside '%s', expected one", shapes[k].kind, shapes[kind].kind);
@@ -163,4 +165,12 @@ surface *reader_surface(reader *r, node *at, shape_spec *said)
         return NULL;
     }
     return shapes[kind].read(r, shape, said);
+}
+
+bool reader_no_shape(reader *r, node *at)
+{
+    for (int k = 0; k < SHAPES; k++)
+        if (yaml_get(at, shapes[k].kind))
+            return yaml_error(r->y, yaml_get(at, shapes[k].kind), "a shape, '%s', beside 'copy', expected one of them", shapes[k].kind);
+    return true;
 }

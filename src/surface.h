@@ -10,6 +10,7 @@
 
 #include <stdbool.h>
 
+#include "affine.h"
 #include "vec3.h"
 #include "wave.h"
 
@@ -40,7 +41,8 @@ typedef struct surface_methods {
 
     int parts; /* part is in 0..parts-1 */
 
-    /* For true displacement (displace.c), with a part of the surface taken as if it alone were there. */
+    /* For true displacement (displace.c), with a part of the surface taken as if it alone were there. All three are NULL where no
+     * foot is known (surface_transformed). */
 
     /* The stretch t0 <= t <= t1 of each ray, within 0..end[i], that may meet Q + P n/|n| for Pmin <= P <= Pmax: all such places
      * are in it. t0 > t1: there is none. */
@@ -88,6 +90,11 @@ surface *cone_new(vec3 from, double from_radius, vec3 to, double to_radius, bool
 /* Q = centre + (major + minor cos w) (cos u X + sin u Z) - minor sin w Y: u the angle around the axis, w that around the tube, 0 on
  * the outside and downwards positive, both in -pi..pi. NULL unless 0 < minor < major and the axis has a direction. */
 surface *torus_new(vec3 centre, vec3 axis, double major, double minor);
+
+/* The image of a surface by an affine map. `from` must outlive it, and is no such image itself. It has the (u,w) of `from`; but
+ * where the map mirrors u runs the other way in its extent (on a plane: -u), so that n points outward still. Where the map does not
+ * keep angles, images of round surfaces have no feet. NULL where the map leaves nothing of a volume (then only: or out of memory). */
+surface *surface_transformed(const surface *from, const affine *m);
 
 void surface_free(surface *f);
 

@@ -55,6 +55,11 @@ bool yaml_bool(yaml *y, node *at, const char *what, bool *x);
 /* n numbers in [ ]. */
 bool yaml_numbers(yaml *y, node *at, int n, double lo, double hi, const char *what, double *x);
 
+/* Lists. yaml_list: how many items; -1: an error is told. */
+bool yaml_is_list(node *at);
+int yaml_list(yaml *y, node *at, const char *what);
+node *yaml_item(node *list, int i);
+
 /* The index of the text among words separated by spaces; -1 with an error where it is none of them. */
 int yaml_word(yaml *y, node *at, const char *words, const char *what);
 

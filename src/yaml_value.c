@@ -154,16 +154,28 @@ bool yaml_bool(yaml *y, node *at, const char *what, bool *x)
     return k >= 0;
 }
 
+bool yaml_is_list(node *at) { return fy_node_is_sequence(at); }
+
+int yaml_list(yaml *y, node *at, const char *what)
+{
+    if (fy_node_is_sequence(at))
+        return fy_node_sequence_item_count(at);
+    yaml_error(y, at, "%s, expected %s", kind_of(at), what);
+    return -1;
+}
+
+node *yaml_item(node *list, int i) { return fy_node_sequence_get_by_index(list, i); }
+
 bool yaml_numbers(yaml *y, node *at, int n, double lo, double hi, const char *what, double *x)
 {
-    if (!fy_node_is_sequence(at))
-        return yaml_error(y, at, "%s, expected %s", kind_of(at), what);
-    int count = fy_node_sequence_item_count(at);
+    int count = yaml_list(y, at, what);
+    if (count < 0)
+        return false;
     if (count != n)
         return yaml_error(y, at, "%d value%s, expected %s", count, count == 1 ? "" : "s", what);
     bool good = true;
     for (int i = 0; i < n; i++)
-        good = yaml_number(y, fy_node_sequence_get_by_index(at, i), lo, false, hi, what, &x[i]) && good;
+        good = yaml_number(y, yaml_item(at, i), lo, false, hi, what, &x[i]) && good;
     return good;
 }
 

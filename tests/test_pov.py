@@ -52,6 +52,27 @@ ROUND_ONES = {
     "torus": "torus: {center: [0, 0.7, 0], axis: [0.2, 1, -0.3], major: 1, minor: 0.4}",
     "standing torus": "torus: {center: [0, 1, 0], axis: [0.4, 0, 1], major: 0.8, minor: 0.2}",
 }
+#: Transforms of what is about 1 in size, at the origin.
+MOVES = {
+    "moved": "[{rotate: [20, 35, -50]}, {scale: 0.8}, {translate: [0.1, 1, 0.2]}]",
+    "mirrored": "[{scale: [-0.8, 0.8, 0.8]}, {rotate: [-40, 15, 30]}, {translate: [0.1, 1, 0.2]}]",
+    "stretched": "[{scale: [1.3, 0.6, 0.9]}, {rotate: [20, 35, -50]}, {translate: [0.1, 1, 0.2]}]",
+    "sheared": "[{rotate: [0, 30, 40]}, {scale: [1.2, 0.7, -0.9]}, {look: {from: [0.1, 1, 0.2], at: [1, 1.5, -2], up: [0.3, 1, 0]}}]",
+}
+PLAIN = {
+    "sphere": "sphere: {center: [0.1, 0.1, -0.1], radius: 1}",
+    "box": "box: {from: [-0.8, -0.6, -0.7], to: [0.7, 0.6, 0.8]}",
+    "cylinder": "cylinder: {from: [0.1, -0.8, 0], to: [-0.1, 0.8, 0.1], radius: 0.8}",
+    "cone": "cone: {from: [0, -0.8, 0], from_radius: 1, to: [0.1, 0.9, 0.1], to_radius: 0.3}",
+    "torus": "torus: {center: [0, 0, 0.1], axis: [0.2, 1, 0.1], major: 0.8, minor: 0.35}",
+    "rectangle": "rectangle: {origin: [-1, 0, -1], u: [2, 0.3, 0], w: [0.2, 0, 2.1]}",
+    "disc": "disc: {center: [0.1, 0, 0], normal: [0.2, 1, 0.3], radius: 1}",
+}
+
+
+def moved(name: str, move: str) -> str:
+    return f"{PLAIN[name]}\n    transform: {MOVES[move]}"
+
 
 #: name: (camera, lights, objects)
 SMOOTH = {
@@ -112,6 +133,16 @@ SMOOTH = {
         for name, shape in ROUND_ONES.items()
         for material in ("clay", "shiny", "glaze")
     },
+    **{
+        f"{move} {name}": (CAMERA, LIGHTS, f"{FLOOR}  it:\n    material: shiny\n    {moved(name, move)}\n")
+        for name in PLAIN
+        for move in MOVES
+    },
+    "moved plane": (CAMERA, LIGHTS, f"  it:\n    {TILTED[TILTED.index('plane'):TILTED.index(', mat')]}\n    material: glaze\n"
+                                    "    transform: [{scale: [2, 1, -1.5]}, {rotate: [0, 30, 5]}, {translate: [0, -0.5, 0]}]\n"),
+    "copies": (CAMERA, LIGHTS, f"{FLOOR}  it:\n    material: shiny\n    {moved('torus', 'moved')}\n"
+                               "  it2: {copy: it, transform: [{scale: [1, 0.5, 1]}, {translate: [1.4, 0, 0.5]}]}\n"
+                               "  it3: {copy: it2, material: clay, transform: [{scale: [-1, 1, 1]}, {translate: [0, 0, 1]}]}\n"),
     "eye in a cylinder": (
         "{from: [0, 1.1, 0], at: [0.3, 0.4, 1], fov: 90}", "{a: {at: [0.2, 1.2, 0.1]}}",
         f"  it: {{{ROUND_ONES['cylinder']}, material: shiny}}\n",
@@ -378,6 +409,24 @@ DISPLACED = {
     "cylinder, map": (ROUND_ONES["cylinder"], MAP.replace("size: [2, 2]", "repeat: [8, 2]"), "mesh2"),
     "cone, map": (ROUND_ONES["cone"], MAP.replace("size: [2, 2]", "repeat: [8, 2]"), "mesh2"),
     "torus, map": (ROUND_ONES["torus"], MAP.replace("size: [2, 2]", "repeat: [8, 4]"), "mesh2"),
+    "moved sphere": (moved("sphere", "moved"), ROUND, "isosurface"),
+    "moved box": (moved("box", "moved"), WAVES, "isosurface"),
+    "moved cylinder": (moved("cylinder", "moved"), WAVES.replace("8*u", "8*u+3"), "isosurface"),
+    "moved cone": (moved("cone", "moved"), WAVES, "mesh2"),
+    "moved torus": (moved("torus", "moved"), WAVES, "isosurface"),
+    "moved rectangle": (moved("rectangle", "moved"), WAVES, "isosurface"),
+    "moved plane": (f"{PLANE}\n    transform: [{{scale: [2, 1, -1.5]}}, {{rotate: [0, 30, 5]}}, {{translate: [0, -0.2, 0]}}]", FUNCTION,
+                    "isosurface"),
+    "moved plane, noise": (f"{PLANE}\n    transform: [{{scale: 1.5}}, {{rotate: [0, 30, 5]}}]", NOISE, "mesh2"),
+    "mirrored sphere": (moved("sphere", "mirrored"), ROUND.replace("8*u", "8*u+1"), "isosurface"),
+    "mirrored cylinder": (moved("cylinder", "mirrored"), WAVES.replace("8*u", "8*u+1"), "isosurface"),
+    "mirrored torus, map": (moved("torus", "mirrored"), MAP.replace("size: [2, 2]", "repeat: [8, 4]"), "mesh2"),
+    "mirrored rectangle": (moved("rectangle", "mirrored"), "{function: '0.04*sin(18*u+1)*sin(17*w)'}", "isosurface"),
+    "stretched box": (moved("box", "stretched"), "{function: '0.04*sin(18*u)*sin(17*w)'}", "isosurface"),
+    "sheared box": (moved("box", "sheared"), "{function: '0.04*sin(9*u+1)*sin(7*w)'}", "isosurface"),
+    "sheared box, map": (moved("box", "sheared"), MAP.replace("[2, 2]", "[1, 1]"), "mesh2"),
+    "sheared disc": (moved("disc", "sheared"), WAVES.replace("8*u", "8*u+1"), "isosurface"),
+    "stretched disc, map": (moved("disc", "stretched"), MAP.replace("[2, 2]", "[1, 1]"), "mesh2"),
 }
 
 
