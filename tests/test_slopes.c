@@ -249,7 +249,7 @@ static double shift(int method, const smooth *q, const ray *x, double A)
     shape(q, x->u, x->w, d);
     bs_vec3 n = bs_normal(d[0], d[1]);
     bs_view v = bs_view_of(vec((double)x->s[0], (double)x->s[1], (double)x->s[2]), n, d[0], d[1]);
-    bs_slab all = {-INFINITY, INFINITY};
+    bs_slab all = {-HUGE_VAL, HUGE_VAL};
     if (method < ITER2)
         return bs_shift_of(method, 0, v, bs_curvature(v, n, d[2], d[3], d[4]), bump(A, x->u, x->w), all).tau;
     double tau = 0;
