@@ -25,7 +25,7 @@ STRANGE = [
     b"[", b"]", b"{", b"}", b"[]", b"{}", b":", b": ", b",", b"- ", b"? ", b"&a ", b"*a", b"<<: ", b"!!str ", b"|\n", b">\n", b"'",
     b'"', b'"\\', b"#", b"---\n", b"...\n", b"%YAML 1.1\n", b"\t", b"\r", b"\0", b"\xff", b"\xef\xbb\xbf", b"\xe2\x80\xa8", b"~",
     b"null", b"true", b"none", b"2+", b"march:64", b"iter:64", b"function: ", b"sin(u)", b"u/w", b"noise(u,w)", b"u^w^u", b"clamp(u,1,0)",
-    b"map", b"plane", b"rectangle", b"box", b"sphere", b"disc", b"cylinder", b"cone", b"torus", b"open", b"from_radius", b"mirror", b"corners", b"down", b"../", b"/",
+    b"map", b"plane", b"rectangle", b"box", b"sphere", b"disc", b"cylinder", b"cone", b"torus", b"transform", b"copy", b"rotate", b"open", b"from_radius", b"mirror", b"corners", b"down", b"../", b"/",
 ]  # fmt: skip
 
 

@@ -89,6 +89,7 @@ typedef struct object {
     char *name;
     surface *shape;
     surface *own;         /* the shape before its transform: the same where it has none */
+    surface *centred;     /* what a moved shape is the image of: the same about the origin */
     const char *copy_of;  /* the object whose `own` it is; NULL: its own */
     bool moved;           /* it has a transform, or what it copies has: `placed` */
     bool shares_bump;     /* bump, the texts of bump_said and map are another's */

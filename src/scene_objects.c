@@ -232,6 +232,7 @@ static void take(object *o, const object *from)
     o->name = name;
     o->copy_of = from->copy_of ? from->copy_of : from->name;
     o->shape = from->own;
+    o->centred = NULL;
     o->shares_bump = true;
 }
 
@@ -244,13 +245,11 @@ static void place(reader *r, node *v, object *o)
         good = reader_transform(r, transform, &o->placed);
         o->moved = true;
     }
-    if (!good || !o->moved || !o->own)
+    if (!good || !o->moved || !o->own || !reader_place(r, at, o))
         return;
-    surface *f = reader_placed(r, at, o->own, &o->placed);
-    o->shape = f ? f : o->own;
-    if (f && o->bump && !f->is->foot && (r->s->displaced || r->s->shadow.kind == METHOD_EXACT))
+    if (o->bump && !o->shape->is->foot && (r->s->displaced || r->s->shadow.kind == METHOD_EXACT))
         yaml_error(r->y, at, "a %s with a bump is stretched more one way than another, expected the same scale all ways for %s",
-                   f->is->kind, r->s->displaced ? "surface displaced" : "shadow exact");
+                   o->shape->is->kind, r->s->displaced ? "surface displaced" : "shadow exact");
 }
 
 static void read_object(reader *r, const queue *q, int i)

@@ -223,6 +223,7 @@ void scene_free(scene *s)
         free(o->name);
         if (o->shape != o->own)
             surface_free(o->shape);
+        surface_free(o->centred);
         if (!o->copy_of)
             surface_free(o->own);
         pigment_free(o->color);

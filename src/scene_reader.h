@@ -54,8 +54,8 @@ bool reader_no_shape(reader *r, node *at); /* it has none; otherwise an error is
 /* What `transform` says, after what *m is already. False: an error is told. (scene_transform.c) */
 bool reader_transform(reader *r, node *at, affine *m);
 
-/* The image of a surface. NULL: an error is told, at the node. */
-surface *reader_placed(reader *r, node *at, const surface *f, const affine *m);
+/* Put an object's shape where `placed` says. False: an error is told, at the node. */
+bool reader_place(reader *r, node *at, object *o);
 
 /* The objects with their surfaces and bumps; after the materials, whose names they give. (scene_objects.c) */
 void reader_objects(reader *r);

@@ -140,24 +140,52 @@ static bool is_sized(const surface *f, double *wrong)
     return true;
 }
 
-surface *reader_placed(reader *r, node *at, const surface *f, const affine *m)
+/* The shape about the origin, and where its middle is said to be. So its own space is never far from where it is, which float would
+ * not bear, however far the transform brings it. NULL: out of memory. */
+static surface *centred(const shape_spec *f, vec3 *middle)
 {
-    const affine back = affine_back(m);
+    const bool two = f->kind == SHAPE_BOX || f->kind == SHAPE_CYLINDER || f->kind == SHAPE_CONE;
+    *middle = two ? vec3_scale(vec3_add(f->a, f->u), 0.5) : f->a;
+    const vec3 half = vec3_scale(vec3_sub(f->u, f->a), 0.5), other = vec3_scale(half, -1), here = {0, 0, 0};
+    switch (f->kind) {
+    case SHAPE_PLANE:
+    case SHAPE_RECTANGLE:
+        return plane_new(here, f->u, f->w, f->kind == SHAPE_RECTANGLE);
+    case SHAPE_DISC:
+        return disc_new(here, f->u, f->radius[0]);
+    case SHAPE_BOX:
+        return box_new(other, half);
+    case SHAPE_SPHERE:
+        return sphere_new(here, f->radius[0]);
+    case SHAPE_CYLINDER:
+        return cone_new(other, f->radius[0], half, f->radius[0], f->open);
+    case SHAPE_CONE:
+        return cone_new(other, f->radius[0], half, f->radius[1], f->open);
+    case SHAPE_TORUS:
+        return torus_new(here, f->u, f->radius[0], f->radius[1]);
+    }
+    return NULL;
+}
+
+bool reader_place(reader *r, node *at, object *o)
+{
+    const affine *m = &o->placed, back = affine_back(m);
     const double there = vec3_dot(m->x, m->x) + vec3_dot(m->y, m->y) + vec3_dot(m->z, m->z);
     const double here = vec3_dot(back.x, back.x) + vec3_dot(back.y, back.y) + vec3_dot(back.z, back.z);
-    const double far = fmax(fabs(m->o.x), fmax(fabs(m->o.y), fabs(m->o.z)));
+    affine whole = affine_identity();
     double wrong = 0;
-    surface *p = NULL;
+    o->centred = centred(&o->shape_said, &whole.o);
+    const vec3 to = affine_point(m, whole.o);
+    const double far = fmax(fabs(to.x), fmax(fabs(to.y), fabs(to.z)));
     if (!(far <= BIG))
-        yaml_error(r->y, at, "the origin goes %.4g scene units away, expected 1000000 at most", far);
-    else if (!(there * here <= STRETCH * STRETCH))
-        yaml_error(r->y, at, "one way is stretched more than %g times as much as another, expected less", STRETCH);
-    else if (!(p = surface_transformed(f, m)))
-        errors_add(r->e, "out of memory");
-    else if (!is_sized(p, &wrong))
-        yaml_error(r->y, at, "an edge or a radius of %.4g scene units comes from this, expected 1e-6 to 1e6", wrong);
-    else
-        return p;
-    surface_free(p);
-    return NULL;
+        return yaml_error(r->y, at, "it goes %.4g scene units away, expected 1000000 at most", far);
+    if (!(there * here <= STRETCH * STRETCH))
+        return yaml_error(r->y, at, "one way is stretched more than %g times as much as another, expected less", STRETCH);
+    whole = affine_then(&whole, m);
+    surface *f = o->centred ? surface_transformed(o->centred, &whole) : NULL;
+    if (!f)
+        return errors_add(r->e, "out of memory");
+    o->shape = f;
+    return is_sized(f, &wrong) ||
+           yaml_error(r->y, at, "an edge or a radius of %.4g scene units comes from this, expected 1e-6 to 1e6", wrong);
 }
