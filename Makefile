@@ -136,7 +136,7 @@ unit-tests: $(UNITS:%=$(BUILD)/%)
 
 program-tests: $(BUILD)/kage
 	@$(MAKE) --no-print-directory REAL=double build/double/kage
-	scripts/venv python -m pytest -q tests
+	scripts/venv python -m pytest -q -n auto --dist loadfile tests # a file's tests share what they make
 
 # What POV-Ray, valgrind or a Python package would tell is left out where they are missing and can't be installed.
 bench: all

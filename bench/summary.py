@@ -94,7 +94,8 @@ def incomplete(bench: Bench, failed: dict[str, str]) -> list[str]:
         lines.append("valgrind is missing: instructions are not counted (Debian: valgrind)")
     reasons: dict[str, list[str]] = {}
     for name, why in failed.items():
-        reasons.setdefault(why, []).append(name)
+        if not any(PACKAGES[package].partition(".")[0] in why for package in packages):  # that is told already
+            reasons.setdefault(why, []).append(name)
     return lines + [f"{names[0]}{f' and {len(names) - 1} more' if len(names) > 1 else ''}: {why}"
                     for why, names in reasons.items()]
 
