@@ -411,7 +411,7 @@ DISPLACED = {
     "torus, map": (ROUND_ONES["torus"], MAP.replace("size: [2, 2]", "repeat: [8, 4]"), "mesh2"),
     "moved sphere": (moved("sphere", "moved"), ROUND, "isosurface"),
     "moved box": (moved("box", "moved"), WAVES, "isosurface"),
-    "moved cylinder": (moved("cylinder", "moved"), WAVES.replace("8*u", "8*u+3"), "isosurface"),
+    "moved cylinder": (moved("cylinder", "moved"), "{function: '0.04*sin(7*w + u)'}", "isosurface"),
     "moved cone": (moved("cone", "moved"), WAVES, "mesh2"),
     "moved torus": (moved("torus", "moved"), WAVES, "isosurface"),
     "moved rectangle": (moved("rectangle", "moved"), WAVES, "isosurface"),
