@@ -20,7 +20,7 @@ from bench.store import Inputs, Value
 
 POVRAY = "POV-Ray"
 POV_SCENES = {"bump_map": "cube_bump_map", "height_field": "cube_height_field"}  # of the scene cube, in bench/
-DISPLACED = {"waves": "isosurface", "torus": "isosurface", "cube": "mesh2", "sphere": "mesh2"}  # what `kage pov` makes of them
+DISPLACED = {"waves": "isosurface", "torus": "isosurface", "cube": "mesh2"}  # what `kage pov` makes of them; other meshes are larger
 
 
 # kage ---------------------------------------------------------------------------------------------
