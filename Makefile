@@ -47,6 +47,7 @@ UNITS     = $(patsubst tests/%.c,%,$(wildcard tests/test_*.c))
 
 FIGURES   = figure4 figure5 figure6 figure7 figure8-none figure8 terrain-none terrain
 PICTURES  = $(FIGURES:%=out/%.png)
+GALLERY   = $(patsubst scenes/gallery/%.yaml,%,$(wildcard scenes/gallery/*.yaml))
 
 .PHONY: all render bench readme reference accept test unit-tests program-tests install clean help bootstrap FORCE
 all: bootstrap
@@ -54,7 +55,7 @@ all: bootstrap
 
 help:
 	@echo 'make            build the tracer, $(BUILD)/kage'
-	@echo 'make render     the pictures of the paper, into out/'
+	@echo 'make render     the pictures of the paper and the gallery, into out/'
 	@echo 'make bench      what each method costs and what it buys, BENCH=quick|normal|full, into out/bench/index.html'
 	@echo 'make readme     the same, then what the README tells of it'
 	@echo 'make test       all tests'
@@ -72,9 +73,9 @@ bootstrap:
 
 render: all
 	@CC='$(CC)' scripts/bootstrap python
-	@$(MAKE) --no-print-directory $(PICTURES) out/figures.png
-	@echo 'The pictures are in out/, all side by side in out/figures.png:'
-	@ls $(PICTURES) $(PICTURES:.png=.exr) out/figures.png
+	@$(MAKE) --no-print-directory $(PICTURES) out/figures.png out/gallery/index.html
+	@echo 'The pictures are in out/, those of the paper side by side in out/figures.png, the gallery in out/gallery/index.html:'
+	@ls $(PICTURES) $(PICTURES:.png=.exr) out/figures.png $(GALLERY:%=out/gallery/%.png)
 
 # A picture is a scene and a method; its EXR is written along with it.
 out/figure4.png: SCENE = cube --shadow none
@@ -98,6 +99,18 @@ out/figures.png: $(PICTURES) scripts/contact_sheet.py
 	    out/figure8-none.png="On a sphere: bump mapping only" out/figure8.png="Figure 8: on a sphere, order 0" \
 	    out/terrain-none.png="Observed data: bump mapping only" \
 	    out/terrain.png="Observed data: order 0"
+
+# Each scene of the gallery by none, and by the method that it says itself.
+out/gallery/%-none.png: scenes/gallery/%.yaml $(BUILD)/kage
+	@mkdir -p out/gallery
+	$(BUILD)/kage render $< --shadow none --aa 3 -o $@
+
+out/gallery/%.png: scenes/gallery/%.yaml $(BUILD)/kage
+	@mkdir -p out/gallery
+	$(BUILD)/kage render $< --aa 3 -o $@
+
+out/gallery/index.html: $(GALLERY:%=out/gallery/%-none.png) $(GALLERY:%=out/gallery/%.png) scripts/gallery.py
+	scripts/venv python scripts/gallery.py -o $@ $(GALLERY:%=scenes/gallery/%.yaml)
 
 # ---- the program ----
 

@@ -136,16 +136,26 @@ def peer(name: str, scene: str, command: str, note: str, times: Sequence[float],
             "build_s": median(build) if build else None, "memory": memory and memory["memory"], "command": command, "note": note}
 
 
+def ratios(ns: Sequence[float], bases: dict[str, Sequence[float]]) -> Data:
+    """How many times each base is in it: round by round, as what slows the machine hits both."""
+    return {base: stats.interval([a / b for a, b in zip(ns, others, strict=True)]) for base, others in bases.items() if ns and others}
+
+
 def povray_peers(bench: Bench, results: Results) -> list[Data]:
-    size = bench.level.povray_size
+    size, rounds = bench.level.povray_size, bench.level.rounds
+    scenes = cost.povray_scenes(bench)
     found = []
-    for name, scene, path, made in cost.povray_scenes(bench):
-        times = results.rounds("time", scene, name, count=bench.level.rounds)
+    for name, scene, path, made in scenes:
+        times = results.rounds("time", scene, name, count=rounds)
+        bases = {m: [t["ns"]["render"] for t in results.rounds("time", scene, m, count=rounds)] for m in ("none", "0")}
+        bases |= {other: [t["ns"] for t in results.rounds("time", scene, other, count=rounds)]
+                  for other, at, *_ in scenes if at == scene and other != name}
         note = f"{size[0]} x {size[1]} pixels; build is its parsing"
         if made and "mesh2" in name and bench.level.mesh_size:
             note += f"; a mesh as fine as {bench.level.mesh_size[0]} x {bench.level.mesh_size[1]} pixels need"
         found.append(peer(name, scene, programs.shown(programs.povray_command(path, size)), note, [t["ns"] for t in times],
-                          [t["build_s"] for t in times], results.get("memory", scene, name)))
+                          [t["build_s"] for t in times], results.get("memory", scene, name))
+                     | {"times": ratios([t["ns"] for t in times], bases)})
     return [p for p in found if p["ns"]]
 
 

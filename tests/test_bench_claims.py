@@ -229,6 +229,9 @@ CASES: list[tuple[str, list[Change], str, str]] = [
     ("speed", [ns(0, around(1450, 500))], "0", UNDECIDED),
     ("speed", [ns(0, around(1000, 10))], "none", FAILS),
     ("speed", [((*C, "0", "ns"), around(20, n=1))], "0", UNDECIDED),
+    # the rounds' own ratios say more than the two intervals
+    ("speed", [((*C, "none", "ns"), around(36.25)), ((*PEERS, 0, "times"), {"none": around(41, 0.5)})], "none", HOLDS),
+    ("speed", [((*PEERS, 0, "times"), {"none": around(39, 0.5)})], "none", FAILS),
     ("speed", [((*C, "0", "ns"), None)], "0", UNMEASURED),
     ("speed", [ns(0, None)], "none", UNMEASURED),
     ("order-0", [added("0", around(9))], "cube", FAILS),
