@@ -154,8 +154,14 @@ def generated(text: str, name: str, content: str) -> str:
     return pattern.sub(lambda found: f"{found[1]}{content}\n{found[2]}", text)
 
 
+def light_colours() -> dict[str, str]:
+    """Those of the report's page in the light; the dark ones come after them."""
+    style = (Path(__file__).parent / "templates" / "style.css").read_text(encoding="utf-8")
+    return dict(reversed(re.findall(r"--(\w+): (#\w+);", style)))
+
+
 def plot(data: Data) -> str:
-    """On white, as a README's background is not known."""
+    """On white, as a README's background is not known, and with its colours in it."""
     from bench import plots
 
     drawn = plots.cost_error(data, PLOTTED)
@@ -164,7 +170,9 @@ def plot(data: Data) -> str:
     head, rest = drawn.split(">", 1)
     if "xmlns=" not in head:
         head += ' xmlns="http://www.w3.org/2000/svg"'
-    return (head + '><rect width="100%" height="100%" fill="white"/>' + rest).replace("currentColor", "#202020") + "\n"
+    text = (head + '><rect width="100%" height="100%" fill="white"/>' + rest).replace("currentColor", "#202020") + "\n"
+    colours = light_colours()
+    return re.sub(r"var\(--(\w+)\)", lambda found: colours[found[1]], text)
 
 
 def files(data: Data) -> dict[str, str]:
