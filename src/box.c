@@ -21,6 +21,13 @@ static inline void box_crossing(const box *f, real rx, real ry, real rz, real sx
     *out = real_min(real_min(real_max(ax, bx), real_max(ay, by)), real_max(az, bz));
 }
 
+/* How far a ray from within goes until it passes the slab's other side; along the slab, beyond all measure. */
+static inline real box_exit(real r, real s, real lo, real hi)
+{
+    real t = ((s > 0 ? hi : lo) - r) / s;
+    return s == 0 ? REAL_FAR : t;
+}
+
 STAGE static void box_hit(const surface *base, int n, const rays *x, int32_t id, hits *h)
 {
     const box f = *(const box *)base;
@@ -29,6 +36,25 @@ STAGE static void box_hit(const surface *base, int n, const rays *x, int32_t id,
         box_crossing(&f, x->r.x[i], x->r.y[i], x->r.z[i], x->s.x[i], x->s.y[i], x->s.z[i], &in, &out);
         real t = in > 0 ? in : out;
         int take = (in <= out) & (t > 0) & (t < h->t[i]);
+        h->t[i] = take ? t : h->t[i];
+        h->id[i] = take ? id : h->id[i];
+    }
+}
+
+/* From a point of a face into the box, to where it is left through the first of the other five; out of it, nowhere. */
+STAGE static void box_hit_own(const surface *base, int n, const rays *x, const starts *from, int32_t id, hits *h)
+{
+    const box f = *(const box *)base;
+    for (int i = 0; i < n; i++) {
+        real in, out, sx = x->s.x[i], sy = x->s.y[i], sz = x->s.z[i];
+        box_crossing(&f, x->r.x[i], x->r.y[i], x->r.z[i], sx, sy, sz, &in, &out);
+        real near = in > 0 ? in : out;
+        real ex = box_exit(from->at.x[i], sx, f.lo[0], f.hi[0]), ey = box_exit(from->at.y[i], sy, f.lo[1], f.hi[1]);
+        real ez = box_exit(from->at.z[i], sz, f.lo[2], f.hi[2]), far = real_min(real_min(ex, ey), ez);
+        int part = from->part[i], k = part >> 1, high = part & 1, own = from->id[i] == id;
+        real along = k == 0 ? sx : k == 1 ? sy : sz, inward = high ? -along : along;
+        real t = own ? far : near;
+        int take = (own ? inward > 0 : in <= out) & (t > 0) & (t < h->t[i]);
         h->t[i] = take ? t : h->t[i];
         h->id[i] = take ? id : h->id[i];
     }
@@ -95,9 +121,6 @@ STAGE static void box_occlude(const surface *base, int n, const rays *x, real *l
         lit[i] = met ? 0 : lit[i];
     }
 }
-
-/* How far a segment from within goes until it passes the slab's other side. */
-static inline real box_exit(real r, real s, real lo, real hi) { return ((s > 0 ? hi : lo) - r) / s; }
 
 /* From a point of a face the box is entered here or not at all; entered, it is left through the first of the other
  * five faces. */
@@ -194,8 +217,8 @@ static void box_extent(const surface *base, int part, double u[2], double w[2])
 }
 
 static const surface_methods box_methods = {
-    "box", box_hit,   box_locate, box_eval,  box_occlude, box_occlude_own, box_extent,
-    6,     box_shell, box_foot,   box_steep, false,
+    "box", box_hit,   box_hit_own, box_locate, box_eval,  box_occlude, box_occlude_own, box_extent,
+    6,     box_shell, box_foot,   box_steep,  false,
 };
 
 surface *box_new(vec3 from, vec3 to)

@@ -102,7 +102,10 @@ static void print_scene(const scene *s, const seen *all)
     printf("%s: %d x %d pixels, %d x %d samples each", s->path, s->width, s->height, s->aa, s->aa);
     if (s->aa > 1 && s->aa_threshold >= 0)
         printf(" that differs from a neighbour by more than %g", s->aa_threshold);
-    printf(", shadow %s%s\n", name, s->guard ? "" : ", no guard");
+    printf(", shadow %s%s", name, s->guard ? "" : ", no guard");
+    if (s->sends)
+        printf(", depth %d", s->depth);
+    printf("\n");
     for (int i = 0; i < s->lights; i++) {
         static const char *const kinds[] = {"", ", spot", ", parallel"};
         const light *l = &s->light[i];
@@ -113,10 +116,11 @@ static void print_scene(const scene *s, const seen *all)
     }
     for (int i = 0; i < s->objects; i++) {
         const object *o = &s->object[i];
-        printf("object %s: %s%s%s%s, material %s%s%s%s%s\n", o->name, o->shape->is->kind, o->copy_of ? ", copy of " : "",
-               o->copy_of ? o->copy_of : "", o->moved ? ", transformed" : "", s->material[o->material].name,
-               o->color ? ", color by " : "", o->color ? o->color->is->kind : "", o->bump ? ", bump by " : "",
-               o->bump ? o->bump->is->kind : "");
+        const material *m = &s->material[o->material];
+        printf("object %s: %s%s%s%s, material %s%s%s%s%s%s%s\n", o->name, o->shape->is->kind, o->copy_of ? ", copy of " : "",
+               o->copy_of ? o->copy_of : "", o->moved ? ", transformed" : "", m->name, o->color ? ", color by " : "",
+               o->color ? o->color->is->kind : "", o->bump ? ", bump by " : "", o->bump ? o->bump->is->kind : "",
+               material_mirrors(m) ? ", mirrors" : "", material_clear(m) ? ", transparent" : "");
         if (o->bump)
             warnings += print_bump(o, &all[i]);
     }
@@ -125,7 +129,7 @@ static void print_scene(const scene *s, const seen *all)
 
 static int check(const scene *s)
 {
-    workspace *v = workspace_new(s->lights);
+    workspace *v = workspace_new(s);
     seen *all = calloc((size_t)(s->objects ? s->objects : 1), sizeof *all);
     bool good = v && all;
     for (int i = 0; good && i < s->objects; i++)

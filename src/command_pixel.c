@@ -101,7 +101,7 @@ static bool pixel(const char *text, const scene *s, int *x, int *y)
 
 static int print_pixel(const scene *s, int x, int y)
 {
-    workspace *v = workspace_new(s->lights);
+    workspace *v = workspace_new(s);
     if (!v) {
         usage_error("out of memory");
         return EXIT_OUTPUT;
@@ -123,6 +123,8 @@ static int print_pixel(const scene *s, int x, int y)
         scalar("w", v->g.w[0]);
         shape(&v->g, o);
         table(s, id, v);
+        if (material_sends(&s->material[o->material]))
+            printf("without the light that it mirrors or lets through; such rays start at r + s t0, too\n");
     } else
         printf("meets nothing\n");
     workspace_free(v);

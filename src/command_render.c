@@ -110,6 +110,8 @@ static void print_stats(const stats *t, const scene *s, double seconds, double o
     printf("output    %9.2f ms\n", output * 1e3);
     printf("camera rays %ld, shadow rays %ld, height look-ups %ld\n", t->rays, t->shadow_rays,
            t->heights + t->displaced.heights);
+    if (t->secondary_rays)
+        printf("reflected and refracted rays %ld\n", t->secondary_rays);
     char name[METHOD_NAME_SIZE];
     method_name(s->shadow, name);
     printf("bumped samples %ld by method %s", t->bumped, name);

@@ -26,15 +26,17 @@ typedef struct local {
     real ox, oy, oz, sx, sy, sz;
 } local;
 
-KM_INLINE local local_of(const cone *f, const rays *x, int i)
+KM_INLINE local local_from(const cone *f, const vec3s *r, const vec3s *s, int i)
 {
-    real rx = x->r.x[i] - f->F[0], ry = x->r.y[i] - f->F[1], rz = x->r.z[i] - f->F[2];
-    real sx = x->s.x[i], sy = x->s.y[i], sz = x->s.z[i];
+    real rx = r->x[i] - f->F[0], ry = r->y[i] - f->F[1], rz = r->z[i] - f->F[2];
+    real sx = s->x[i], sy = s->y[i], sz = s->z[i];
     local l = {rx * f->X[0] + ry * f->X[1] + rz * f->X[2], rx * f->Y[0] + ry * f->Y[1] + rz * f->Y[2],
                rx * f->Z[0] + ry * f->Z[1] + rz * f->Z[2], sx * f->X[0] + sy * f->X[1] + sz * f->X[2],
                sx * f->Y[0] + sy * f->Y[1] + sz * f->Y[2], sx * f->Z[0] + sy * f->Z[1] + sz * f->Z[2]};
     return l;
 }
+
+KM_INLINE local local_of(const cone *f, const rays *x, int i) { return local_from(f, &x->r, &x->s, i); }
 
 /* Two stretches of a ray: in the solid within the endless side, and between the ends. Each is empty where its ends are the
  * wrong way round. */
@@ -236,35 +238,74 @@ static void cone_eval(const surface *base, int n, const int32_t *part, const rea
 }
 
 /* From a place of the side one root is 0, the other -2 b/a; an open side is met there if that is between its ends. */
+KM_INLINE real cone_open_far(const cone *f, local l, int *met)
+{
+    real grow = f->rise * l.sy, r = f->from + f->rise * l.oy;
+    real a = l.sx * l.sx + l.sz * l.sz - grow * grow, b = l.ox * l.sx + l.oz * l.sz - grow * r;
+    real t = -2 * b / a, y = l.oy + t * l.sy;
+    *met = (t > 0) & (y >= 0) & (y <= f->length);
+    return t;
+}
+
+/* From a place of a capped one the solid is entered here or not at all; entered, it is left through the first of its other
+ * parts, and of the side through that other root. */
+KM_INLINE real cone_capped_far(const cone *f, local l, int part, int *met)
+{
+    real grow = f->rise * l.sy, r = f->from + f->rise * l.oy;
+    real a = l.sx * l.sx + l.sz * l.sz - grow * grow, b = l.ox * l.sx + l.oz * l.sz - grow * r;
+    real across = a > 0 ? -2 * b / a : REAL_FAR; /* a <= 0: it widens as the ray goes on */
+    spans k = spans_of(f, l);
+    real end = (l.sy > 0 ? f->length - l.oy : l.oy) / real_abs(l.sy); /* the cap ahead */
+    real away = part == 0 ? b : part == 1 ? l.sy : -l.sy;
+    real out = real_min(end, part == 0 ? across : k.out);
+    *met = (away < 0) & (out > 0);
+    return out;
+}
+
+KM_INLINE void hit_own(const surface *base, int capped, int n, const rays *x, const starts *from, int32_t id, hits *h)
+{
+    const cone f = *(const cone *)base;
+    for (int i = 0; i < n; i++) {
+        places p = cone_places(&f, capped, local_of(&f, x, i));
+        local l = local_from(&f, &from->at, &x->s, i);
+        int first = p.first & (p.t0 > 0), second = p.second & (p.t1 > 0), again, own = from->id[i] == id;
+        real far = capped ? cone_capped_far(&f, l, from->part[i], &again) : cone_open_far(&f, l, &again);
+        real near = first ? p.t0 : p.t1, t = own ? far : near;
+        int met = (own & again) | ((1 - own) & (first | second)), take = met & (t < h->t[i]);
+        h->t[i] = take ? t : h->t[i];
+        h->id[i] = take ? id : h->id[i];
+    }
+}
+
+STAGE static void cone_open_hit_own(const surface *base, int n, const rays *x, const starts *from, int32_t id, hits *h)
+{
+    hit_own(base, 0, n, x, from, id, h);
+}
+
+STAGE static void cone_capped_hit_own(const surface *base, int n, const rays *x, const starts *from, int32_t id, hits *h)
+{
+    hit_own(base, 1, n, x, from, id, h);
+}
+
 STAGE static void cone_open_occlude_own(const surface *base, int n, const rays *x, const int32_t *part, real *lit)
 {
     const cone f = *(const cone *)base;
     (void)part;
     for (int i = 0; i < n; i++) {
-        local l = local_of(&f, x, i);
-        real grow = f.rise * l.sy, r = f.from + f.rise * l.oy;
-        real a = l.sx * l.sx + l.sz * l.sz - grow * grow, b = l.ox * l.sx + l.oz * l.sz - grow * r;
-        real t = -2 * b / a, y = l.oy + t * l.sy;
-        lit[i] = ((t > 0) & (t < 1) & (y >= 0) & (y <= f.length)) ? 0 : lit[i];
+        int met;
+        real t = cone_open_far(&f, local_of(&f, x, i), &met);
+        lit[i] = (met & (t < 1)) ? 0 : lit[i];
     }
 }
 
-/* From a place of a capped one the solid is entered here or not at all; entered, it is left through the first of its other
- * parts, and of the side through that other root. */
 STAGE static void cone_capped_occlude_own(const surface *base, int n, const rays *x, const int32_t *restrict part,
                                           real *restrict lit)
 {
     const cone f = *(const cone *)base;
     for (int i = 0; i < n; i++) {
-        local l = local_of(&f, x, i);
-        real grow = f.rise * l.sy, r = f.from + f.rise * l.oy;
-        real a = l.sx * l.sx + l.sz * l.sz - grow * grow, b = l.ox * l.sx + l.oz * l.sz - grow * r;
-        real across = a > 0 ? -2 * b / a : REAL_FAR; /* a <= 0: it widens as the ray goes on */
-        spans k = spans_of(&f, l);
-        real end = (l.sy > 0 ? f.length - l.oy : l.oy) / real_abs(l.sy); /* the cap ahead */
-        real away = part[i] == 0 ? b : part[i] == 1 ? l.sy : -l.sy;
-        real out = real_min(end, part[i] == 0 ? across : k.out);
-        lit[i] = ((away < 0) & (out > 0) & (out < 1)) ? 0 : lit[i];
+        int met;
+        real t = cone_capped_far(&f, local_of(&f, x, i), part[i], &met);
+        lit[i] = (met & (t < 1)) ? 0 : lit[i];
     }
 }
 
@@ -372,14 +413,14 @@ static void cone_extent(const surface *base, int part, double u[2], double w[2])
 }
 
 static const surface_methods cone_methods[2][2] = {
-    {{"cylinder", cone_open_hit, cone_locate, cone_eval,  cone_open_occlude, cone_open_occlude_own, cone_extent,
-      1,          cone_shell,    cone_foot,   cone_steep, false},
-     {"cylinder", cone_capped_hit, cone_locate, cone_eval,  cone_capped_occlude, cone_capped_occlude_own, cone_extent,
-      3,          cone_shell,      cone_foot,   cone_steep, false}},
-    {{"cone", cone_open_hit, cone_locate, cone_eval,  cone_open_occlude, cone_open_occlude_own, cone_extent,
-      1,      cone_shell,    cone_foot,   cone_steep, true},
-     {"cone", cone_capped_hit, cone_locate, cone_eval,  cone_capped_occlude, cone_capped_occlude_own, cone_extent,
-      3,      cone_shell,      cone_foot,   cone_steep, true}},
+    {{"cylinder", cone_open_hit, cone_open_hit_own, cone_locate, cone_eval, cone_open_occlude, cone_open_occlude_own, cone_extent,
+      1,          cone_shell,    cone_foot,         cone_steep,  false},
+     {"cylinder", cone_capped_hit, cone_capped_hit_own, cone_locate, cone_eval, cone_capped_occlude, cone_capped_occlude_own, cone_extent,
+      3,          cone_shell,      cone_foot,           cone_steep,  false}},
+    {{"cone", cone_open_hit, cone_open_hit_own, cone_locate, cone_eval, cone_open_occlude, cone_open_occlude_own, cone_extent,
+      1,      cone_shell,    cone_foot,         cone_steep,  true},
+     {"cone", cone_capped_hit, cone_capped_hit_own, cone_locate, cone_eval, cone_capped_occlude, cone_capped_occlude_own, cone_extent,
+      3,      cone_shell,      cone_foot,           cone_steep,  true}},
 };
 
 static void store(real to[3], vec3 v)

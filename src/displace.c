@@ -231,20 +231,51 @@ long displace_search(const surface *f, const perturb *P, int part, int n, const 
     return s.looks;
 }
 
-void displace_hit(const surface *f, const perturb *P, int n, const rays *x, int32_t id, hits *h,
-                  displace_counts *c)
+static void keep_nearer(int n, int part, const real *t, const int32_t *found, int32_t id, hits *h, displace_counts *c)
+{
+    for (int i = 0; i < n; i++)
+        if (found[i] != DISPLACE_MISSED && t[i] > 0 && t[i] < h->t[i]) {
+            h->t[i] = t[i];
+            h->id[i] = id;
+            h->part[i] = part;
+            c->uncertain += found[i] == DISPLACE_UNCERTAIN;
+        }
+}
+
+/* The stretch in the shell that a ray from the surface is on ends at the shell's inner side, where it has one (a sphere); beyond that, on
+ * the far side, the ray comes to the surface again. */
+static void search_far_side(const surface *f, const perturb *P, int part, int n, const rays *x, const int32_t *on, int32_t id, hits *h,
+                            displace_counts *c)
+{
+    real t0[LANES], t1[LANES], t[LANES], end[LANES];
+    int32_t found[LANES];
+    rays y;
+    f->is->shell(f, part, n, x, h->t, P->Pmin, P->Pmax, t0, t1);
+    for (int i = 0; i < n; i++) {
+        bool open = on[i] == part && h->id[i] != id && t0[i] <= t1[i] && t1[i] < h->t[i];
+        t0[i] = t1[i] + R(1e-3) * (t1[i] - t0[i]);
+        end[i] = open ? h->t[i] - t0[i] : R(-1);
+        t0[i] = open ? t0[i] : 0;
+        lane_set(&y.r, i, lane_at(x, i, t0[i]));
+        lane_set(&y.s, i, lane_get(&x->s, i));
+    }
+    c->heights += displace_search(f, P, part, n, &y, end, NULL, t, found);
+    for (int i = 0; i < n; i++)
+        t[i] += t0[i];
+    keep_nearer(n, part, t, found, id, h, c);
+}
+
+void displace_hit(const surface *f, const perturb *P, int n, const rays *x, const starts *from, int32_t id, hits *h, displace_counts *c)
 {
     real t[LANES];
-    int32_t found[LANES];
+    int32_t found[LANES], on[LANES];
+    for (int i = 0; from && i < n; i++)
+        on[i] = from->id[i] == id ? from->part[i] : -1;
     for (int part = 0; part < f->is->parts; part++) {
-        c->heights += displace_search(f, P, part, n, x, h->t, NULL, t, found);
-        for (int i = 0; i < n; i++)
-            if (found[i] != DISPLACE_MISSED && t[i] > 0 && t[i] < h->t[i]) {
-                h->t[i] = t[i];
-                h->id[i] = id;
-                h->part[i] = part;
-                c->uncertain += found[i] == DISPLACE_UNCERTAIN;
-            }
+        c->heights += displace_search(f, P, part, n, x, h->t, from ? on : NULL, t, found);
+        keep_nearer(n, part, t, found, id, h, c);
+        if (from)
+            search_far_side(f, P, part, n, x, on, id, h, c);
     }
 }
 
@@ -312,7 +343,7 @@ void displace_shift(const surface *f, const perturb *P, group *g, displace_count
         h.t[i] = REAL_FAR;
         h.id[i] = -1;
     }
-    displace_hit(f, P, g->n, &g->x, 0, &h, c);
+    displace_hit(f, P, g->n, &g->x, NULL, 0, &h, c);
     for (int i = 0; i < g->n; i++) {
         bs_vec3 n = lane_get(&g->n_smooth, i), Qu = lane_get(&g->q.Qu, i), Qw = lane_get(&g->q.Qw, i);
         bs_real sn = bs_dot(lane_get(&g->x.s, i), n) / real_sqrt(bs_dot(n, n));

@@ -31,8 +31,9 @@ typedef struct displace_counts {
 long displace_search(const surface *f, const perturb *P, int part, int n, const rays *x, const real *end, const int32_t *on,
                      real *t, int32_t *found);
 
-/* The nearest hit over all parts, like surface_methods.hit; h->part too. Adds to *c. */
-void displace_hit(const surface *f, const perturb *P, int n, const rays *x, int32_t id, hits *h,
+/* The nearest hit over all parts, like surface_methods.hit; h->part too. Adds to *c. from: of rays that have left a surface, on their
+ * rough place, as for hit_own; NULL: they have not. */
+void displace_hit(const surface *f, const perturb *P, int n, const rays *x, const starts *from, int32_t id, hits *h,
                   displace_counts *c);
 
 /* lit[i] = 0 where the rough surface lies across r + s t, 0 < t < 1. on: as above; such a ray is to leave to the side that is

@@ -32,9 +32,13 @@ typedef struct group {
     /* the light at hand: the segments to it, and 1 where it is seen, 0 where not */
     rays to_light;
     real lit[LANES];
+    vec3s tint; /* what is left of it behind transparent casters, where a scene has some */
 
     vec3s color; /* of the material, where it is not constant */
     vec3s rgb;   /* linear, as the eye gets it */
 } group;
+
+/* The place in the wave of a group's lane. */
+static inline int group_place(const group *g, int i) { return g->whole ? i : g->lane[i]; }
 
 #endif

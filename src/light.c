@@ -71,6 +71,18 @@ STAGE static void gather(const group *restrict g, real share, real *restrict sum
 
 void light_gather(const group *g, real share, real *sum) { gather(g, share, sum); }
 
+STAGE static void gather_tint(const group *restrict g, real share, vec3s *restrict sum)
+{
+    for (int i = 0; i < g->n; i++) {
+        real x = share * g->lit[i];
+        sum->x[i] += x * g->tint.x[i];
+        sum->y[i] += x * g->tint.y[i];
+        sum->z[i] += x * g->tint.z[i];
+    }
+}
+
+void light_gather_tint(const group *g, real share, vec3s *sum) { gather_tint(g, share, sum); }
+
 int light_corners(const light *l) { return l->samples[0] * l->samples[1] > 1 ? 4 : 1; }
 
 vec3 light_corner(const light *l, int k, vec3 p)

@@ -28,6 +28,7 @@ light light_sample(const light *l, int k, real *share);
 
 /* sum += what of a sample is lit. */
 void light_gather(const group *g, real share, real *sum);
+void light_gather_tint(const group *g, real share, vec3s *sum); /* in its tint */
 
 /* The segments r + s t, 0 < t < 1, from the lanes' smooth hits (or from the shifted ones, r + s (t_hit + tau)) to the light. */
 void light_aim(const light *l, group *g, bool shifted);

@@ -48,6 +48,18 @@ static inline void hit(const surface *base, enum bounds end, int n, const rays *
     }
 }
 
+/* A ray from the plane does not come back to it. */
+static inline void hit_own(const surface *base, enum bounds end, int n, const rays *x, const starts *from, int32_t id, hits *h)
+{
+    const plane f = *(const plane *)base;
+    for (int i = 0; i < n; i++) {
+        real t = plane_t(&f, x->r.x[i], x->r.y[i], x->r.z[i], x->s.x[i], x->s.y[i], x->s.z[i]);
+        int in = end == NOWHERE ? 1 : plane_inside(&f, x, i, end, t), take = in & (from->id[i] != id) & (t > 0) & (t < h->t[i]);
+        h->t[i] = take ? t : h->t[i];
+        h->id[i] = take ? id : h->id[i];
+    }
+}
+
 STAGE static void plane_hit(const surface *base, int n, const rays *x, int32_t id, hits *h) { hit(base, NOWHERE, n, x, id, h); }
 
 STAGE static void rectangle_hit(const surface *base, int n, const rays *x, int32_t id, hits *h)
@@ -56,6 +68,21 @@ STAGE static void rectangle_hit(const surface *base, int n, const rays *x, int32
 }
 
 STAGE static void disc_hit(const surface *base, int n, const rays *x, int32_t id, hits *h) { hit(base, AT_RIM, n, x, id, h); }
+
+STAGE static void plane_hit_own(const surface *base, int n, const rays *x, const starts *from, int32_t id, hits *h)
+{
+    hit_own(base, NOWHERE, n, x, from, id, h);
+}
+
+STAGE static void rectangle_hit_own(const surface *base, int n, const rays *x, const starts *from, int32_t id, hits *h)
+{
+    hit_own(base, AT_SIDES, n, x, from, id, h);
+}
+
+STAGE static void disc_hit_own(const surface *base, int n, const rays *x, const starts *from, int32_t id, hits *h)
+{
+    hit_own(base, AT_RIM, n, x, from, id, h);
+}
 
 STAGE static void plane_locate(const surface *base, int n, const rays *x, const real *t, int32_t *part, real *u,
                                real *w)
@@ -217,18 +244,18 @@ static void disc_extent(const surface *base, int part, double u[2], double w[2])
 }
 
 static const surface_methods plane_methods = {
-    "plane", plane_hit,    plane_locate, plane_eval, plane_occlude, NULL, plane_extent,
-    1,       plane_shell, plane_foot,   plane_steep,  false,
+    "plane", plane_hit,   plane_hit_own, plane_locate, plane_eval, plane_occlude, NULL, plane_extent,
+    1,       plane_shell, plane_foot,    plane_steep,  false,
 };
 
 static const surface_methods rectangle_methods = {
-    "rectangle", rectangle_hit,   plane_locate, plane_eval, rectangle_occlude, NULL, rectangle_extent,
-    1,           rectangle_shell, plane_foot,   plane_steep, false,
+    "rectangle", rectangle_hit,   rectangle_hit_own, plane_locate, plane_eval, rectangle_occlude, NULL, rectangle_extent,
+    1,           rectangle_shell, plane_foot,        plane_steep,  false,
 };
 
 static const surface_methods disc_methods = {
-    "disc", disc_hit,   plane_locate, plane_eval,  disc_occlude, NULL, disc_extent,
-    1,      disc_shell, plane_foot,   plane_steep, false,
+    "disc", disc_hit,   disc_hit_own, plane_locate, plane_eval, disc_occlude, NULL, disc_extent,
+    1,      disc_shell, plane_foot,   plane_steep,  false,
 };
 
 static void store(real to[3], vec3 v)

@@ -50,12 +50,20 @@ static double of_zone(const expr *e, double scale, double r, double w0, double w
     return worst;
 }
 
+static bool is_clear(const scene *s, const object *o) { return material_clear(&s->material[o->material]); }
+
+/* Rays go through transparent round surfaces, and near their middle the gradient has no bound. So there the function is not let below
+ * the lowest value that it has where the surface may be. */
+static double depth(const object *o) { return (double)o->bump->Pmax - (double)o->bump->Pmin; }
+
 /* u turns about the poles ever faster, and the gradient is infinite there unless P does not depend on u. Zones that narrow
  * towards the poles bound it up to a cap of CAP radians, which is left out: a thousandth of the radius is less than a pixel. */
-static double of_sphere(const object *o)
+static double of_sphere(const object *o, bool clear)
 {
     const double CAP = 1e-3, GROWTH = 1.05, WIDEST = 0.05, half = 3.14159265358979323846 / 2;
-    double r = pov_sized(o).radius[0] + (double)o->bump->Pmin, scale = fabs(o->bump_said.scale), worst = 0;
+    const double deepest = clear ? depth(o) : 0, r = pov_sized(o).radius[0] + (double)o->bump->Pmin - deepest;
+    const double scale = fabs(o->bump_said.scale);
+    double worst = 0;
     expr_error wrong;
     expr *e = r > 0 ? expr_parse(o->bump_said.function, &wrong) : NULL;
     if (!e)
@@ -91,23 +99,23 @@ static double of_torus(const object *o)
            turning(o, (double)o->bump->Pw_max, minor + (double)o->bump->Pmin);
 }
 
-static double of_part(const object *o, int part)
+static double of_part(const scene *s, const object *o, int part)
 {
     const shape_spec *f = &o->shape_said;
     if (pov_is_flat(f, part))
         return of_flat(o, part);
     if (f->kind == SHAPE_SPHERE)
-        return of_sphere(o);
+        return of_sphere(o, is_clear(s, o));
     if (f->kind == SHAPE_TORUS)
         return of_torus(o);
     return f->radius[0] == f->radius[1] ? of_cylinder(o) : HUGE_VAL; /* a displaced cone ends on cones, which no container does */
 }
 
-double pov_isosurface_gradient(const object *o, int part)
+double pov_isosurface_gradient(const scene *s, const object *o, int part)
 {
     if (!o->bump_said.function)
         return HUGE_VAL;
-    double g = of_part(o, part);
+    double g = of_part(s, o, part);
     return g < STEEPEST ? g * (1 + 1e-6) : HUGE_VAL;
 }
 
@@ -142,7 +150,7 @@ static void put_flat(pov_text *t, const scene *s, const object *o, int part, con
     pov_print(t, ") }\n  contained_by { box { <%g, %g, %g>, <%g, %g, %g> } }\n", u[0] * lu, y[0], w[0] * lw, u[1] * lu, y[1],
               w[1] * lw);
     pov_print(t, "  open\n  accuracy %g\n  max_gradient %g // a bound: none is steeper\n", accuracy(s),
-              pov_isosurface_gradient(o, part));
+              pov_isosurface_gradient(s, o, part));
     pov_matrix(t, p.x, p.y, p.z, p.O);
     pov_print(t, " // x along u, y the height, z along w, origin\n");
     if (rim >= 0)
@@ -162,16 +170,30 @@ static void put_motion(pov_text *t, const object *o)
 /* u of what turns about y. */
 static const char *around(const object *o) { return pov_mirrored(o) ? "atan2(-z, x)" : "atan2(z, x)"; }
 
+/* A round one's function begins, and ends. */
+static void begin_function(pov_text *t, const scene *s, const object *o)
+{
+    pov_print(t, "isosurface {\n  function {\n    %s", is_clear(s, o) ? "max(" : "");
+}
+
+static void end_function(pov_text *t, const scene *s, const object *o)
+{
+    if (is_clear(s, o))
+        pov_print(t, ", -%s)", pov_exact(depth(o)).text);
+    pov_print(t, "\n  }\n");
+}
+
 static void put_sphere(pov_text *t, const scene *s, const object *o, const char *name)
 {
     const shape_spec f = pov_sized(o);
     double y[2], radius = f.radius[0];
     pov_levels(o, y);
-    pov_print(t, "isosurface {\n  function {\n    sqrt(x*x + y*y + z*z) - %s\n    - %s(%s, atan2(sqrt(x*x + z*z), y))\n  }\n",
-              pov_exact(radius).text, name, around(o));
+    begin_function(t, s, o);
+    pov_print(t, "sqrt(x*x + y*y + z*z) - %s\n    - %s(%s, atan2(sqrt(x*x + z*z), y))", pov_exact(radius).text, name, around(o));
+    end_function(t, s, o);
     pov_print(t, "  contained_by { sphere { 0, %g } }\n  accuracy %g\n", radius + y[1], accuracy(s));
     pov_print(t, "  max_gradient %g // a bound but for 0.001 radians around the poles\n  translate %v\n",
-              pov_isosurface_gradient(o, 0), f.a);
+              pov_isosurface_gradient(s, o, 0), f.a);
     put_motion(t, o);
 }
 
@@ -183,14 +205,16 @@ static void put_side(pov_text *t, const scene *s, const object *o, const char *n
     const frame a = frame_about(axis);
     double y[2], radius = f.radius[0], length = vec3_length(axis);
     pov_levels(o, y);
-    pov_print(t, "isosurface {\n  function {\n    sqrt(x*x + z*z) - %s\n    - %s(%s, ", pov_exact(radius).text, name, around(o));
+    begin_function(t, s, o);
+    pov_print(t, "sqrt(x*x + z*z) - %s\n    - %s(%s, ", pov_exact(radius).text, name, around(o));
     pov_print(t, pov_scale(o) == 1 ? "%s - y" : "(%s - y)", pov_exact(length).text);
     put_over(t, "", pov_scale(o));
-    pov_print(t, ")\n  }\n");
+    pov_print(t, ")");
+    end_function(t, s, o);
     pov_print(t, "  contained_by { box { <%g, 0, %g>, <%g, %g, %g> } }\n", -radius - y[1], -radius - y[1], radius + y[1], length,
               radius + y[1]);
     pov_print(t, "  open\n  accuracy %g\n  max_gradient %g // a bound: none is steeper\n", accuracy(s),
-              pov_isosurface_gradient(o, 0));
+              pov_isosurface_gradient(s, o, 0));
     pov_matrix(t, a.x, a.y, a.z, f.a);
     pov_print(t, " // y is the axis\n");
     put_motion(t, o);
@@ -204,11 +228,12 @@ static void put_torus(pov_text *t, const scene *s, const object *o, const char *
     pov_levels(o, y);
     const double wide = f.radius[0] + f.radius[1] + y[1], high = f.radius[1] + y[1];
     const pov_digits major = pov_exact(f.radius[0]);
-    pov_print(t, "isosurface {\n  function {\n    sqrt(pow(sqrt(x*x + z*z) - %s, 2) + y*y) - %s\n", major.text,
-              pov_exact(f.radius[1]).text);
-    pov_print(t, "    - %s(%s, atan2(-y, sqrt(x*x + z*z) - %s))\n  }\n", name, around(o), major.text);
+    begin_function(t, s, o);
+    pov_print(t, "sqrt(pow(sqrt(x*x + z*z) - %s, 2) + y*y) - %s\n", major.text, pov_exact(f.radius[1]).text);
+    pov_print(t, "    - %s(%s, atan2(-y, sqrt(x*x + z*z) - %s))", name, around(o), major.text);
+    end_function(t, s, o);
     pov_print(t, "  contained_by { box { <%g, %g, %g>, <%g, %g, %g> } }\n", -wide, -high, -wide, wide, high, wide);
-    pov_print(t, "  accuracy %g\n  max_gradient %g // a bound: none is steeper\n", accuracy(s), pov_isosurface_gradient(o, 0));
+    pov_print(t, "  accuracy %g\n  max_gradient %g // a bound: none is steeper\n", accuracy(s), pov_isosurface_gradient(s, o, 0));
     pov_matrix(t, a.x, a.y, a.z, f.a);
     pov_print(t, " // y is the axis\n");
     put_motion(t, o);

@@ -44,10 +44,28 @@ bool pov_possible(const scene *s, errors *e)
 
 /* ---- materials ---- */
 
+static void put_color(pov_text *t, const material *m, vec3 color)
+{
+    if (material_clear(m))
+        pov_print(t, "color rgb %v filter %g transmit %g", color, m->filter, m->transmit);
+    else
+        pov_print(t, "color rgb %v", color);
+}
+
 static void put_finish(pov_text *t, const material *m, const char *in)
 {
-    pov_print(t, "%sfinish {\n%s  ambient %g\n%s  diffuse %g\n%s  phong %g phong_size %g\n%s  specular %g roughness %g\n%s}\n", in, in,
-              m->ambient, in, m->diffuse, in, m->phong, m->phong_size, in, m->specular, m->roughness, in);
+    pov_print(t, "%sfinish {\n%s  ambient %g\n%s  diffuse %g\n%s  phong %g phong_size %g\n%s  specular %g roughness %g\n", in, in,
+              m->ambient, in, m->diffuse, in, m->phong, m->phong_size, in, m->specular, m->roughness);
+    if (material_mirrors(m))
+        pov_print(t, "%s  reflection { rgb %v }\n", in, m->reflection);
+    pov_print(t, "%s}\n", in);
+}
+
+static void put_plain(pov_text *t, const material *m, const char *name)
+{
+    pov_print(t, "#declare %s = texture {\n  pigment { ", name);
+    put_color(t, m, m->color);
+    pov_print(t, " }\n");
 }
 
 void pov_materials(pov_text *t, const scene *s)
@@ -59,7 +77,7 @@ void pov_materials(pov_text *t, const scene *s)
         if (m->pattern)
             pov_print(t, "#declare %s =\n", pov_identify("Finish", m->name, k).text);
         else
-            pov_print(t, "#declare %s = texture {\n  pigment { color rgb %v }\n", pov_identify("Material", m->name, k).text, m->color);
+            put_plain(t, m, pov_identify("Material", m->name, k).text);
         put_finish(t, m, "  ");
         pov_print(t, m->pattern ? "\n" : "}\n\n");
     }
@@ -75,7 +93,11 @@ static void put_checker(pov_text *t, const object *o, int part, const material *
     pov_print(t, "    function { Checker((%s - %s)/%s, ", flat ? "x" : "atan2(z, x)", pov_exact(l->offset[0]).text,
               pov_exact(l->size[0]).text);
     pov_print(t, "(%s - %s)/%s) }\n", flat ? "y" : "atan2(sqrt(x*x + z*z), y)", pov_exact(l->offset[1]).text, pov_exact(l->size[1]).text);
-    pov_print(t, "    color_map { [0.25 color rgb %v] [0.25 color rgb %v] }\n", m->field[0], m->field[1]);
+    pov_print(t, "    color_map { [0.25 ");
+    put_color(t, m, m->field[0]);
+    pov_print(t, "] [0.25 ");
+    put_color(t, m, m->field[1]);
+    pov_print(t, "] }\n");
 }
 
 static void put_image_map(pov_text *t, const material *m)
@@ -83,7 +105,10 @@ static void put_image_map(pov_text *t, const material *m)
     pov_print(t, "image_map { %s \"", m->exr ? "exr" : "png");
     for (const char *c = m->file; *c; c++)
         pov_print(t, *c == '"' || *c == '\\' ? "\\%s" : "%s", (char[2]){*c, 0});
-    pov_print(t, "\"%s%s }", m->exr ? "" : m->linear ? " gamma 1" : " gamma srgb", m->nearest ? "" : " interpolate 2");
+    pov_print(t, "\"%s", m->exr ? "" : m->linear ? " gamma 1" : " gamma srgb");
+    if (material_clear(m))
+        pov_print(t, " filter all %g transmit all %g", m->filter, m->transmit);
+    pov_print(t, "%s }", m->nearest ? "" : " interpolate 2");
 }
 
 /* In POV-Ray an image's lower left corner is in the origin. */

@@ -37,7 +37,10 @@ static void put_head(pov_text *t, const scene *s, const pov_options *o)
         pov_print(t, " -A");
     pov_print(t, " -D%s\n\n", images ? " +L<the scene's folder>" : "");
     pov_print(t, "#version 3.7;\n"
-                 "global_settings { assumed_gamma 1 ambient_light rgb 1 }\n\n");
+                 "global_settings { assumed_gamma 1 ambient_light rgb 1");
+    if (s->sends)
+        pov_print(t, " max_trace_level %d adc_bailout 0", s->depth);
+    pov_print(t, " }\n\n");
 }
 
 static void put_camera(pov_text *t, const scene *s)
@@ -84,8 +87,11 @@ void pov_matrix(pov_text *t, vec3 x, vec3 y, vec3 z, vec3 origin)
 
 void pov_object_end(pov_text *t, const scene *s, const pov_options *how, const object *o)
 {
+    const material *m = &s->material[o->material];
     if (!pov_by_parts(s, o))
         pov_texture(t, s, o, 0);
+    if (material_clear(m) && shape_has_inside(&o->shape_said))
+        pov_print(t, "  interior { ior %g }\n", m->ior);
     if ((o->bump && !s->self_shadow) || (!o->bump && how->no_cast))
         pov_print(t, "  no_shadow\n");
     pov_print(t, "}\n\n");
@@ -162,7 +168,7 @@ static bool put_displaced(pov_text *t, const scene *s, int k, pov_report *report
     pov_identifier P = pov_identify("P", o->name, k);
     double gradient = 0;
     for (int part = 0; part < o->shape->is->parts; part++)
-        gradient = fmax(gradient, pov_isosurface_gradient(o, part));
+        gradient = fmax(gradient, pov_isosurface_gradient(s, o, part));
     if (gradient < HUGE_VAL && pov_function(t, o, P.text)) {
         pov_isosurface(t, s, o, P.text);
         return true;

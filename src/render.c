@@ -12,24 +12,38 @@
 
 enum { TILE = 16, TILE_ROWS = LANES / TILE, TIMED_TILES = 8 };
 
-workspace *workspace_new(int lights)
+/* A workspace, and `deeper` others for the waves that may follow. */
+static workspace *workspace_chain(int lights, int deeper)
 {
     workspace *v = calloc(1, sizeof *v);
     if (!v)
         return NULL;
     v->visibility = malloc((size_t)(lights ? lights : 1) * sizeof *v->visibility);
-    if (!v->visibility) {
-        free(v);
+    v->deeper = v->visibility && deeper ? workspace_chain(0, deeper - 1) : NULL;
+    if (!v->visibility || (deeper && !v->deeper)) {
+        workspace_free(v);
         return NULL;
     }
     return v;
 }
 
+/* One more than rays follow: what goes straight on from a camera's wave has one of its own. */
+workspace *workspace_new(const scene *s)
+{
+    workspace *v = workspace_chain(s->lights, s->sends && s->depth > 1 ? s->depth : 0);
+    if (v)
+        v->left = s->depth - 1;
+    return v;
+}
+
 void workspace_free(workspace *v)
 {
-    if (v)
+    while (v) {
+        workspace *next = v->deeper;
         free(v->visibility);
-    free(v);
+        free(v);
+        v = next;
+    }
 }
 
 /* A tile of the picture. */
@@ -254,7 +268,7 @@ static bool run(const tracer *k, const render_options *o, pass *p, film *f, stat
 #endif
 #pragma omp parallel num_threads(threads)
     {
-        workspace *v = workspace_new(k->scene->lights);
+        workspace *v = workspace_new(k->scene);
         if (v)
             camera_begin(&k->scene->camera, LANES, &v->x); /* no stage writes there, so once is enough */
         else {

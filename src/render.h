@@ -24,7 +24,7 @@ bool render(const tracer *k, const render_options *o, film *f, stats *sum, error
 /* The ray of a sample: pixel (x,y), and the sample's place in it, 0..1. For `kage pixel`. */
 void render_ray(const camera *c, int width, int height, double x, double y, workspace *v, int lane);
 
-workspace *workspace_new(int lights);
+workspace *workspace_new(const scene *s);
 void workspace_free(workspace *v);
 
 #endif

@@ -49,7 +49,16 @@ typedef struct material {
     double ambient, diffuse;
     double phong, phong_size;
     double specular, roughness;
+    vec3 reflection;         /* of the light from the mirrored direction */
+    double filter, transmit; /* of the light from behind, in the material's colour and in its own */
+    double ior;
 } material;
+
+/* Whether light comes from behind; the share of ambient and diffuse light that is left; whether rays go on from here. */
+static inline bool material_clear(const material *m) { return m->filter + m->transmit > 0; }
+static inline double material_opacity(const material *m) { return 1 - m->filter - m->transmit; }
+static inline bool material_mirrors(const material *m) { return m->reflection.x + m->reflection.y + m->reflection.z > 0; }
+static inline bool material_sends(const material *m) { return material_clear(m) || material_mirrors(m); }
 
 /* What `kage check` says of a map; width 0: none. */
 typedef struct map_note {
@@ -77,6 +86,12 @@ typedef struct shape_spec {
     double radius[2]; /* cylinder, cone: at a, at u; torus: major, minor */
     bool open;
 } shape_spec;
+
+/* Whether light that goes through it goes into it. An endless plane has an inside, the side away from n. */
+static inline bool shape_has_inside(const shape_spec *f)
+{
+    return f->kind != SHAPE_RECTANGLE && f->kind != SHAPE_DISC && !f->open;
+}
 
 /* A bump likewise: a function's text and scale, or where a map's samples lie (how many: map_note). */
 typedef struct bump_spec {
@@ -116,6 +131,8 @@ typedef struct scene {
     bool self_shadow; /* bumped objects cast shadows */
     int aa;
     double aa_threshold; /* < 0: none */
+    int depth;           /* rays in a row: 1 for those of the camera alone */
+    bool sends, clear;   /* some object's material sends rays on; lets light through */
     light *light;
     int lights;
     material *material;
@@ -125,7 +142,7 @@ typedef struct scene {
 } scene;
 
 /* The number of threads, lights and so on that a scene can have at most. */
-enum { SCENE_MAX_SIDE = 32768, SCENE_MAX_ITEMS = 4096, SCENE_MAX_AA = 16 };
+enum { SCENE_MAX_SIDE = 32768, SCENE_MAX_ITEMS = 4096, SCENE_MAX_AA = 16, SCENE_MAX_DEPTH = 32 };
 
 /* Read the scene in the file at `path`, with `sets` changes of the form PATH=VALUE made to it first. NULL, and every
  * error that can be told at once in *e, as `file:line:col: ...`, the line and a caret. */

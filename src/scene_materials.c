@@ -82,16 +82,36 @@ static void read_color(reader *r, node *material_node, material *m)
         read_image(r, pixels, m);
 }
 
+static void read_reflection(reader *r, node *at, material *m)
+{
+    static const char *const what = "a share of light, or one each of red, green and blue, 0 to 1";
+    double x[3];
+    if (yaml_is_list(at) ? yaml_numbers(r->y, at, 3, 0, 1, what, x) : yaml_number(r->y, at, 0, false, 1, what, x))
+        m->reflection = yaml_is_list(at) ? (vec3){x[0], x[1], x[2]} : (vec3){x[0], x[0], x[0]};
+}
+
+/* The light from behind, in shares of all light. */
+static void read_clear(reader *r, node *v, material *m)
+{
+    bool good = reader_number(r, v, "filter", 0, false, 1, "the share of light that it lets through in its colour, 0 to 1", &m->filter);
+    good = reader_number(r, v, "transmit", 0, false, 1, "the share of light that it lets through unchanged, 0 to 1", &m->transmit) && good;
+    if (good && m->filter + m->transmit > 1)
+        yaml_error(r->y, yaml_get(v, "transmit"), "a filter of %g and a transmit of %g, expected no more than 1 together", m->filter,
+                   m->transmit);
+    reader_number(r, v, "ior", 0, true, 100, "an index of refraction above 0, at most 100", &m->ior);
+}
+
 void reader_materials(reader *r)
 {
+    node *k;
     scene *s = r->s;
     node *at = reader_named(r, "materials", "materials", true, sizeof *s->material, &s->material, &s->materials), *key;
     for (int i = 0; at && i < s->materials; i++) {
         node *v = yaml_pair(at, i, &key);
         material *m = &s->material[i];
-        *m = (material){.color = {1, 1, 1}, .ambient = 0.1, .diffuse = 0.6, .phong_size = 40, .roughness = 0.05};
+        *m = (material){.color = {1, 1, 1}, .ambient = 0.1, .diffuse = 0.6, .phong_size = 40, .roughness = 0.05, .ior = 1};
         m->name = reader_name(r, at, key);
-        if (!yaml_map(r->y, v, "a material", "color ambient diffuse phong phong_size specular roughness"))
+        if (!yaml_map(r->y, v, "a material", "color ambient diffuse phong phong_size specular roughness reflection filter transmit ior"))
             continue;
         read_color(r, v, m);
         reader_number(r, v, "ambient", 0, false, BIG, "a share of light, 0 or more", &m->ambient);
@@ -100,6 +120,9 @@ void reader_materials(reader *r)
         reader_number(r, v, "phong_size", 0, true, BIG, "an exponent above 0", &m->phong_size);
         reader_number(r, v, "specular", 0, false, BIG, "a share of light, 0 or more", &m->specular);
         reader_number(r, v, "roughness", 0, true, BIG, "a number above 0; small is sharp", &m->roughness);
+        if ((k = yaml_get(v, "reflection")))
+            read_reflection(r, k, m);
+        read_clear(r, v, m);
     }
 }
 

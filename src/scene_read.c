@@ -159,8 +159,9 @@ static void read_render(reader *r)
     s->guard = true;
     s->aa = 1;
     s->aa_threshold = -1;
+    s->depth = 5;
     s->self_shadow = true;
-    if (!at || !yaml_map(r->y, at, "render", "shadow guard aa aa_threshold surface self_shadow"))
+    if (!at || !yaml_map(r->y, at, "render", "shadow guard aa aa_threshold depth surface self_shadow"))
         return;
     if ((k = yaml_get(at, "shadow"))) {
         const char *text = yaml_text(r->y, k, method_expected);
@@ -172,6 +173,8 @@ static void read_render(reader *r)
     if ((k = yaml_get(at, "aa")))
         yaml_whole(r->y, k, 1, SCENE_MAX_AA, "samples along a pixel's side, 1 to 16", &s->aa);
     reader_number(r, at, "aa_threshold", 0, false, 3, "how much two pixels may differ, red, green and blue together, 0 to 3", &s->aa_threshold);
+    if ((k = yaml_get(at, "depth")))
+        yaml_whole(r->y, k, 1, SCENE_MAX_DEPTH, "how many rays follow one another, 1 to 32", &s->depth);
     if ((k = yaml_get(at, "surface")))
         s->displaced = yaml_word(r->y, k, "smooth displaced", "smooth or displaced") == 1;
     if ((k = yaml_get(at, "self_shadow")))
@@ -179,6 +182,15 @@ static void read_render(reader *r)
 }
 
 /* ---- the whole ---- */
+
+static void note_secondary(scene *s)
+{
+    for (int k = 0; k < s->objects; k++) {
+        const material *m = &s->material[s->object[k].material];
+        s->sends |= material_sends(m);
+        s->clear |= material_clear(m);
+    }
+}
 
 scene *scene_read(const char *path, int sets, char *const *set, errors *e)
 {
@@ -196,6 +208,7 @@ scene *scene_read(const char *path, int sets, char *const *set, errors *e)
             reader_lights(&r);
             reader_materials(&r);
             reader_objects(&r);
+            note_secondary(r.s);
         }
         yaml_close(r.y);
     }

@@ -14,12 +14,12 @@ STAGE static void ambient_pattern(group *restrict g, real share)
 
 void shade_ambient(group *g, const material *m)
 {
+    const double share = m->ambient * material_opacity(m);
     if (m->pattern) {
-        ambient_pattern(g, (real)m->ambient);
+        ambient_pattern(g, (real)share);
         return;
     }
-    vec3s_fill(&g->rgb, g->n, (real)(m->ambient * m->color.x), (real)(m->ambient * m->color.y),
-               (real)(m->ambient * m->color.z));
+    vec3s_fill(&g->rgb, g->n, (real)(share * m->color.x), (real)(share * m->color.y), (real)(share * m->color.z));
 }
 
 /* The way from p to a light: at - near p. A parallel light has it without p. Constant in each stage, so that it costs nothing. */
@@ -56,25 +56,54 @@ static inline real facing(const group *g, int i, way to, bs_vec3 *L, bs_vec3 *n)
     return side * bs_dot(smooth, d) > 0 ? lit : 0;
 }
 
-/* Call it with constants: a choice in the loop would keep it from being vectorised. With a pattern the material's own colour is 1. */
-static inline void diffuse(group *restrict g, const material *m, const light *l, const way to, bool own)
+/* Call it with constants: a choice in the loop would keep it from being vectorised. `own`: times a colour for each lane, which with a
+ * pattern is all, as the material's own is 1 then. */
+static inline void diffuse(group *restrict g, const material *m, const light *l, const way to, bool own, const vec3s *color)
 {
-    const real kr = (real)(m->diffuse * m->color.x * l->color.x), kg = (real)(m->diffuse * m->color.y * l->color.y),
-               kb = (real)(m->diffuse * m->color.z * l->color.z);
+    const double share = m->diffuse * material_opacity(m);
+    const real kr = (real)(share * m->color.x * l->color.x), kg = (real)(share * m->color.y * l->color.y),
+               kb = (real)(share * m->color.z * l->color.z);
     for (int i = 0; i < g->n; i++) {
         bs_vec3 L, n;
         real lit = facing(g, i, to, &L, &n);
         real c = lit * real_max(bs_dot(n, L), 0);
-        g->rgb.x[i] += kr * c * (own ? g->color.x[i] : 1);
-        g->rgb.y[i] += kg * c * (own ? g->color.y[i] : 1);
-        g->rgb.z[i] += kb * c * (own ? g->color.z[i] : 1);
+        g->rgb.x[i] += kr * c * (own ? color->x[i] : 1);
+        g->rgb.y[i] += kg * c * (own ? color->y[i] : 1);
+        g->rgb.z[i] += kb * c * (own ? color->z[i] : 1);
     }
 }
 
-STAGE static void diffuse_to(group *g, const material *m, const light *l) { diffuse(g, m, l, way_to(l), false); }
-STAGE static void diffuse_against(group *g, const material *m, const light *l) { diffuse(g, m, l, way_against(l), false); }
-STAGE static void diffuse_pattern_to(group *g, const material *m, const light *l) { diffuse(g, m, l, way_to(l), true); }
-STAGE static void diffuse_pattern_against(group *g, const material *m, const light *l) { diffuse(g, m, l, way_against(l), true); }
+STAGE static void diffuse_to(group *g, const material *m, const light *l) { diffuse(g, m, l, way_to(l), false, NULL); }
+STAGE static void diffuse_against(group *g, const material *m, const light *l) { diffuse(g, m, l, way_against(l), false, NULL); }
+STAGE static void diffuse_color_to(group *g, const material *m, const light *l, const vec3s *c) { diffuse(g, m, l, way_to(l), true, c); }
+STAGE static void diffuse_color_against(group *g, const material *m, const light *l, const vec3s *c)
+{
+    diffuse(g, m, l, way_against(l), true, c);
+}
+
+STAGE static void product(int n, const vec3s *restrict a, const vec3s *restrict b, vec3s *restrict c)
+{
+    for (int i = 0; i < n; i++) {
+        c->x[i] = a->x[i] * b->x[i];
+        c->y[i] = a->y[i] * b->y[i];
+        c->z[i] = a->z[i] * b->z[i];
+    }
+}
+
+static void shade_diffuse(group *g, const material *m, const light *l, bool tinted)
+{
+    const bool along = l->kind == LIGHT_PARALLEL;
+    const vec3s *color = m->pattern ? &g->color : &g->tint;
+    vec3s both;
+    if (tinted && m->pattern) {
+        product(g->n, &g->color, &g->tint, &both);
+        color = &both;
+    }
+    if (tinted || m->pattern)
+        (along ? diffuse_color_against : diffuse_color_to)(g, m, l, color);
+    else
+        (along ? diffuse_against : diffuse_to)(g, m, l);
+}
 
 /* Phong's highlight: the mirrored view against the light. */
 static inline void phong(const group *restrict g, const way to, double *restrict c, real *restrict lit)
@@ -110,10 +139,8 @@ STAGE static void raise(int n, double *c, double power)
         c[i] = km_exp(power * km_log(c[i]));
 }
 
-STAGE static void add_highlight(group *restrict g, const light *l, double share, const double *restrict c,
-                                const real *restrict lit)
+STAGE static void highlight_plain(group *restrict g, real kr, real kg, real kb, const double *restrict c, const real *restrict lit)
 {
-    const real kr = (real)(share * l->color.x), kg = (real)(share * l->color.y), kb = (real)(share * l->color.z);
     for (int i = 0; i < g->n; i++) {
         real x = lit[i] * (real)c[i];
         g->rgb.x[i] += kr * x;
@@ -122,23 +149,36 @@ STAGE static void add_highlight(group *restrict g, const light *l, double share,
     }
 }
 
-void shade_light(group *g, const material *m, const light *l)
+STAGE static void highlight_tinted(group *restrict g, real kr, real kg, real kb, const double *restrict c, const real *restrict lit)
+{
+    for (int i = 0; i < g->n; i++) {
+        real x = lit[i] * (real)c[i];
+        g->rgb.x[i] += kr * x * g->tint.x[i];
+        g->rgb.y[i] += kg * x * g->tint.y[i];
+        g->rgb.z[i] += kb * x * g->tint.z[i];
+    }
+}
+
+static void add_highlight(group *g, const light *l, bool tinted, double share, const double *c, const real *lit)
+{
+    (tinted ? highlight_tinted : highlight_plain)(g, (real)(share * l->color.x), (real)(share * l->color.y), (real)(share * l->color.z),
+                                                  c, lit);
+}
+
+void shade_light(group *g, const material *m, const light *l, bool tinted)
 {
     const bool along = l->kind == LIGHT_PARALLEL;
-    if (m->pattern)
-        (along ? diffuse_pattern_against : diffuse_pattern_to)(g, m, l);
-    else
-        (along ? diffuse_against : diffuse_to)(g, m, l);
     double c[LANES];
     real lit[LANES];
+    shade_diffuse(g, m, l, tinted);
     if (m->phong > 0) {
         (along ? phong_against : phong_to)(g, l, c, lit);
         raise(g->n, c, m->phong_size);
-        add_highlight(g, l, m->phong, c, lit);
+        add_highlight(g, l, tinted, m->phong, c, lit);
     }
     if (m->specular > 0) {
         (along ? blinn_against : blinn_to)(g, l, c, lit);
         raise(g->n, c, 1 / m->roughness);
-        add_highlight(g, l, m->specular, c, lit);
+        add_highlight(g, l, tinted, m->specular, c, lit);
     }
 }

@@ -219,3 +219,11 @@ long shift_group(group *g, const perturb *bump, method m, bool guard)
     drop_irregular(g);
     return looks;
 }
+
+STAGE static void within(int n, const real *restrict t, real *restrict tau)
+{
+    for (int i = 0; i < n; i++)
+        tau[i] = real_max(tau[i], -t[i]);
+}
+
+void shift_within(group *g) { within(g->n, g->t, g->tau); }

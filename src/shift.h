@@ -13,4 +13,7 @@ void shift_normals(group *g, const perturb *bump);
  * order is none. Returns the number of heights that were looked up on the way. */
 long shift_group(group *g, const perturb *bump, method m, bool guard);
 
+/* A secondary ray starts amid the scene; the shifted place is not before its start. */
+void shift_within(group *g);
+
 #endif

@@ -37,6 +37,26 @@ STAGE static void sphere_hit(const surface *base, int n, const rays *x, int32_t 
     }
 }
 
+/* From a point of the sphere one root is 0; the other is -2 (r - C).s/|s|^2. */
+static inline real sphere_far(const sphere *f, real rx, real ry, real rz, real sx, real sy, real sz)
+{
+    return -2 * ((rx - f->C[0]) * sx + (ry - f->C[1]) * sy + (rz - f->C[2]) * sz) / (sx * sx + sy * sy + sz * sz);
+}
+
+STAGE static void sphere_hit_own(const surface *base, int n, const rays *x, const starts *from, int32_t id, hits *h)
+{
+    const sphere f = *(const sphere *)base;
+    for (int i = 0; i < n; i++) {
+        real t0, t1, sx = x->s.x[i], sy = x->s.y[i], sz = x->s.z[i];
+        real ax = from->at.x[i], ay = from->at.y[i], az = from->at.z[i];
+        int met = sphere_roots(&f, x->r.x[i], x->r.y[i], x->r.z[i], sx, sy, sz, &t0, &t1), own = from->id[i] == id;
+        real far = sphere_far(&f, ax, ay, az, sx, sy, sz), near = t0 > 0 ? t0 : t1, t = own ? far : near;
+        int take = (met | own) & (t > 0) & (t < h->t[i]);
+        h->t[i] = take ? t : h->t[i];
+        h->id[i] = take ? id : h->id[i];
+    }
+}
+
 STAGE static void sphere_locate(const surface *base, int n, const rays *x, const real *t, int32_t *part, real *u,
                                 real *w)
 {
@@ -99,15 +119,12 @@ STAGE static void sphere_occlude(const surface *base, int n, const rays *x, real
     }
 }
 
-/* From a point of the sphere one root is 0; the other is -2 (r - C).s/|s|^2. */
 STAGE static void sphere_occlude_own(const surface *base, int n, const rays *x, const int32_t *part, real *lit)
 {
     const sphere f = *(const sphere *)base;
     (void)part;
     for (int i = 0; i < n; i++) {
-        real ox = x->r.x[i] - f.C[0], oy = x->r.y[i] - f.C[1], oz = x->r.z[i] - f.C[2];
-        real sx = x->s.x[i], sy = x->s.y[i], sz = x->s.z[i];
-        real t = -2 * (ox * sx + oy * sy + oz * sz) / (sx * sx + sy * sy + sz * sz);
+        real t = sphere_far(&f, x->r.x[i], x->r.y[i], x->r.z[i], x->s.x[i], x->s.y[i], x->s.z[i]);
         lit[i] = ((t > 0) & (t < 1)) ? 0 : lit[i];
     }
 }
@@ -188,8 +205,8 @@ static void sphere_extent(const surface *base, int part, double u[2], double w[2
 }
 
 static const surface_methods sphere_methods = {
-    "sphere", sphere_hit,   sphere_locate, sphere_eval, sphere_occlude, sphere_occlude_own, sphere_extent,
-    1,        sphere_shell, sphere_foot,   sphere_steep,  false,
+    "sphere", sphere_hit,   sphere_hit_own, sphere_locate, sphere_eval, sphere_occlude, sphere_occlude_own, sphere_extent,
+    1,        sphere_shell, sphere_foot,    sphere_steep,  false,
 };
 
 surface *sphere_new(vec3 centre, double radius)

@@ -31,6 +31,7 @@ void stats_add(stats *sum, const stats *part)
 {
     sum->rays += part->rays;
     sum->shadow_rays += part->shadow_rays;
+    sum->secondary_rays += part->secondary_rays;
     sum->heights += part->heights;
     sum->displaced.heights += part->displaced.heights;
     sum->displaced.uncertain += part->displaced.uncertain;

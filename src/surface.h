@@ -23,6 +23,10 @@ typedef struct surface_methods {
     /* The nearest hit with 0 < t < h->t: where there is one, set h->t, and h->id = id. */
     void (*hit)(const surface *f, int n, const rays *x, int32_t id, hits *h);
 
+    /* The same for rays that have left a surface. Those that have left this one, from->id[i] = id, begin at from->at on its
+     * from->part, and this start does not count. */
+    void (*hit_own)(const surface *f, int n, const rays *x, const starts *from, int32_t id, hits *h);
+
     /* Where on the surface the hits r + s t are: the part (the face of a box, 0 elsewhere), u and w. */
     void (*locate)(const surface *f, int n, const rays *x, const real *t, int32_t *part, real *u, real *w);
 

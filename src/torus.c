@@ -259,31 +259,126 @@ STAGE static void torus_occlude(const surface *base, int n, const rays *x, real 
     }
 }
 
-/* From a place of the torus one root is 0. What is left is the cubic t^3 + A t^2 + B t + C, C = 8 M m (distance to the axis) n.s:
- * its sign at 0, at the end and where it is level, which a quadratic tells, says whether it has a root between.
- * The place is first moved onto the torus as double has it, so that the root is 0 and not nearly so. */
+/* From a place of the torus one root is 0. What is left is the cubic t^3 + A t^2 + B t + C, C = 8 M m (distance to the axis) n.s,
+ * with t a length of the ray; it is level at t0 <= t1, which a quadratic tells. */
+typedef struct cubic {
+    double A, B, C, t0, t1, T; /* T: of the whole s */
+} cubic;
+
+/* The place is first moved onto the torus as double has it, so that the root is 0 and not nearly so. */
+KM_INLINE cubic cubic_of(const torus *f, const rays *v, int i)
+{
+    double sx = (double)v->s.x[i], sy = (double)v->s.y[i], sz = (double)v->s.z[i];
+    double T = sqrt(sx * sx + sy * sy + sz * sz), k = 1 / T;
+    double dx = k * (sx * f->X[0] + sy * f->X[1] + sz * f->X[2]), dy = k * (sx * f->Y[0] + sy * f->Y[1] + sz * f->Y[2]);
+    double dz = k * (sx * f->Z[0] + sy * f->Z[1] + sz * f->Z[2]);
+    place p = place_of(f, v, i, 0);
+    double id = 1 / p.d, ex = p.x * id, ez = p.z * id, c = p.d - f->M, ic = 1 / sqrt(c * c + p.y * p.y);
+    double nc = c * ic, ny = p.y * ic, d = f->M + f->m * nc; /* n, and the place on the torus: away from and along the axis */
+    double along = ex * dx + ez * dz, pd = d * along + f->m * ny * dy;
+    double A = 4 * pd, B = 4 * pd * pd + 4 * f->M * d - 4 * f->M * f->M * (dx * dx + dz * dz);
+    double C = 8 * f->M * f->m * d * (nc * along + ny * dy);
+    double h = sqrt(most(A * A - 3 * B, 0));
+    cubic q = {A, B, C, (-A - h) / 3, (-A + h) / 3, T};
+    return q;
+}
+
+KM_INLINE double cubic_at(double A, double B, double C, double t) { return ((t + A) * t + B) * t + C; }
+
+/* Its sign at 0, at the end and where it is level says whether it has a root between. */
 STAGE static void torus_occlude_own(const surface *base, int n, const rays *v, const int32_t *part, real *lit)
 {
     const torus f = *(const torus *)base;
     (void)part;
     for (int i = 0; i < n; i++) {
-        double sx = (double)v->s.x[i], sy = (double)v->s.y[i], sz = (double)v->s.z[i];
-        double T = sqrt(sx * sx + sy * sy + sz * sz), k = 1 / T;
-        double dx = k * (sx * f.X[0] + sy * f.X[1] + sz * f.X[2]), dy = k * (sx * f.Y[0] + sy * f.Y[1] + sz * f.Y[2]);
-        double dz = k * (sx * f.Z[0] + sy * f.Z[1] + sz * f.Z[2]);
-        place p = place_of(&f, v, i, 0);
-        double id = 1 / p.d, ex = p.x * id, ez = p.z * id, c = p.d - f.M, ic = 1 / sqrt(c * c + p.y * p.y);
-        double nc = c * ic, ny = p.y * ic, d = f.M + f.m * nc; /* n, and the place on the torus: away from and along the axis */
-        double along = ex * dx + ez * dz, pd = d * along + f.m * ny * dy;
-        double A = 4 * pd, B = 4 * pd * pd + 4 * f.M * d - 4 * f.M * f.M * (dx * dx + dz * dz);
-        double C = 8 * f.M * f.m * d * (nc * along + ny * dy);
-        double h = sqrt(most(A * A - 3 * B, 0)), t0 = (-A - h) / 3, t1 = (-A + h) / 3;
-        t0 = least(most(t0, 0), T);
-        t1 = least(most(t1, 0), T);
-        double k0 = ((t0 + A) * t0 + B) * t0 + C, k1 = ((t1 + A) * t1 + B) * t1 + C, k2 = ((T + A) * T + B) * T + C;
-        double low = least(least(k0, k1), least(k2, C)), high = most(most(k0, k1), most(k2, C));
+        cubic q = cubic_of(&f, v, i);
+        double t0 = least(most(q.t0, 0), q.T), t1 = least(most(q.t1, 0), q.T);
+        double k0 = cubic_at(q.A, q.B, q.C, t0), k1 = cubic_at(q.A, q.B, q.C, t1), k2 = cubic_at(q.A, q.B, q.C, q.T);
+        double low = least(least(k0, k1), least(k2, q.C)), high = most(most(k0, k1), most(k2, q.C));
         lit[i] = ((low < 0) & (high > 0)) ? 0 : lit[i];
     }
+}
+
+/* Cubics whose first root above 0 is searched, side by side. */
+typedef struct cubics {
+    double A[LANES], B[LANES], C[LANES], speed[LANES];
+    double a[LANES], b[LANES]; /* as in `search` */
+    double side[LANES];        /* the cubic's sign at a */
+    double way[LANES], open[LANES];
+} cubics;
+
+/* As far as the torus is wide, beyond which there is no root. */
+STAGE static void torus_own_bracket(const torus *restrict base, int n, const rays *restrict v, const real *restrict end,
+                                    cubics *restrict k)
+{
+    const torus f = *base;
+    const double wide = 2.1 * (f.M + f.m);
+    for (int i = 0; i < n; i++) {
+        cubic q = cubic_of(&f, v, i);
+        double last = most(least((double)end[i] * q.T, wide), 0);
+        double t0 = least(most(q.t0, 0), last), t1 = least(most(q.t1, 0), last);
+        int in0 = q.C > 0, in1 = cubic_at(q.A, q.B, q.C, t0) > 0, in2 = cubic_at(q.A, q.B, q.C, t1) > 0;
+        int in3 = cubic_at(q.A, q.B, q.C, last) > 0, first = in0 != in1, second = in1 != in2, third = in2 != in3;
+        double a = first ? 0 : second ? t0 : t1, b = first ? t0 : second ? t1 : last;
+        int some = first | second | third;
+        k->A[i] = q.A, k->B[i] = q.B, k->C[i] = q.C;
+        k->speed[i] = q.T;
+        k->open[i] = some ? 1 : 0;
+        k->a[i] = some ? a : 1;
+        k->b[i] = some ? b : -1;
+        k->side[i] = in0 ? 1 : -1;
+        k->way[i] = 0.5 * (a + b);
+    }
+}
+
+/* As torus_step. */
+STAGE static void torus_own_step(double close, int n, cubics *restrict k)
+{
+    for (int i = 0; i < n; i++) {
+        double way = k->way[i], a = k->a[i], b = k->b[i], A = k->A[i], B = k->B[i];
+        double g = cubic_at(A, B, k->C[i], way), slope = (3 * way + 2 * A) * way + B, before = g * k->side[i];
+        a = before > 0 ? way : a;
+        b = before > 0 ? b : way;
+        double next = way - g / slope, middle = 0.5 * (a + b);
+        next = next > a ? next : middle;
+        next = next < b ? next : middle;
+        next = k->open[i] > 0 ? next : way;
+        k->way[i] = next;
+        k->a[i] = k->open[i] > 0 ? a : k->a[i];
+        k->b[i] = k->open[i] > 0 ? b : k->b[i];
+        k->open[i] = fabs(next - way) > close ? 1 : 0;
+    }
+}
+
+STAGE static void torus_own_take(int n, const cubics *restrict k, int32_t id, hits *restrict h)
+{
+    for (int i = 0; i < n; i++) {
+        real t = (real)(k->way[i] / k->speed[i]);
+        int take = (k->a[i] <= k->b[i]) & (t > 0) & (t < h->t[i]);
+        h->t[i] = take ? t : h->t[i];
+        h->id[i] = take ? id : h->id[i];
+    }
+}
+
+/* Those from elsewhere by the quartic, those from the torus itself by the cubic; each kind has no way to go in the other's search. */
+static void torus_hit_own(const surface *base, int n, const rays *x, const starts *from, int32_t id, hits *h)
+{
+    const torus *f = (const torus *)base;
+    const double close = CLOSE * (f->M + f->m);
+    rays own = {.r = from->at, .s = x->s};
+    real other_end[LANES], own_end[LANES];
+    search k;
+    cubics q;
+    for (int i = 0; i < n; i++) {
+        other_end[i] = from->id[i] == id ? R(-1) : h->t[i];
+        own_end[i] = from->id[i] == id ? h->t[i] : R(-1);
+    }
+    torus_search(f, f->m, n, x, other_end, &k);
+    torus_take(n, &k, id, h);
+    torus_own_bracket(f, n, &own, own_end, &q);
+    for (int step = 0; step < STEPS && any(n, q.open); step++)
+        torus_own_step(close, n, &q);
+    torus_own_take(n, &q, id, h);
 }
 
 /* ---- for true displacement ---- */
@@ -379,8 +474,8 @@ static void torus_extent(const surface *base, int part, double u[2], double w[2]
 }
 
 static const surface_methods torus_methods = {
-    "torus", torus_hit,   torus_locate, torus_eval,  torus_occlude, torus_occlude_own, torus_extent,
-    1,       torus_shell, torus_foot,   torus_steep, false,
+    "torus", torus_hit,   torus_hit_own, torus_locate, torus_eval, torus_occlude, torus_occlude_own, torus_extent,
+    1,       torus_shell, torus_foot,    torus_steep,  false,
 };
 
 static void store(double to[3], vec3 v)

@@ -4,6 +4,8 @@
  *     Q and its partials -> P and its partials -> n' -> the shift tau (none, 0, 1, 2 ...)
  *     -> shadow rays from r + s t0 -> light at Q with n'
  *
+ * Where the surface mirrors or lets light through, further waves go on from r + s t0 by n' (secondary.h), and come the same way.
+ *
  * For comparison, rough surfaces can be met where they really are (displace.h) in place of the smooth ones.
  */
 #include "trace.h"
@@ -11,6 +13,7 @@
 #include <string.h>
 
 #include "displace.h"
+#include "filter.h"
 #include "lane.h"
 #include "light.h"
 #include "shade.h"
@@ -21,7 +24,7 @@
 static bool is_rough(const tracer *k, const object *o) { return k->displaced && o->bump; }
 
 /* A rough surface that is turned away from the light is dark; from where it is not, the way to the light is searched. */
-static void shadow_rough(const object *o, const light *l, group *g, stats *st)
+static void shadow_turned(const light *l, group *g)
 {
     light_aim(l, g, false);
     for (int i = 0; i < g->n; i++) {
@@ -29,17 +32,27 @@ static void shadow_rough(const object *o, const light *l, group *g, stats *st)
         bool lit = bs_dot(n, lane_get(&g->to_light.s, i)) * bs_dot(n, lane_get(&g->x.s, i)) < 0;
         g->lit[i] = lit ? g->lit[i] : 0;
     }
-    displace_occlude(o->shape, o->bump, g->n, &g->to_light, g->part, g->lit, &st->displaced);
 }
 
 /* Whether an object casts shadows. */
 static bool casts(const tracer *k, const object *o) { return k->self_shadow || !o->bump; }
 
+/* Whether an object lets some light through. */
+static bool is_clear(const tracer *k, const object *o) { return material_clear(&k->scene->material[o->material]); }
+
 /* The receiver's own shadow on itself. */
-static void shadow_own(const tracer *k, const object *o, const light *l, group *g, stats *st)
+static void shadow_own(const tracer *k, int id, const light *l, group *g, stats *st)
 {
+    const object *o = &k->scene->object[id];
     if (is_rough(k, o)) {
-        shadow_rough(o, l, g, st);
+        shadow_turned(l, g);
+        if (!is_clear(k, o))
+            displace_occlude(o->shape, o->bump, g->n, &g->to_light, g->part, g->lit, &st->displaced);
+        else
+            filter_light(k, id, true, g, st);
+    } else if (is_clear(k, o)) {
+        light_aim(l, g, false);
+        filter_light(k, id, true, g, st);
     } else if (o->shape->is->occlude_own) {
         light_aim(l, g, false);
         o->shape->is->occlude_own(o->shape, g->n, &g->to_light, g->part, g->lit);
@@ -54,14 +67,18 @@ static void shadow_one(const tracer *k, int id, const light *l, group *g, stats 
     const scene *sc = k->scene;
     for (int i = 0; i < g->n; i++)
         g->lit[i] = 1;
+    if (sc->clear)
+        filter_begin(g);
     if (casts(k, &sc->object[id]))
-        shadow_own(k, &sc->object[id], l, g, st);
+        shadow_own(k, id, l, g, st);
     light_aim(l, g, true);
     for (int j = 0; j < sc->objects; j++) {
         const object *o = &sc->object[j];
         if (j == id || !casts(k, o))
             continue;
-        if (!is_rough(k, o))
+        if (is_clear(k, o))
+            filter_light(k, j, false, g, st);
+        else if (!is_rough(k, o))
             o->shape->is->occlude(o->shape, g->n, &g->to_light, g->lit);
         else
             displace_occlude(o->shape, o->bump, g->n, &g->to_light, NULL, g->lit, &st->displaced);
@@ -77,13 +94,23 @@ static void shadow(const tracer *k, int id, const light *l, group *g, stats *st)
         shadow_one(k, id, l, g, st);
         return;
     }
+    const bool tinted = k->scene->clear;
     real sum[LANES] = {0}, share;
+    vec3s colors = {{0}, {0}, {0}};
     for (int j = 0; j < places; j++) {
         const light one = light_sample(l, j, &share);
         shadow_one(k, id, &one, g, st);
-        light_gather(g, share, sum);
+        if (tinted)
+            light_gather_tint(g, share, &colors);
+        else
+            light_gather(g, share, sum);
     }
-    memcpy(g->lit, sum, sizeof sum);
+    if (tinted) {
+        g->tint = colors;
+        for (int i = 0; i < g->n; i++)
+            g->lit[i] = 1;
+    } else
+        memcpy(g->lit, sum, sizeof sum);
 }
 
 /* Where a group's lanes are on their surface, P there, n and n', and how far the shadow rays' origin is shifted. */
@@ -121,6 +148,8 @@ void trace_group(const tracer *k, int id, workspace *v)
         stats_stage(st, STAGE_SURFACE);
     } else
         shape_and_shift(k, o, g, st);
+    if (v->of)
+        shift_within(g);
     if (o->color)
         o->color->is->eval(o->color, g->n, g->u, g->w, &g->color);
     shade_ambient(g, m);
@@ -128,27 +157,35 @@ void trace_group(const tracer *k, int id, workspace *v)
         shadow(k, id, &sc->light[l], g, st);
         stats_stage(st, STAGE_SHADOW);
         if (k->layers)
-            wave_scatter_visibility(g, v->visibility[l]);
+            wave_scatter_visibility(g, sc->clear, v->visibility[l]);
         light_fade(&sc->light[l], g);
-        shade_light(g, m, &sc->light[l]);
+        shade_light(g, m, &sc->light[l], sc->clear);
         stats_stage(st, STAGE_SHADE);
     }
     if (o->bump)
         stats_orders(st, g->n, g->order, is_rough(k, o) ? ORDER_EXACT : method_code(k->shadow));
 }
 
+void trace_hit(const tracer *k, int32_t id, int n, const rays *x, const starts *from, hits *h, stats *st)
+{
+    const object *o = &k->scene->object[id];
+    if (is_rough(k, o))
+        displace_hit(o->shape, o->bump, n, x, from, id, h, &st->displaced);
+    else if (from)
+        o->shape->is->hit_own(o->shape, n, x, from, id, h);
+    else
+        o->shape->is->hit(o->shape, n, x, id, h);
+}
+
 int32_t trace_nearest(const tracer *k, int n, workspace *v)
 {
     const scene *sc = k->scene;
     wave_start(n, &v->h);
-    for (int32_t id = 0; id < sc->objects; id++) {
-        const object *o = &sc->object[id];
-        if (is_rough(k, o))
-            displace_hit(o->shape, o->bump, n, &v->x, id, &v->h, &v->stats.displaced);
-        else
-            o->shape->is->hit(o->shape, n, &v->x, id, &v->h);
-    }
-    v->stats.rays += n;
+    for (int32_t id = 0; id < sc->objects; id++)
+        trace_hit(k, id, n, &v->x, v->of ? &v->of->from : NULL, &v->h, &v->stats);
+    if (v->of)
+        wave_start_own(n, &v->of->from, &v->h, &v->x);
+    *(v->of ? &v->stats.secondary_rays : &v->stats.rays) += n;
     stats_stage(&v->stats, STAGE_HIT);
     return wave_next_group(n, &v->x, &v->h, &v->g);
 }
@@ -158,10 +195,15 @@ void trace(const tracer *k, int n, workspace *v)
     const scene *sc = k->scene;
     int32_t id = trace_nearest(k, n, v);
     wave_background(n, sc->background, k->layers, sc->lights, v);
+    secondary_begin(v);
     for (; id >= 0; id = wave_next_group(n, &v->x, &v->h, &v->g)) {
         stats_stage(&v->stats, STAGE_SORT);
         trace_group(k, id, v);
         wave_scatter(&v->g, k->layers, sc->object[id].bump != NULL, &v->out);
+        if (sc->sends)
+            secondary_send(k, id, v);
         stats_stage(&v->stats, STAGE_SORT);
     }
+    if (sc->sends)
+        secondary_follow(k, v);
 }

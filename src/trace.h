@@ -4,6 +4,7 @@
 
 #include "group.h"
 #include "scene.h"
+#include "secondary.h"
 #include "stats.h"
 
 /* What the waves of a picture have in common. */
@@ -33,18 +34,27 @@ typedef struct workspace {
     samples out;
     real (*visibility)[LANES]; /* for each light of the scene */
     stats stats;
+
+    /* secondary rays (secondary.h) */
+    const bounce *of; /* what the rays x are; NULL: the camera's */
+    int left;         /* how many rays may still follow these */
+    bounce reflected, refracted, straight;
+    struct workspace *deeper; /* for the waves that follow this one; NULL: none does */
 } workspace;
 
 /* Trace the rays v->x of n lanes into v->out and, where asked for, v->visibility. */
 void trace(const tracer *k, int n, workspace *v);
 
-/* The first part: find where the rays v->x of n lanes meet the smooth surfaces, and take the first group of lanes out.
+/* The first part: find where the rays v->x of n lanes meet the surfaces, and take the first group of lanes out.
  * Returns the object that they have met, -1: none. */
 int32_t trace_nearest(const tracer *k, int n, workspace *v);
 
 /* The second part, for one group: the group v->g, whose lanes have met the object `id`, from its x
- * and t to its rgb. visibility: as above, by lanes of the group. The parts are
+ * and t to its rgb, without secondary rays. visibility: as above, by lanes of the group. The parts are
  * for those who look at the steps (kage pixel, kage check). */
 void trace_group(const tracer *k, int id, workspace *v);
+
+/* The nearest hits with object `id`, smooth or rough as it is taken, into h. from: of rays that have left a surface, or NULL. */
+void trace_hit(const tracer *k, int32_t id, int n, const rays *x, const starts *from, hits *h, stats *st);
 
 #endif

@@ -32,6 +32,17 @@ static const transformed *of(const surface *f) { return (const transformed *)f; 
 
 /* ---- there and back ---- */
 
+STAGE static void places_back(const transformed *restrict base, int n, const vec3s *restrict r, vec3s *restrict to)
+{
+    const transformed f = *base;
+    for (int i = 0; i < n; i++) {
+        real rx = r->x[i] - f.o[0], ry = r->y[i] - f.o[1], rz = r->z[i] - f.o[2];
+        to->x[i] = f.back[0][0] * rx + f.back[0][1] * ry + f.back[0][2] * rz;
+        to->y[i] = f.back[1][0] * rx + f.back[1][1] * ry + f.back[1][2] * rz;
+        to->z[i] = f.back[2][0] * rx + f.back[2][1] * ry + f.back[2][2] * rz;
+    }
+}
+
 STAGE static void rays_back(const transformed *restrict base, int n, const rays *restrict x, rays *restrict y)
 {
     const transformed f = *base;
@@ -102,6 +113,18 @@ static void transformed_hit(const surface *base, int n, const rays *x, int32_t i
     rays y;
     rays_back(f, n, x, &y);
     f->from->is->hit(f->from, n, &y, id, h);
+}
+
+static void transformed_hit_own(const surface *base, int n, const rays *x, const starts *from, int32_t id, hits *h)
+{
+    const transformed *f = of(base);
+    rays y;
+    starts there;
+    rays_back(f, n, x, &y);
+    memcpy(there.id, from->id, (size_t)n * sizeof *there.id);
+    memcpy(there.part, from->part, (size_t)n * sizeof *there.part);
+    places_back(f, n, &from->at, &there.at);
+    f->from->is->hit_own(f->from, n, &y, &there, id, h);
 }
 
 static void transformed_locate(const surface *base, int n, const rays *x, const real *t, int32_t *part, real *u, real *w)
@@ -267,6 +290,7 @@ static void choose_methods(transformed *f, double scale)
     f->base.is = &f->methods;
     f->methods = *f->from->is;
     f->methods.hit = transformed_hit;
+    f->methods.hit_own = transformed_hit_own;
     f->methods.locate = transformed_locate;
     f->methods.eval = transformed_eval;
     f->methods.occlude = transformed_occlude;

@@ -37,6 +37,13 @@ typedef struct hits {
     int32_t part[LANES]; /* of its surface; told by displaced surfaces alone, others find it in `locate` */
 } hits;
 
+/* The starts of rays that leave a surface: the object, the part of its surface, and the place on its smooth shape. There the ray
+ * begins for the surface itself, while r is where it begins for all others. */
+typedef struct starts {
+    int32_t id[LANES], part[LANES];
+    vec3s at;
+} starts;
+
 /* Q(u,w) and its partial derivatives. */
 typedef struct partials {
     vec3s Q, Qu, Qw, Quu, Quw, Qww;

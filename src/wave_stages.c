@@ -17,6 +17,19 @@ void wave_start(int n, hits *h)
     }
 }
 
+STAGE static void start_own(int n, const starts *restrict from, const int32_t *restrict id, vec3s *restrict r)
+{
+    for (int i = 0; i < n; i++) {
+        int own = (id[i] == from->id[i]) & (id[i] >= 0);
+        real x = from->at.x[i], y = from->at.y[i], z = from->at.z[i];
+        r->x[i] = own ? x : r->x[i];
+        r->y[i] = own ? y : r->y[i];
+        r->z[i] = own ? z : r->z[i];
+    }
+}
+
+void wave_start_own(int n, const starts *from, const hits *h, rays *x) { start_own(n, from, h->id, &x->r); }
+
 void wave_background(int n, vec3 color, bool layers, int lights, workspace *v)
 {
     samples *o = &v->out;
@@ -35,9 +48,6 @@ void wave_background(int n, vec3 color, bool layers, int lights, workspace *v)
     for (int l = 0; l < lights; l++)
         fill(n, v->visibility[l], 0);
 }
-
-/* The place in the wave of a group's lane. */
-static inline int place(const group *g, int i) { return g->whole ? i : g->lane[i]; }
 
 STAGE static void pick(const group *restrict g, const real *restrict from, real *restrict to)
 {
@@ -81,10 +91,10 @@ int32_t wave_next_group(int n, const rays *x, hits *h, group *g)
             m += h->id[i] == id;
         }
     for (int i = 0; i < g->n; i++)
-        h->id[place(g, i)] = -1;
+        h->id[group_place(g, i)] = -1;
     pick(g, h->t, g->t);
     for (int i = 0; i < g->n; i++)
-        g->part[i] = h->part[place(g, i)];
+        g->part[i] = h->part[group_place(g, i)];
     pick3(g, &x->r, &g->x.r);
     pick3(g, &x->s, &g->x.s);
     return id;
@@ -107,7 +117,19 @@ static void put3(const group *g, const vec3s *from, vec3s *to)
     put(g, from->z, to->z);
 }
 
-void wave_scatter_visibility(const group *g, real *visibility) { put(g, g->lit, visibility); }
+STAGE static void brightness(const group *restrict g, real *restrict v)
+{
+    for (int i = 0; i < g->n; i++)
+        v[i] = g->lit[i] * ((g->tint.x[i] + g->tint.y[i] + g->tint.z[i]) / 3);
+}
+
+void wave_scatter_visibility(const group *g, bool tinted, real *visibility)
+{
+    real v[LANES];
+    if (tinted)
+        brightness(g, v);
+    put(g, tinted ? v : g->lit, visibility);
+}
 
 void wave_scatter(const group *g, bool layers, bool bumped, samples *o)
 {
@@ -123,5 +145,5 @@ void wave_scatter(const group *g, bool layers, bool bumped, samples *o)
         put(g, g->h.P, o->height);
     put(g, g->tau, o->tau);
     for (int i = 0; i < g->n; i++)
-        o->order[place(g, i)] = g->order[i];
+        o->order[group_place(g, i)] = g->order[i];
 }

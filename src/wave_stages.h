@@ -7,6 +7,9 @@
 /* No hits yet. */
 void wave_start(int n, hits *h);
 
+/* Rays that have met the surface again on which they started: they began on its smooth shape. */
+void wave_start_own(int n, const starts *from, const hits *h, rays *x);
+
 /* The samples of rays that meet nothing, their layers too where asked for, with the visibilities of `lights`. */
 void wave_background(int n, vec3 color, bool layers, int lights, workspace *v);
 
@@ -16,6 +19,6 @@ int32_t wave_next_group(int n, const rays *x, hits *h, group *g);
 
 /* Put what a group has found out back at its places in the wave. */
 void wave_scatter(const group *g, bool layers, bool bumped, samples *out);
-void wave_scatter_visibility(const group *g, real *visibility);
+void wave_scatter_visibility(const group *g, bool tinted, real *visibility); /* tinted: the mean over g->tint */
 
 #endif

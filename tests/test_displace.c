@@ -266,7 +266,7 @@ static void hits_agree_with_bisection(void **state)
                     h.t[i] = R(3);
                     h.id[i] = -1;
                 }
-                displace_hit(f, P, LANES, &x, 5, &h, &counts);
+                displace_hit(f, P, LANES, &x, NULL, 5, &h, &counts);
                 for (int i = 0; i < LANES; i++) {
                     int doubt;
                     wide t = first_crossing(kind, bump, r[i], s[i], 3, &doubt);
@@ -318,7 +318,7 @@ static void normals_are_gradients(void **state)
             h.t[i] = R(3);
             h.id[i] = -1;
         }
-        displace_hit(f, P, LANES, &g.x, 0, &h, &counts);
+        displace_hit(f, P, LANES, &g.x, NULL, 0, &h, &counts);
         g.n = LANES;
         for (int i = 0; i < LANES; i++) {
             g.t[i] = h.id[i] == 0 ? h.t[i] : R(1);
@@ -348,7 +348,8 @@ static void normals_are_gradients(void **state)
     }
 }
 
-/* From hits towards a light: the rough surface's own shadow against bisection, beginning at the hit. */
+/* From hits towards a light: the rough surface's own shadow against bisection, beginning at the hit; and rays that
+ * leave it towards the light meet it again where it shades itself. */
 static void own_shadows(void **state)
 {
     (void)state;
@@ -356,7 +357,8 @@ static void own_shadows(void **state)
         surface *f = make_surface(kind);
         perturb *P = make_bump(kind, MAP_BUMP, f);
         static rays x, up;
-        static hits h;
+        static hits h, again;
+        static starts from;
         displace_counts counts = {0};
         int dark = 0, lights = 0, wrong = 0, n = 0;
         int32_t on[LANES];
@@ -367,7 +369,7 @@ static void own_shadows(void **state)
             h.t[i] = R(3);
             h.id[i] = -1;
         }
-        displace_hit(f, P, LANES, &x, 0, &h, &counts);
+        displace_hit(f, P, LANES, &x, NULL, 0, &h, &counts);
         for (int i = 0; i < LANES; i++)
             if (h.id[i] == 0) {
                 bs_vec3 X = lane_at(&x, i, h.t[i]), d = {R(-5) - X.x, R(1.2) - X.y, R(-3) - X.z};
@@ -375,9 +377,15 @@ static void own_shadows(void **state)
                 lane_set(&up.s, n, d);
                 wide near_by[3] = {(wide)X.x + (wide)d.x * 1e-4L, (wide)X.y + (wide)d.y * 1e-4L, (wide)X.z + (wide)d.z * 1e-4L};
                 int in;
-                on[n] = h.part[i];
+                on[n] = from.part[n] = h.part[i];
+                from.id[n] = 5;
+                again.id[n] = -1;
+                again.t[n] = 1;
                 lit[n++] = gap_at(kind, MAP_BUMP, h.part[i], near_by, &in) > 0 ? R(1) : R(0); /* turned to the light */
             }
+        displace_hit(f, P, n, &up, &from, 5, &again, &counts);
+        for (int i = 0; i < n; i++)
+            from.at.x[i] = lit[i]; /* no more needed as a place: whether it is turned to the light */
         displace_occlude(f, P, n, &up, on, lit, &counts);
         for (int i = 0; i < n; i++) {
             bs_vec3 X = lane_get(&up.r, i), D = lane_get(&up.s, i);
@@ -390,6 +398,8 @@ static void own_shadows(void **state)
             }
             int in, below = gap_at(kind, MAP_BUMP, on[i], o, &in) < 0 && in;
             want = !(below || first_crossing(kind, MAP_BUMP, o, d, 1 - off, &doubt) >= 0);
+            if (from.at.x[i] > 0)
+                wrong += (again.id[i] == 5) != (lit[i] == 0);
             wrong += (lit[i] > 0) != want;
             dark += !want;
             lights += want;
@@ -466,7 +476,7 @@ static void constant_bumps(void **state)
                     rough.t[i] = smooth.t[i] = R(3);
                     rough.id[i] = smooth.id[i] = -1;
                 }
-                displace_hit(f, P, LANES, &x, 0, &rough, &counts);
+                displace_hit(f, P, LANES, &x, NULL, 0, &rough, &counts);
                 wider->is->hit(wider, LANES, &x, 0, &smooth);
                 for (int i = 0; i < LANES; i++) {
                     met += smooth.id[i] == 0;

@@ -187,6 +187,161 @@ def test_adaptive(tmp_path: Path, view: str, aa: str, threshold: float) -> None:
         assert all(part[name].tobytes() == got[name][y0:y1, x0:x1].tobytes() for name in got)
 
 
+# ---- secondary rays ----
+
+VANITY = """
+camera: {{from: [0.3, 0.6, -2.2], at: [0, 0.2, 0], fov: 50}}
+image: {{size: [200, 150], background: [0.2, 0.3, 0.5]}}
+lights:
+  lamp: {{at: [-2.5, 4, {near}3]}}
+  area: {{at: [2, 3, {near}2], color: [0.3, 0.2, 0.4], area: {{u: [1, 0, 0], w: [0, 0.5, 0], samples: [2, 2]}}}}
+materials:
+  mirror: {{color: [0, 0, 0], ambient: 0, diffuse: 0, reflection: 1}}
+  clay: {{color: [0.8, 0.7, 0.6], phong: 0.3}}
+  red: {{color: [0.8, 0.2, 0.1], specular: 0.4}}
+objects:
+  {mirror}
+  floor: {{plane: {{origin: [0, -1, 0], {axes}}}, material: clay, bump: {{function: "{bump}"}}}}
+  ball: {{sphere: {{center: [0.4, 0, {near}4.5], radius: 0.8}}, material: red, bump: {{function: "0.05*cos(5*u)*sin(7*w)*sin(w)"}}}}
+  block: {{box: {{from: [-1.6, 0.2, {near}5], to: [-0.8, 1.2, {near}4]}}, material: clay}}
+"""
+
+
+def rgb(layers: dict[str, np.ndarray]) -> np.ndarray:
+    return np.stack([layers[name] for name in "RGB"], axis=-1).astype(float)
+
+
+def share_close(a: dict[str, np.ndarray], b: dict[str, np.ndarray], tolerance: float = 2e-4) -> float:
+    return float((np.abs(rgb(a) - rgb(b)).max(axis=-1) < tolerance).mean())
+
+
+@pytest.mark.parametrize("options", [["--shadow", "none"], ["--shadow", "2"], ["--shadow", "march:4"], ["--shadow", "exact"],
+                                     ["--surface", "displaced"]], ids=lambda o: o[-1])
+def test_mirror_is_the_mirrored_scene(tmp_path: Path, options: list[str]) -> None:
+    """What stands behind the eye, seen in a mirror, is that scene mirrored: every method works on reflected rays, too."""
+    mirror = "mirror: {plane: {origin: [0, 0, 0], u: [1, 0, 0], w: [0, -1, 0]}, material: mirror}"
+    bump = "0.05*sin(5*{0})*cos(3*{1})"
+    seen = render(tmp_path, VANITY.format(near="-", mirror=mirror, axes="u: [0, 0, 1], w: [1, 0, 0]", bump=bump.format("u", "w")), *options)
+    want = render(tmp_path, VANITY.format(near="", mirror="", axes="u: [1, 0, 0], w: [0, 0, -1]", bump=bump.format("w", "u")), *options)
+    assert share_close(seen, want) > 0.998
+    assert rgb(want).std() > 0.1
+
+
+GLASS = """
+camera: {{from: [0.3, 1.9, -4.2], at: [0, 0.7, 0], fov: 40}}
+image: {{size: [160, 120], background: [1, 1, 1]}}
+render: {{depth: {depth}}}
+lights: {lights}
+materials:
+  clay: {{color: [0.8, 0.7, 0.6], ambient: 0.2}}
+  tiles: {{color: {{checker: {{even: [0.9, 0.9, 0.8], odd: [0.1, 0.1, 0.3], size: [0.5, 0.5]}}}}}}
+  pane: {{color: [0.9, 0.3, 0.2], filter: 0.5, transmit: 0.2, reflection: 0.2}}
+  glass: {{color: [1, 1, 1], ambient: 0, diffuse: 0, {glass}}}
+objects:
+  {objects}
+  ball: {{{shape}, material: glass{bump}}}
+"""
+LAMP = "{lamp: {at: [-4.5, 5.2, -2.2]}}"
+ROUND = "sphere: {center: [0, 1, 0], radius: 0.8}"
+TILES = "floor: {plane: {origin: [0, 0, 0], u: [0, 0, 1], w: [1, 0, 0]}, material: tiles}"
+BUMP = ", bump: {function: '0.04*sin(9*u)*sin(8*w)*sin(w)^2'}"
+PANES = """floor: {plane: {origin: [0, 0, 0], u: [0, 0, 1], w: [1, 0, 0]}, material: tiles, bump: {function: "0.05*sin(7*u)*cos(5*w)"}}
+  left: {rectangle: {origin: [-1.4, 2, -0.5], u: [1, 0, 0.3], w: [0, -1.6, 0.1]}, material: pane}
+  right: {box: {from: [0.9, 0.1, -0.6], to: [1.6, 1.3, 0.6]}, material: pane}
+  back: {sphere: {center: [-0.9, 0.5, 1.2], radius: 0.5}, material: clay}"""
+
+
+@pytest.mark.parametrize("shape", [ROUND, "box: {from: [-0.6, 0.3, -0.5], to: [0.6, 1.5, 0.5]}",
+                                   "rectangle: {origin: [-1, 0.4, 0.2], u: [2, 0.4, 0.3], w: [0.2, 1.2, 0.4]}"])
+@pytest.mark.parametrize("bump", ["", BUMP])
+def test_clear_without_refraction_is_not_there(tmp_path: Path, shape: str, bump: str) -> None:
+    """transmit 1, ior 1: neither seen nor a shadow, at any depth from 2 on."""
+    scene = {"depth": 2, "lights": LAMP, "objects": TILES, "shape": shape, "bump": bump}
+    seen = render(tmp_path, GLASS.format(glass="transmit: 1", **scene))
+    without = render(tmp_path, GLASS.format(glass="transmit: 1", **{**scene, "shape": "sphere: {center: [0, 0, -20], radius: 0.1}"}))
+    assert share_close(seen, without) > 0.9995
+    assert share_close(render(tmp_path, GLASS.format(glass="ior: 1", **scene)), without) < 0.95
+
+
+@pytest.mark.parametrize("bump", ["", BUMP])
+@pytest.mark.parametrize("ior", [0.8, 1, 1.5])
+def test_energy(tmp_path: Path, ior: float, bump: str) -> None:
+    """Half mirrored, half let through, in a white world: white, but for what is beyond the depth, and never brighter."""
+    scene = {"lights": "{}", "objects": "", "shape": ROUND, "bump": bump, "glass": f"transmit: 0.5, reflection: 0.5, ior: {ior}"}
+    before = np.zeros((120, 160, 3))
+    for depth in (1, 2, 5, 24):
+        now = rgb(render(tmp_path, GLASS.format(depth=depth, **scene)))
+        if not bump and ior >= 1:  # total reflection is all of the light, as in POV-Ray, whatever the material lets through
+            assert now.max() < 1 + 1e-5
+        assert (now >= before - 1e-5).all()
+        before = now
+    if not bump and ior >= 1:
+        assert before.min() > 1 - 1e-5
+    assert render(tmp_path, GLASS.format(depth=1, **scene))["R"].min() == 0
+
+
+def test_depth(tmp_path: Path) -> None:
+    """Between two mirrors that glow a little: a geometric series with as many terms as the depth."""
+    scene = """
+camera: {from: [0, 0, 0], at: [0.3, 0.2, 1], fov: 60}
+image: {size: [40, 30], background: [9, 9, 9]}
+lights: {}
+materials:
+  mirror: {ambient: 0.1, reflection: [0.5, 0.9, 1]}
+objects:
+  front: {plane: {origin: [0, 0, 2], u: [1, 0, 0], w: [0, 1, 0]}, material: mirror}
+  back: {plane: {origin: [0, 0, -2], u: [1, 0, 0], w: [0, 1, 0]}, material: mirror}
+"""
+    for depth in (1, 2, 3, 8, 32):
+        got = rgb(render(tmp_path, scene, "--set", f"render.depth={depth}"))
+        want = [0.1 * sum(r**k for k in range(depth)) for r in (0.5, 0.9, 1)]
+        assert np.abs(got - want).max() < 1e-5
+    assert render(tmp_path, scene)["G"].max() < 0.1 * sum(0.9**k for k in range(5)) + 1e-5  # the default is 5
+
+
+@pytest.mark.parametrize("method", ALL)
+@pytest.mark.parametrize("material", ["reflection: 0.9", "transmit: 0.8, ior: 1.33"])
+def test_constant_bump_is_the_offset_mirror(tmp_path: Path, method: str, material: str) -> None:
+    """P = h: reflected and refracted rays start from the plane moved by h, so that what they show is moved, too."""
+    scene = GLASS.format(depth=4, lights="{}", glass=material, bump="BUMP",
+                         shape="plane: {origin: [0, HEIGHT, 0], u: [0, 0, 1], w: [1, 0, 0]}",
+                         objects="cube: {box: {from: [-0.6, 0.3, 0.1], to: [0.5, 1.4, 1.1]}, material: clay}\n"
+                         "  bed: {plane: {origin: [0, -0.5, 0], u: [0, 0, 1], w: [1, 0, 0]}, material: tiles}")
+    def show(height: float, bump: str, *options: str) -> dict[str, np.ndarray]:
+        return render(tmp_path, scene.replace("HEIGHT", str(height)).replace("BUMP", bump), *options)
+
+    for height in (0.1, -0.08):
+        moved = show(height, "")
+        bumped = show(0, f", bump: {{function: '{height}'}}", "--shadow", method)
+        none = show(0, f", bump: {{function: '{height}'}}", "--shadow", "none")
+        assert share_close(bumped, moved) > 0.998
+        assert share_close(none, moved) < 0.985
+
+
+def test_secondary_layers_and_threads(tmp_path: Path) -> None:
+    """Layers are those of the first hit; pictures do not depend on threads, crops or the layers."""
+    scene = GLASS.format(depth=6, lights=LAMP.replace("}}", ", area: {u: [1, 0, 0], w: [0, 0, 1], samples: [2, 2]}}, sun: {at: [3, 9, -4]}}"),
+                         glass="filter: 0.8, reflection: 0.15, ior: 1.5, phong: 0.5", bump=BUMP, shape=ROUND, objects=PANES)
+    for options in ([], ["--shadow", "2+"], ["--surface", "displaced", "--size", "40x30"], ["--aa", "3", "--aa-threshold", "0.1"]):
+        got = render(tmp_path, scene, *options)
+        plain = render(tmp_path, scene, *options, "--set", "render.depth=1")
+        for name in got:
+            assert name in "RGB" or got[name].tobytes() == plain[name].tobytes() or "--aa" in options, name
+        for more in (["--threads", "1"], ["--threads", "2"], ["--threads", "7"]):
+            again = render(tmp_path, scene, *options, *more)
+            assert all(again[name].tobytes() == got[name].tobytes() for name in got)
+        part = render(tmp_path, scene, *options, "--crop", "17,5,39,29")
+        assert all(part[name].tobytes() == got[name][5:29, 17:39].tobytes() for name in got)
+
+
+def test_visibility_behind_a_filter(tmp_path: Path) -> None:
+    """It is the mean of red, green and blue that arrive."""
+    scene = GLASS.format(depth=2, lights=LAMP, glass="filter: 0.5, transmit: 0.2", bump="", objects=TILES,
+                         shape="rectangle: {origin: [-1, 1.5, -0.6], u: [1.2, 0, 0], w: [0, 0, 1]}").replace("[1, 1, 1], ambient", "[0.8, 0.4, 0], ambient")
+    got = np.unique(render(tmp_path, scene)["visibility.lamp"].round(5))
+    assert [x for x in got if x not in (0, 1)] == [pytest.approx((0.6 + 0.4 + 0.2) / 3, abs=1e-5)]
+
+
 FUNCTION = ', bump: {function: "0.05*sin(7*u)*cos(5*w) + 0.02*noise(3*u, 3*w) + 0.01*exp(-u^2)*tanh(w)"}'
 
 
@@ -205,6 +360,8 @@ def hashes(kage: Path, tmp_path: Path) -> dict[str, str]:
     """A digest of the pictures and all layers of scenes that use every stage."""
     (tmp_path / "function.yaml").write_text(SCENE.format(ground=FLAT, bump=FUNCTION))
     (tmp_path / "lit.yaml").write_text(LIT.format(view="width: 5"))
+    (tmp_path / "glass.yaml").write_text(GLASS.format(depth=6, lights=LAMP.replace("}}", "}, sun: {at: [3, 9, -4], parallel: {to: [0, 0, 0]}}}"),
+        glass="filter: 0.8, reflection: 0.15, ior: 1.5, phong: 0.5, specular: 0.2", bump=BUMP, shape=ROUND, objects=PANES.replace("tiles", "glass")))
     (tmp_path / "image.yaml").write_text(
         SCENE.format(ground=FLAT, bump="").replace("{color: [0.8, 0.7, 0.6]}", "{color: {image: {file: color.png, size: [1.3, 0.7]}}}"))
     columns, rows = np.meshgrid(np.arange(31), np.arange(17))
@@ -212,7 +369,7 @@ def hashes(kage: Path, tmp_path: Path) -> dict[str, str]:
     turned = TURNED.format(bump=', bump: {function: "0.03*sin(7*u)*cos(5*w)"}')
     (tmp_path / "turned.yaml").write_text(SCENE.format(ground=FLAT, bump="") + turned.lstrip("\n"))
     result = {}
-    made = (tmp_path / f"{name}.yaml" for name in ("function", "lit", "image", "turned"))
+    made = (tmp_path / f"{name}.yaml" for name in ("function", "lit", "glass", "image", "turned"))
     for scene in [*sorted((TOP / "scenes").glob("*.yaml")), *made]:
         for method in ["0", "2+", "march:4", "iter:3", *(["exact"] if scene.stem == "turned" else [])]:
             out = [tmp_path / f"{scene.stem}.exr", tmp_path / f"{scene.stem}.png"]

@@ -241,6 +241,105 @@ def test_smooth_parity(kage: Kage, capsys: pytest.CaptureFixture[str]) -> None:
     assert not wrong
 
 
+SECOND_HEAD = """\
+camera: {camera}
+image: {{size: [200, 150], background: [0.1, 0.25, 0.5]}}
+render: {{depth: {depth}}}
+lights: {lights}
+materials:
+  clay: {{color: [0.82, 0.72, 0.58], ambient: 0.12, diffuse: 0.8}}
+  red: {{color: [0.9, 0.2, 0.1], ambient: 0.2, diffuse: 0.7, phong: 0.5}}
+  tiles: {{color: {{checker: {{even: [0.9, 0.85, 0.7], odd: [0.1, 0.2, 0.3], size: [0.5, 0.5]}}}}, ambient: 0.2, diffuse: 0.7}}
+  mirror: {{color: [0.5, 0.5, 0.5], ambient: 0.05, diffuse: 0.1, reflection: 0.8}}
+  gold: {{color: [0.5, 0.4, 0.1], ambient: 0.1, diffuse: 0.3, specular: 0.6, roughness: 0.02, reflection: [0.8, 0.6, 0.2]}}
+  glass: {{color: [0.9, 1, 0.95], ambient: 0, diffuse: 0.05, phong: 0.7, phong_size: 60, reflection: 0.1, filter: 0.9, ior: 1.5}}
+  clear: {{ambient: 0, diffuse: 0, transmit: 1, ior: 1.5}}
+  pane: {{color: [0.9, 0.3, 0.1], ambient: 0.1, diffuse: 0.4, phong: 0.4, filter: 0.6, transmit: 0.2}}
+  stained: {{color: {{checker: {{even: [0.9, 0.1, 0.1], odd: [0.1, 0.3, 0.9], size: [0.25, 0.2]}}}}, ambient: 0.1, filter: 0.7, transmit: 0.1, ior: 1.2}}
+  printed: {{color: {{image: {{file: color.png}}}}, ambient: 0.1, filter: 0.5, transmit: 0.3}}
+  water: {{color: [0.6, 0.8, 1], ambient: 0, diffuse: 0.1, reflection: 0.2, filter: 0.5, transmit: 0.4, ior: 1.33}}
+  air: {{ambient: 0, diffuse: 0, transmit: 1, reflection: 0.1, ior: 1}}
+objects:
+"""
+TILED = "  floor: {plane: {origin: [0, 0, 0], u: [0, 0, 1], w: [1, 0, 0]}, material: tiles}\n"
+BACK = "  back: {rectangle: {origin: [-3, 3, 2], u: [6, 0, 0.5], w: [0, -3, 0]}, material: mirror}\n"
+SIDE = "  side: {sphere: {center: [1.2, 0.5, 0.6], radius: 0.5}, material: red}\n"
+COLORED = "{lamp: {at: [-4.5, 5.2, -2.2], color: [1.1, 1.08, 1]}, area: {at: [2, 4, -3], color: [0.3, 0.4, 0.6], area: {u: [1, 0, 0], w: [0, 0, 1], samples: [4, 4]}}}"
+
+#: name: (camera, lights, depth, objects)
+SECONDARY = {
+    "mirror plane": (CAMERA, LIGHTS, 5, FLOOR.replace("clay", "mirror") + BALL.replace("MATERIAL", "red")),
+    "mirror sphere": (CAMERA, LIGHTS, 5, TILED + BALL.replace("MATERIAL", "mirror") + SIDE),
+    "mirror box, gold": (CAMERA, COLORED, 5, TILED + BOX.replace("MATERIAL", "gold") + SIDE),
+    **{f"mirror in mirror, depth {depth}": (CAMERA, LIGHTS, depth, TILED + BALL.replace("MATERIAL", "gold") + BACK + SIDE)
+       for depth in (1, 2, 3, 5, 12)},
+    "glass sphere": (CAMERA, LIGHTS, 5, TILED + BALL.replace("MATERIAL", "glass") + SIDE),
+    "glass box": (CAMERA, LIGHTS, 7, TILED + BOX.replace("MATERIAL", "glass") + SIDE),
+    "clear sphere": (CAMERA, LIGHTS, 4, TILED + BALL.replace("MATERIAL", "clear") + SIDE),
+    "total reflection": ("{from: [0.2, 0.6, -3], at: [0, 1.2, 0], fov: 45}", LIGHTS, 9, TILED + SIDE
+                         + "  block: {box: {from: [-0.9, 0.2, -0.9], to: [0.9, 1.75, 0.8]}, material: clear}\n"),
+    "under water": ("{from: [0.2, 0.3, -3], at: [0, 0.8, 0], fov: 70}", LIGHTS, 6, TILED + SIDE
+                    + "  water: {plane: {origin: [0, 1.3, 0], u: [0, 0, 1], w: [1, 0, 0]}, material: water}\n"
+                    + "  above: {sphere: {center: [-0.5, 1.8, 0], radius: 0.3}, material: red}\n"),
+    "water": (CAMERA, COLORED, 6, TILED + SIDE + BALL.replace("MATERIAL", "red")
+              + "  water: {plane: {origin: [0, 0.7, 0], u: [0, 0, 1], w: [1, 0, 0]}, material: water}\n"),
+    "panes": (CAMERA, COLORED, 3, TILED + SHEET.replace("MATERIAL", "pane") + SIDE
+              + "  second: {rectangle: {origin: [-1.5, 2, -1], u: [2, 0, 0], w: [0, 0.5, 1]}, material: pane}\n"),
+    "pane behind pane": ("{from: [0.3, 2.4, -5.2], at: [0, 1, 0], fov: 40}", LIGHTS, 2, TILED + "".join(
+        f"  pane{k}: {{rectangle: {{origin: [{-1 + 0.1 * k}, 2, {0.3 * k}], u: [1.5, 0, 0], w: [0, -1.5, 0.2]}}, material: pane}}\n"
+        for k in range(5))),
+    "filter sphere": (CAMERA, COLORED, 5, TILED + BALL.replace("MATERIAL", "pane") + SIDE),
+    "filter box": (CAMERA, LIGHTS, 5, TILED + BOX.replace("MATERIAL", "pane") + SIDE),
+    "stained sheet": (CAMERA, COLORED, 5, TILED + SHEET.replace("MATERIAL", "stained") + SIDE),
+    "stained box": (CAMERA, LIGHTS, 5, TILED + BOX.replace("MATERIAL", "stained") + SIDE),
+    "stained sphere": (CAMERA, LIGHTS, 5, TILED + BALL.replace("MATERIAL", "stained") + SIDE),
+    "printed sheet": (CAMERA, LIGHTS, 5, TILED + SHEET.replace("MATERIAL", "printed") + SIDE),
+    "ball in a ball": (CAMERA, LIGHTS, 6, TILED + BALL.replace("MATERIAL", "glass") + SIDE
+                       + "  inner: {sphere: {center: [0.1, 1, -0.1], radius: 0.4}, material: water}\n"),
+    "bubble in glass": (CAMERA, LIGHTS, 6, TILED + BALL.replace("MATERIAL", "clear") + SIDE
+                        + "  inner: {sphere: {center: [0.1, 1, -0.1], radius: 0.4}, material: air}\n"),
+    "half in water": (CAMERA, LIGHTS, 6, TILED + BALL.replace("MATERIAL", "clear") + SIDE
+                      + "  water: {plane: {origin: [0, 0.7, 0], u: [0, 0, 1], w: [1, 0, 0]}, material: water}\n"),
+    "overlapping": (CAMERA, LIGHTS, 8, TILED + BALL.replace("MATERIAL", "clear") + SIDE
+                    + "  other: {box: {from: [-0.9, 0.3, -0.7], to: [0.1, 1.2, 0.7]}, material: water}\n"),
+    "eye in glass": ("{from: [0, 1.1, 0], at: [0.3, 0.4, 1], fov: 90}", LIGHTS, 5, TILED + BALL.replace("MATERIAL", "clear") + SIDE),
+    "orthographic glass": ("{from: [0.3, 2.9, -5.2], at: [0, 0.5, 0], width: 4}", LIGHTS, 5, TILED + BALL.replace("MATERIAL", "glass") + SIDE),
+    "spot through a pane": (CAMERA, "{a: {at: [-3, 5, -2], spot: {to: [0, 0.5, 0]}, fade: {distance: 6}}}", 5,
+                            TILED + SHEET.replace("MATERIAL", "stained") + SIDE),
+    **{f"{material} {name}": (CAMERA, LIGHTS, 6, f"{TILED}{SIDE}  it: {{{ROUND_ONES[name]}, material: {material}}}\n")
+       for material, name in (("mirror", "torus"), ("glass", "torus"), ("clear", "standing torus"), ("glass", "cylinder"),
+                              ("pane", "open cylinder"), ("mirror", "cone"), ("clear", "pointed cone"), ("gold", "open cone"),
+                              ("mirror", "disc"), ("pane", "disc"))},
+    **{f"{material} {name}, {move}": (CAMERA, LIGHTS, 7, f"{TILED}{SIDE}  it:\n    material: {material}\n    {moved(name, move)}\n")
+       for material, name, move in (("glass", "box", "sheared"), ("glass", "sphere", "stretched"), ("clear", "cylinder", "mirrored"),
+                                    ("mirror", "torus", "moved"))},
+    "glass copies": (CAMERA, COLORED, 7, f"{TILED}{SIDE}  it:\n    material: glass\n    {moved('box', 'moved')}\n"
+                     "  it2: {copy: it, material: mirror, transform: [{scale: [1, 0.5, 1]}, {translate: [1.4, 0, 0.5]}]}\n"
+                     "  it3: {copy: it, transform: [{scale: [-0.6, 1, 1]}, {translate: [-1.6, 0, 0.5]}]}\n"),
+    "parallel through glass": (CAMERA, "{a: {at: [-3, 5, -2], parallel: {to: [0, 0, 0]}}}", 5, TILED + BALL.replace("MATERIAL", "glass") + SIDE),
+}
+
+
+@needs_povray
+@pytest.mark.parametrize("name", SECONDARY)
+def test_secondary_parity(kage: Kage, name: str, capsys: pytest.CaptureFixture[str]) -> None:
+    """Mirrors, glass and coloured shadows."""
+    write_images(kage.folder)
+    scene = kage.folder / "second.yaml"
+    camera, lights, depth, objects = SECONDARY[name]
+    scene.write_text(SECOND_HEAD.format(camera=camera, lights=lights, depth=depth) + objects)
+    kage.good("pov", scene, "-o", "second.pov", "--surface", "smooth")
+    kage.good("render", scene, "-o", "second.exr", "--quiet")
+    picture = layers(kage.folder / "second.exr")
+    theirs, words = povray(kage.folder / "second.pov")
+    off = np.abs(np.stack([picture[channel] for channel in "RGB"], axis=-1) - theirs).max(axis=-1)
+    close = float((off <= np.maximum(STEP, np.abs(theirs).max(axis=-1) * 2.0**-10)).mean())
+    with capsys.disabled():
+        print(f"{name:28} {100 * close:9.4f} % {off.max():8.4f}")
+    assert not words.strip()
+    assert close >= 0.999, f"{100 * close:.3f} %"
+
+
 #: name: (colour, object)
 SPHERE = "sphere: {center: [0.1, 1, 0], radius: 1}"
 COLORS = {
@@ -525,6 +624,26 @@ def test_displaced_parity(kage: Kage, capsys: pytest.CaptureFixture[str]) -> Non
     with capsys.disabled():
         print("\n" + "\n".join(table))
     assert not wrong
+
+
+@needs_povray
+@pytest.mark.parametrize("material", ["mirror", "glass"])
+@pytest.mark.parametrize("name", ["plane", "skewed rectangle", "box", "sphere", "rectangle, map"])
+def test_displaced_secondary(kage: Kage, name: str, material: str) -> None:
+    """Rough mirrors, and rough glass: rays that start on a rough surface, and on its far side from within."""
+    scene, (shape, bump, _) = write_displaced(kage, name), DISPLACED[name]
+    scene.write_text(SECOND_HEAD.format(camera=CAMERA, lights=LIGHTS, depth=5).replace("[200, 150]", "[100, 75]")
+                     + f"  rough:\n    {shape}\n    material: {material}\n    bump: {bump}\n"
+                     + "  above: {sphere: {center: [0.4, 2.4, -0.6], radius: 0.3}, material: red}\n"
+                     + "  ground: {plane: {origin: [0, -1, 0], u: [0, 0, 1], w: [1, 0, 0]}, material: tiles}\n")
+    write_images(kage.folder)
+    kage.good("pov", scene, "-o", "rough.pov", "--surface", "displaced")
+    kage.good("render", scene, "-o", "rough.exr", "--quiet", "--surface", "displaced")
+    picture = layers(kage.folder / "rough.exr")
+    theirs, words = povray(kage.folder / "rough.pov", (100, 75))
+    off = np.abs(np.stack([picture[channel] for channel in "RGB"], axis=-1) - theirs).max(axis=-1)
+    assert not words.strip()
+    assert (off <= STEP).mean() > (0.995 if material == "glass" else PARITY[False])
 
 
 @needs_povray

@@ -288,6 +288,81 @@ static void own_shadow(void **state)
     }
 }
 
+/* hit_own leaves the own start out: what is met again is met at a place of the surface and not at the start; from a convex one inward
+ * the far side is, outward nothing. Other surfaces' rays it treats as hit does. */
+static void own_hits(void **state)
+{
+    (void)state;
+    for (int kind = 0; kind < KINDS; kind++) {
+        surface *f = make(kind);
+        const bool flat = kind == PLANE || kind == RECTANGLE || kind == DISC;
+        int inward = 0;
+        for (int round = 0; round < 40; round++) {
+            static rays x, out;
+            static hits h, again, want;
+            static partials q;
+            static starts from;
+            int32_t part[LANES], there[LANES];
+            real u[LANES], w[LANES], cosine[LANES];
+            int n = 0;
+            for (int i = 0; i < LANES; i++)
+                random_ray(&x, i);
+            no_hits(&h, LANES);
+            f->is->hit(f, LANES, &x, 7, &h);
+            for (int i = 0; i < LANES; i++)
+                if (h.id[i] >= 0) {
+                    bs_vec3 r = lane_at(&x, i, 0), s = lane_get(&x.s, i);
+                    lane_set(&x.r, n, r);
+                    lane_set(&x.s, n, s);
+                    h.t[n++] = h.t[i];
+                }
+            f->is->locate(f, n, &x, h.t, part, u, w);
+            f->is->eval(f, n, part, u, w, 1, &q);
+            for (int i = 0; i < n; i++) {
+                bs_vec3 d = {(real)random_in(-9, 9), (real)random_in(-9, 9), (real)random_in(-9, 9)};
+                d.x = round == 1 ? 0 : d.x; /* along a face of the box */
+                cosine[i] = bs_dot(lane_unit(d), lane_unit(bs_normal(lane_get(&q.Qu, i), lane_get(&q.Qw, i))));
+                lane_set(&out.r, i, lane_at(&x, i, h.t[i] * R(0.9))); /* anywhere: it does not matter */
+                lane_set(&from.at, i, lane_at(&x, i, h.t[i]));
+                lane_set(&out.s, i, d);
+                from.id[i] = 7;
+                from.part[i] = part[i];
+            }
+            no_hits(&again, n);
+            f->is->hit_own(f, n, &out, &from, 7, &again);
+            for (int i = 0; i < n; i++) {
+                const bool back = again.id[i] == 7;
+                if (flat || (is_convex(kind) && cosine[i] > R(1e-4)))
+                    assert_false(back);
+                else if (is_closed(kind) && cosine[i] < R(-1e-3))
+                    assert_true(back);
+                assert_true(!back || again.t[i] > 0);
+                inward += back;
+                again.t[i] = back ? again.t[i] : 1;
+            }
+            out.r = from.at;
+            f->is->locate(f, n, &out, again.t, there, u, w);
+            f->is->eval(f, n, there, u, w, 1, &q);
+            for (int i = 0; i < n; i++)
+                if (again.id[i] == 7) {
+                    assert_true(distance(lane_get(&q.Q, i), lane_at(&out, i, again.t[i])) < (kind == HAT ? 300 : 60) * EPS); /* a tip */
+                    const real leaves = bs_dot(lane_get(&out.s, i), bs_normal(lane_get(&q.Qu, i), lane_get(&q.Qw, i)));
+                    assert_true(!is_closed(kind) || (leaves > 0) == (cosine[i] < 0));
+                    assert_true(kind != BOX || there[i] != part[i]);
+                }
+            /* what comes from elsewhere */
+            no_hits(&again, n);
+            no_hits(&want, n);
+            f->is->hit_own(f, n, &x, &from, 3, &again);
+            f->is->hit(f, n, &x, 3, &want);
+            assert_memory_equal(again.t, want.t, (size_t)n * sizeof(real));
+            assert_memory_equal(again.id, want.id, (size_t)n * sizeof(int32_t));
+        }
+        assert_true(flat ? inward == 0 : inward > (is_closed(kind) && kind != THIN ? 500 : 100));
+        surface_free(f);
+    }
+}
+
 /* Rays from within see the inner side. */
 static void from_inside(void **state)
 {
@@ -332,6 +407,7 @@ static void odd_rays(void **state)
         static rays x;
         static hits h;
         static partials q;
+        static starts from;
         int32_t part[LANES];
         real u[LANES], w[LANES], lit[LANES];
         for (int i = 0; i < ODD; i++) {
@@ -342,6 +418,12 @@ static void odd_rays(void **state)
         no_hits(&h, ODD + 1);
         f->is->hit(f, ODD, &x, 0, &h);
         f->is->occlude(f, ODD, &x, lit);
+        from.at = x.r;
+        for (int i = 0; i < ODD; i++) {
+            from.id[i] = i % 2;
+            from.part[i] = i % f->is->parts;
+        }
+        f->is->hit_own(f, ODD, &x, &from, 0, &h);
         f->is->locate(f, ODD, &x, h.t, part, u, w);
         f->is->eval(f, ODD, part, u, w, 2, &q);
         assert_int_equal(h.id[ODD], -1);
@@ -451,6 +533,7 @@ int main(void)
         cmocka_unit_test(box_faces),
         cmocka_unit_test(shadows_agree_with_hits),
         cmocka_unit_test(own_shadow),
+        cmocka_unit_test(own_hits),
         cmocka_unit_test(from_inside),
         cmocka_unit_test(odd_rays),
         cmocka_unit_test(ways_around),

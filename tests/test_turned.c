@@ -191,7 +191,7 @@ static void first_hits(void **state)
     }
 }
 
-/* From hits outward and inward: the surface's shadow on itself, by the crossings after the start. */
+/* From hits outward and inward: the surface's shadow on itself, and where it is met again, by the crossings after the start. */
 static void own_shadows(void **state)
 {
     (void)state;
@@ -199,9 +199,11 @@ static void own_shadows(void **state)
         const shape *f = &shapes[k];
         surface *q = make(f);
         int dark = 0, free = 0, doubts = 0;
+        double worst = 0;
         for (int round = 0; round < 8; round++) {
-            static rays x, away;
-            static hits h;
+            static rays x, away, nowhere;
+            static hits h, again;
+            static starts from;
             int32_t part[LANES], on[LANES];
             real t[LANES], u[LANES], w[LANES], lit[LANES];
             int n = 0;
@@ -220,12 +222,20 @@ static void own_shadows(void **state)
                     bs_vec3 p = lane_at(&x, i, h.t[i]);
                     lane_set(&away.r, n, p);
                     lane_set(&away.s, n, (bs_vec3){(real)light.x - p.x, (real)light.y - p.y, (real)light.z - p.z});
-                    lit[n] = 1;
+                    lit[n] = again.t[n] = 1;
+                    again.id[n] = -1;
+                    from.id[n] = 7;
+                    from.part[n] = part[i];
                     on[n++] = part[i];
                 }
             q->is->occlude_own(q, n, &away, on, lit);
+            from.at = away.r;
+            nowhere.s = away.s;
+            vec3s_fill(&nowhere.r, n, 9, 9, 9); /* it does not matter */
+            q->is->hit_own(q, n, &nowhere, &from, 7, &again);
             for (int i = 0; i < n; i++) {
                 wide r[3], s[3];
+                assert_true((again.id[i] == 7) == (lit[i] == 0));
                 bool doubt, c;
                 widen(&away, i, r, s);
                 /* from a little way off: where the gap still is small there, or has turned, nothing is said */
@@ -243,11 +253,21 @@ static void own_shadows(void **state)
                                 (double)s[0], (double)s[1], (double)s[2], (double)lit[i], (double)found);
                     fail();
                 }
+                if (found >= 0) {
+                    const wide speed = sqrtl(dot(s, s));
+                    const wide rate = fabsl(gap(f, r, s, found + 1e-7L, &c) - gap(f, r, s, found - 1e-7L, &c)) / 2e-7L / speed;
+                    const double far = fabs((double)(((wide)again.t[i] - found) * speed * rate * fminl(1, fabsl(g) * 500)));
+                    worst = fmax(worst, far);
+                    if (!(far <= 60 * EPS * (1 + (double)(speed * found)))) {
+                        print_error("%s: met again %g off (t %.9g, bisection %.9g)\n", f->name, far, (double)again.t[i], (double)found);
+                        fail();
+                    }
+                }
                 dark += found >= 0;
                 free += found < 0;
             }
         }
-        print_message("%s: %d dark, %d lit, %d left out\n", f->name, dark, free, doubts);
+        print_message("%s: %d dark, met again at most %.2g off, %d lit, %d left out\n", f->name, dark, worst, free, doubts);
         assert_true(dark > 20 && free > 20);
         assert_true(doubts < (dark + free) / 4);
         surface_free(q);
