@@ -45,7 +45,7 @@ class Level:
 LEVELS = {
     level.name: level
     for level in (
-        Level("quick", FEWER, 7, (640, 360), (320, 180), None, False, (64, 48), ("waves", "cube"), 1,
+        Level("quick", FEWER, 7, (400, 225), (320, 180), None, False, (64, 48), ("waves", "cube"), 1,
               (0.1, 0.2, 0.35, 0.6, 1.0), (15, 30, 45, 60, 80), (), (), ("waves",)),
         Level("normal", METHODS, 7, (960, 540), (480, 270), (160, 120), True, (160, 120), tuple(TITLES), 1,
               (0.05, 0.1, 0.15, 0.2, 0.3, 0.45, 0.7, 1.0), (10, 15, 20, 30, 40, 50, 65, 80), (0.5, 1, 2, 4, 8),
