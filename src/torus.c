@@ -34,13 +34,44 @@ typedef struct local {
     double ox, oy, oz, dx, dy, dz, speed, start;
 } local;
 
-/* Rays that are searched, side by side. */
-typedef struct search {
-    double ox[LANES], oy[LANES], oz[LANES], dx[LANES], dy[LANES], dz[LANES], speed[LANES], start[LANES];
-    double a[LANES], b[LANES]; /* the bracket of the first root; a > b: there is none */
-    double side[LANES];        /* the sign of G at a */
+/* First roots that are searched, side by side; `way` as in `local`. */
+typedef struct roots {
+    double speed[LANES], start[LANES];
+    double a[LANES], b[LANES]; /* the bracket; a > b: there is no root */
+    double side[LANES];        /* the function's sign at a */
     double way[LANES];
     double open[LANES]; /* 1: not found yet */
+} roots;
+
+KM_INLINE void root_begin(roots *k, int i, int some, double a, double b, int above)
+{
+    k->open[i] = some ? 1 : 0;
+    k->a[i] = some ? a : 1;
+    k->b[i] = some ? b : -1;
+    k->side[i] = above ? 1 : -1; /* up to the first change of it */
+    k->way[i] = 0.5 * (a + b);
+}
+
+/* A step of Newton's iteration for a function with that value and slope, or to the bracket's middle where that would leave it. */
+KM_INLINE void root_step(roots *k, int i, double value, double slope, double close)
+{
+    double way = k->way[i], a = k->a[i], b = k->b[i], before = value * k->side[i];
+    a = before > 0 ? way : a;
+    b = before > 0 ? b : way;
+    double next = way - value / slope, middle = 0.5 * (a + b);
+    next = next > a ? next : middle;
+    next = next < b ? next : middle;
+    next = k->open[i] > 0 ? next : way;
+    k->way[i] = next;
+    k->a[i] = k->open[i] > 0 ? a : k->a[i];
+    k->b[i] = k->open[i] > 0 ? b : k->b[i];
+    k->open[i] = fabs(next - way) > close ? 1 : 0;
+}
+
+/* Rays that are searched, side by side. */
+typedef struct search {
+    double ox[LANES], oy[LANES], oz[LANES], dx[LANES], dy[LANES], dz[LANES];
+    roots root;
 } search;
 
 KM_INLINE local local_of(const torus *f, const rays *x, int i)
@@ -119,35 +150,19 @@ STAGE static void torus_bracket(const torus *restrict base, double m, int n, con
         double b = first ? e.e[1] : second ? e.e[2] : third ? e.e[3] : e.e[4];
         k->ox[i] = l.ox, k->oy[i] = l.oy, k->oz[i] = l.oz;
         k->dx[i] = l.dx, k->dy[i] = l.dy, k->dz[i] = l.dz;
-        k->speed[i] = l.speed, k->start[i] = l.start;
-        int some = first | second | third | last;
-        k->open[i] = some ? 1 : 0;
-        k->a[i] = some ? a : 1;
-        k->b[i] = some ? b : -1;
-        k->side[i] = in0 ? 1 : -1; /* up to the first change of it */
-        k->way[i] = 0.5 * (a + b);
+        k->root.speed[i] = l.speed, k->root.start[i] = l.start;
+        root_begin(&k->root, i, first | second | third | last, a, b, in0);
     }
 }
 
-/* One step of Newton's iteration for each, or to the bracket's middle where that would leave it. */
 STAGE static void torus_step(double M, double m, double close, int n, search *restrict k)
 {
     for (int i = 0; i < n; i++) {
-        double way = k->way[i], a = k->a[i], b = k->b[i];
+        double way = k->root.way[i];
         double x = k->ox[i] + way * k->dx[i], y = k->oy[i] + way * k->dy[i], z = k->oz[i] + way * k->dz[i];
         double r = sqrt(x * x + z * z), d = r - M, g = d * d + y * y - m * m;
         double slope = 2 * (d * (x * k->dx[i] + z * k->dz[i]) / most(r, 1e-300) + y * k->dy[i]);
-        double before = g * k->side[i];
-        a = before > 0 ? way : a;
-        b = before > 0 ? b : way;
-        double next = way - g / slope, middle = 0.5 * (a + b);
-        next = next > a ? next : middle;
-        next = next < b ? next : middle;
-        next = k->open[i] > 0 ? next : way;
-        k->way[i] = next;
-        k->a[i] = k->open[i] > 0 ? a : k->a[i];
-        k->b[i] = k->open[i] > 0 ? b : k->b[i];
-        k->open[i] = fabs(next - way) > close ? 1 : 0;
+        root_step(&k->root, i, g, slope, close);
     }
 }
 
@@ -163,11 +178,11 @@ static int any(int n, const double *open)
 static void torus_search(const torus *f, double m, int n, const rays *x, const real *end, search *k)
 {
     torus_bracket(f, m, n, x, end, k);
-    for (int step = 0; step < STEPS && any(n, k->open); step++)
+    for (int step = 0; step < STEPS && any(n, k->root.open); step++)
         torus_step(f->M, m, CLOSE * (f->M + m), n, k);
 }
 
-STAGE static void torus_take(int n, const search *restrict k, int32_t id, hits *restrict h)
+STAGE static void torus_take(int n, const roots *restrict k, int32_t id, hits *restrict h)
 {
     for (int i = 0; i < n; i++) {
         real t = (real)((k->way[i] + k->start[i]) / k->speed[i]);
@@ -182,7 +197,7 @@ static void torus_hit(const surface *base, int n, const rays *x, int32_t id, hit
     const torus *f = (const torus *)base;
     search k;
     torus_search(f, f->m, n, x, h->t, &k);
-    torus_take(n, &k, id, h);
+    torus_take(n, &k.root, id, h);
 }
 
 /* A place r + s t in the frame. */
@@ -301,10 +316,8 @@ STAGE static void torus_occlude_own(const surface *base, int n, const rays *v, c
 
 /* Cubics whose first root above 0 is searched, side by side. */
 typedef struct cubics {
-    double A[LANES], B[LANES], C[LANES], speed[LANES];
-    double a[LANES], b[LANES]; /* as in `search` */
-    double side[LANES];        /* the cubic's sign at a */
-    double way[LANES], open[LANES];
+    double A[LANES], B[LANES], C[LANES];
+    roots root;
 } cubics;
 
 /* As far as the torus is wide, beyond which there is no root. */
@@ -320,43 +333,17 @@ STAGE static void torus_own_bracket(const torus *restrict base, int n, const ray
         int in0 = q.C > 0, in1 = cubic_at(q.A, q.B, q.C, t0) > 0, in2 = cubic_at(q.A, q.B, q.C, t1) > 0;
         int in3 = cubic_at(q.A, q.B, q.C, last) > 0, first = in0 != in1, second = in1 != in2, third = in2 != in3;
         double a = first ? 0 : second ? t0 : t1, b = first ? t0 : second ? t1 : last;
-        int some = first | second | third;
         k->A[i] = q.A, k->B[i] = q.B, k->C[i] = q.C;
-        k->speed[i] = q.T;
-        k->open[i] = some ? 1 : 0;
-        k->a[i] = some ? a : 1;
-        k->b[i] = some ? b : -1;
-        k->side[i] = in0 ? 1 : -1;
-        k->way[i] = 0.5 * (a + b);
+        k->root.speed[i] = q.T, k->root.start[i] = 0;
+        root_begin(&k->root, i, first | second | third, a, b, in0);
     }
 }
 
-/* As torus_step. */
 STAGE static void torus_own_step(double close, int n, cubics *restrict k)
 {
     for (int i = 0; i < n; i++) {
-        double way = k->way[i], a = k->a[i], b = k->b[i], A = k->A[i], B = k->B[i];
-        double g = cubic_at(A, B, k->C[i], way), slope = (3 * way + 2 * A) * way + B, before = g * k->side[i];
-        a = before > 0 ? way : a;
-        b = before > 0 ? b : way;
-        double next = way - g / slope, middle = 0.5 * (a + b);
-        next = next > a ? next : middle;
-        next = next < b ? next : middle;
-        next = k->open[i] > 0 ? next : way;
-        k->way[i] = next;
-        k->a[i] = k->open[i] > 0 ? a : k->a[i];
-        k->b[i] = k->open[i] > 0 ? b : k->b[i];
-        k->open[i] = fabs(next - way) > close ? 1 : 0;
-    }
-}
-
-STAGE static void torus_own_take(int n, const cubics *restrict k, int32_t id, hits *restrict h)
-{
-    for (int i = 0; i < n; i++) {
-        real t = (real)(k->way[i] / k->speed[i]);
-        int take = (k->a[i] <= k->b[i]) & (t > 0) & (t < h->t[i]);
-        h->t[i] = take ? t : h->t[i];
-        h->id[i] = take ? id : h->id[i];
+        double way = k->root.way[i], A = k->A[i], B = k->B[i];
+        root_step(&k->root, i, cubic_at(A, B, k->C[i], way), (3 * way + 2 * A) * way + B, close);
     }
 }
 
@@ -374,11 +361,11 @@ static void torus_hit_own(const surface *base, int n, const rays *x, const start
         own_end[i] = from->id[i] == id ? h->t[i] : R(-1);
     }
     torus_search(f, f->m, n, x, other_end, &k);
-    torus_take(n, &k, id, h);
+    torus_take(n, &k.root, id, h);
     torus_own_bracket(f, n, &own, own_end, &q);
-    for (int step = 0; step < STEPS && any(n, q.open); step++)
+    for (int step = 0; step < STEPS && any(n, q.root.open); step++)
         torus_own_step(close, n, &q);
-    torus_own_take(n, &q, id, h);
+    torus_take(n, &q.root, id, h);
 }
 
 /* ---- for true displacement ---- */
@@ -401,7 +388,7 @@ STAGE static void torus_bounds(const torus *restrict base, double m, int n, cons
 }
 
 /* From outside the shell begins where the outer torus is met first. */
-STAGE static void torus_enter(const torus *restrict base, double m, int n, const rays *restrict x, const search *restrict k,
+STAGE static void torus_enter(const torus *restrict base, double m, int n, const rays *restrict x, const roots *restrict k,
                               real *restrict t0, real *restrict t1)
 {
     const torus f = *base;
@@ -427,7 +414,7 @@ static void torus_shell(const surface *base, int part, int n, const rays *x, con
     torus_bounds(f, m > 0 ? m : 0, n, x, end, t0, t1);
     if (m > 0 && m < f->M) { /* a fatter tube closes the hole, where G no longer has the quartic's sign */
         torus_search(f, m, n, x, end, &k);
-        torus_enter(f, m, n, x, &k, t0, t1);
+        torus_enter(f, m, n, x, &k.root, t0, t1);
     }
 }
 
