@@ -122,9 +122,11 @@ def kage_once(bench: Bench) -> list[Job]:
     ]
 
 
-def povray_scenes(bench: Bench) -> list[tuple[str, str, Path, Job | None]]:
-    """Name, scene, file, and the job that makes that file."""
-    found: list[tuple[str, str, Path, Job | None]] = [
+PovScene = tuple[str, str, Path, Job | None]  # name, scene, file, and the job that makes that file
+
+
+def povray_scenes(bench: Bench) -> list[PovScene]:
+    found: list[PovScene] = [
         (f"{POVRAY}, {name}", "cube", TOP / "bench" / f"{file}.pov", None)
         for name, file in POV_SCENES.items() if "cube" in bench.scenes
     ]
@@ -143,27 +145,24 @@ def povray_scenes(bench: Bench) -> list[tuple[str, str, Path, Job | None]]:
     return found
 
 
-def povray_round(bench: Bench, number: int, version: str, scenes: Sequence[tuple[str, str, Path, Job | None]]) -> list[Job]:
+def povray_job(bench: Bench, version: str, scene: PovScene, name: str, work: Callable[[Path, Size], Value]) -> Job:
+    kind, _, path, made = scene
     size = bench.level.povray_size
-    return [
-        Job(f"time {scene} {name} {number}",
-            machine_inputs(povray=version, size=list(size), mesh=bench.level.mesh_size and list(bench.level.mesh_size),
-                           file=programs.file_digest(path) if made is None else [made.inputs, path.name]),
-            functools.partial(time_povray, path, size), Stage.TIMES, 6 if "mesh2" in name else 1)
-        for name, scene, path, made in scenes
-    ]
+    file = programs.file_digest(path) if made is None else [made.inputs, path.name]
+    return Job(name, machine_inputs(povray=version, size=list(size), file=file), functools.partial(work, path, size), Stage.TIMES,
+               6 if "mesh2" in kind else 1)
 
 
-def povray_memory(bench: Bench, version: str, scenes: Sequence[tuple[str, str, Path, Job | None]]) -> list[Job]:
-    size = bench.level.povray_size
-    return [
-        Job(f"memory {scene} {name}",
-            machine_inputs(povray=version, size=list(size),
-                           file=programs.file_digest(path) if made is None else [made.inputs, path.name]),
-            functools.partial(lambda path: {"memory": programs.peak_memory(programs.povray_command(path, size))}, path),
-            Stage.TIMES, 6 if "mesh2" in name else 1)
-        for name, scene, path, made in scenes
-    ]
+def povray_round(bench: Bench, number: int, version: str, scenes: Sequence[PovScene]) -> list[Job]:
+    return [povray_job(bench, version, scene, f"time {scene[1]} {scene[0]} {number}", time_povray) for scene in scenes]
+
+
+def weigh_povray(scene: Path, size: Size) -> Value:
+    return {"memory": programs.peak_memory(programs.povray_command(scene, size))}
+
+
+def povray_memory(bench: Bench, version: str, scenes: Sequence[PovScene]) -> list[Job]:
+    return [povray_job(bench, version, scene, f"memory {scene[1]} {scene[0]}", weigh_povray) for scene in scenes]
 
 
 EMBREE = {"Embree 3, smooth": 1, "Embree 3, displaced mesh of 1024 x 1024": 1024}

@@ -86,6 +86,11 @@ def version(command: Sequence[Word], pattern: str = r".+") -> str:
     return found[0] if found else ""
 
 
+def commit() -> str:
+    """That is checked out, with -dirty behind it where files differ from it; nothing outside of git."""
+    return version(["git", "describe", "--always", "--dirty"])
+
+
 def file_digest(*paths: Path) -> str:
     sha = hashlib.sha256()
     for path in paths:

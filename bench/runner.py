@@ -7,7 +7,6 @@ but for what is timed: such a job runs alone and pinned, in the order of the pla
 from __future__ import annotations
 
 import os
-import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterable, Sequence
@@ -17,7 +16,8 @@ from datetime import UTC, datetime
 from enum import IntEnum
 from pathlib import Path
 
-from bench.programs import TOP, MeasureError, pinned
+from bench import programs
+from bench.programs import MeasureError, pinned
 from bench.store import Inputs, Store, Value
 
 
@@ -41,11 +41,6 @@ class Job:
 
 def is_done(job: Job, store: Store) -> bool:
     return store.get(job.name, job.inputs) is not None and all(path.exists() for path in job.files)
-
-
-def commit() -> str:
-    done = subprocess.run(["git", "describe", "--always", "--dirty"], cwd=TOP, capture_output=True, text=True, check=False)
-    return done.stdout.strip()
 
 
 class Progress:
@@ -79,7 +74,7 @@ class Runner:
     """Does jobs and keeps their values. `failed` tells of those that could not be done."""
 
     def __init__(self, store: Store) -> None:
-        self.store, self.commit = store, commit()
+        self.store, self.commit = store, programs.commit()
         self.failed: dict[str, str] = {}
 
     def keep(self, job: Job, value: Value, seconds: float) -> None:

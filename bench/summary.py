@@ -69,7 +69,7 @@ def package_version(name: str) -> str | None:
 
 
 def circumstances(bench: Bench) -> Data:
-    describe = programs.version(["git", "describe", "--always", "--dirty"])
+    describe = programs.commit()
     memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
     return {
         "date": datetime.now(UTC).date().isoformat(), "kage": programs.version([bench.kage, "--version"]),
