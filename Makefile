@@ -35,10 +35,13 @@ endif
 
 # The libraries' headers as system headers: their warnings are not ours.
 PKG_CFLAGS := $(patsubst -I%,-isystem %,$(shell pkg-config --cflags $(PKGS) 2>/dev/null))
+# Embree 4 or 3, whichever has its headers here: it need not have a pkg-config file.
+EMBREE     := $(firstword $(foreach v,4 3,$(shell printf '\043include <embree$(v)/rtcore.h>\n' | $(CC) -fsyntax-only -x c - 2>/dev/null && echo $(v))))
+DEFINES    += -DKAGE_EMBREE=$(or $(EMBREE),0)
 PKG_LIBS   := $(shell pkg-config --libs-only-L OpenEXR 2>/dev/null) -lOpenEXRCore $(shell pkg-config --libs libpng libfyaml 2>/dev/null)
 override CFLAGS  += $(STANDARD) $(OPTIMISE) -fopenmp $(WARNINGS) $(DEFINES) $(SANITIZER) $(PKG_CFLAGS) -MMD -MP
 override LDFLAGS += -fopenmp $(SANITIZER)
-LIBS       = $(PKG_LIBS) -lm
+LIBS       = $(PKG_LIBS) -lembree$(or $(EMBREE),3) -lm
 
 PROGRAM   = main arguments progress command_render command_check command_pixel command_pov
 SOURCES   = $(patsubst src/%.c,%,$(wildcard src/*.c))

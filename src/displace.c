@@ -42,25 +42,25 @@ STAGE static void gaps(search *restrict s, real *restrict slope)
     }
 }
 
-/* (u,w) where the foot is beyond the part's extent, and P has no bounds: that of the nearest end, so that the rough surface goes on
+/* (u,w) where the foot is beyond the piece's extent, and P has no bounds: that of the nearest end, so that the rough surface goes on
  * from there. */
-static void within_extent(const surface *f, int part, int n, const feet *p, real *u, real *w)
+static void within_extent(const ground *f, int n, const int32_t *lane, const feet *p, real *u, real *w)
 {
-    double U[2], W[2];
-    f->is->extent(f, part, U, W);
     for (int i = 0; i < n; i++) {
+        double U[2], W[2];
+        f->extent(f, lane[i], U, W);
         u[i] = real_min(real_max(p->u[i], (real)U[0]), (real)U[1]);
         w[i] = real_min(real_max(p->w[i], (real)W[0]), (real)W[1]);
     }
 }
 
-static void look(const surface *f, const perturb *P, int part, search *s, real *slope)
+static void look(const ground *f, const perturb *P, search *s, real *slope)
 {
     real u[LANES], w[LANES];
-    f->is->foot(f, part, s->n, &s->x, s->t, &s->p);
-    if (f->is->loose)
-        within_extent(f, part, s->n, &s->p, u, w);
-    P->is->eval(P, s->n, f->is->loose ? u : s->p.u, f->is->loose ? w : s->p.w, 1, &s->h);
+    f->foot(f, s->n, s->lane, &s->x, s->t, &s->p);
+    if (f->loose)
+        within_extent(f, s->n, s->lane, &s->p, u, w);
+    P->is->eval(P, s->n, f->loose ? u : s->p.u, f->loose ? w : s->p.w, 1, &s->h);
     s->looks += s->n;
     gaps(s, slope);
 }
@@ -91,17 +91,18 @@ static void compact(search *s)
 
 /* A crossing between a and b, the gap's sign changing: Newton's steps from b, or halvings where they leave the bracket or
  * do not pay. Returns the confirmed t in *t. */
-static displace_end refine(const surface *f, const perturb *P, int part, search *s, int i, real a, real b, real *t)
+static displace_end refine(const ground *f, const perturb *P, search *s, int i, real a, real b, real *t)
 {
     search one; /* its first lane alone is used */
     real slope[LANES], best = b, least = REAL_FAR, before = REAL_FAR;
     one.n = 1;
     one.looks = 0;
+    one.lane[0] = s->lane[i];
     lane_set(&one.x.r, 0, lane_get(&s->x.r, i));
     lane_set(&one.x.s, 0, lane_get(&s->x.s, i));
     one.t[0] = b;
     for (int k = 0; k < REFINE; k++) {
-        look(f, P, part, &one, slope);
+        look(f, P, &one, slope);
         real gap = s->side[i] * one.gap[0], size = real_abs(gap);
         if (size < least) {
             least = size;
@@ -125,27 +126,26 @@ static displace_end refine(const surface *f, const perturb *P, int part, search 
     return least <= (s->own[i] ? 2 : 1) * s->tolerance[i] ? DISPLACE_HIT : DISPLACE_UNCERTAIN;
 }
 
-/* Whether the foot of a hit is on the part, and not on what extends it. */
-static bool counts(const surface *f, int part, const search *s, int i, real t)
+/* Whether the foot of a hit is on the piece, and not on what extends it. */
+static bool counts(const ground *f, const search *s, int i, real t)
 {
     rays x;
     feet p;
     real u, w;
-    if (!f->is->loose)
+    if (!f->loose)
         return true;
     lane_set(&x.r, 0, lane_get(&s->x.r, i));
     lane_set(&x.s, 0, lane_get(&s->x.s, i));
-    f->is->foot(f, part, 1, &x, &t, &p);
-    within_extent(f, part, 1, &p, &u, &w);
+    f->foot(f, 1, &s->lane[i], &x, &t, &p);
+    within_extent(f, 1, &s->lane[i], &p, &u, &w);
     return u == p.u[0] && w == p.w[0];
 }
 
 /* Open the search on the rays whose shell is not empty. */
-static void begin(const surface *f, const perturb *P, int part, int n, const rays *x, const real *end, const int32_t *on,
-                  search *s)
+static void begin(const ground *f, const perturb *P, int n, const rays *x, const real *end, const int32_t *own, search *s)
 {
     real t0[LANES], t1[LANES];
-    f->is->shell(f, part, n, x, end, P->Pmin, P->Pmax, t0, t1);
+    f->shell(f, n, x, end, P->Pmin, P->Pmax, t0, t1);
     s->n = 0;
     s->looks = 0;
     for (int i = 0; i < n; i++) {
@@ -161,9 +161,9 @@ static void begin(const surface *f, const perturb *P, int part, int n, const ray
         s->t[k] = t0[i];
         s->end[k] = t1[i];
         s->tolerance[k] = 8 * ROUNDING * size;
-        s->shortest[k] = real_max((t1[i] - t0[i]) / STEPS, s->tolerance[k] / real_sqrt(bs_dot(d, d)));
+        s->shortest[k] = real_max((t1[i] - t0[i]) / (real)f->steps, s->tolerance[k] / real_sqrt(bs_dot(d, d)));
         s->side[k] = 0;
-        s->own[k] = on && on[i] == part;
+        s->own[k] = own && own[i];
         s->left[k] = !s->own[k];
         s->open[k] = 1;
     }
@@ -178,17 +178,17 @@ static real side_of(const search *s, int i, real slope)
     return (slope > 0) == (s->own[i] != 0) ? R(1) : R(-1);
 }
 
-long displace_search(const surface *f, const perturb *P, int part, int n, const rays *x, const real *end, const int32_t *on,
-                     real *t, int32_t *found)
+long displace_search_over(const ground *f, const perturb *P, int n, const rays *x, const real *end, const int32_t *own, real *t,
+                          int32_t *found)
 {
     search s;
     real slope[LANES];
     for (int i = 0; i < n; i++)
         found[i] = DISPLACE_MISSED;
-    begin(f, P, part, n, x, end, on, &s);
-    for (int step = 0; step < STEPS && s.n; step++) {
-        look(f, P, part, &s, slope);
-        f->is->steep(f, part, s.n, &s.x, &s.p, P->Pu_max, P->Pw_max, s.rate, s.reach);
+    begin(f, P, n, x, end, own, &s);
+    for (int step = 0; step < f->steps && s.n; step++) {
+        look(f, P, &s, slope);
+        f->steep(f, s.n, s.lane, &s.x, &s.p, P->Pu_max, P->Pw_max, s.rate, s.reach);
         for (int i = 0; i < s.n; i++) {
             if (!s.open[i])
                 continue;
@@ -203,8 +203,8 @@ long displace_search(const surface *f, const perturb *P, int part, int n, const 
             if (above <= -least || (touches && s.left[i])) {
                 /* no step goes past a crossing by more than the shortest does */
                 real from = real_max(s.t[i] - s.shortest[i], 0), at;
-                displace_end end_of = refine(f, P, part, &s, i, from, s.t[i], &at);
-                if (counts(f, part, &s, i, at)) {
+                displace_end end_of = refine(f, P, &s, i, from, s.t[i], &at);
+                if (counts(f, &s, i, at)) {
                     t[s.lane[i]] = at;
                     found[s.lane[i]] = (int32_t)end_of;
                     s.open[i] = 0;
@@ -224,11 +224,60 @@ long displace_search(const surface *f, const perturb *P, int part, int n, const 
             compact(&s);
     }
     compact(&s);
-    for (int i = 0; i < s.n; i++) {
-        t[s.lane[i]] = s.t[i];
-        found[s.lane[i]] = DISPLACE_UNCERTAIN;
-    }
+    for (int i = 0; i < s.n; i++)
+        if (counts(f, &s, i, s.t[i])) {
+            t[s.lane[i]] = s.t[i];
+            found[s.lane[i]] = DISPLACE_UNCERTAIN;
+        }
     return s.looks;
+}
+
+/* ---- a part of a surface, the same for every lane ---- */
+
+typedef struct part_ground {
+    ground base;
+    const surface *f;
+    int part;
+} part_ground;
+
+static const part_ground *part_of(const ground *g) { return (const part_ground *)g; }
+
+static void part_shell(const ground *g, int n, const rays *x, const real *end, real Pmin, real Pmax, real *t0, real *t1)
+{
+    const part_ground *k = part_of(g);
+    k->f->is->shell(k->f, k->part, n, x, end, Pmin, Pmax, t0, t1);
+}
+
+static void part_foot(const ground *g, int n, const int32_t *lane, const rays *x, const real *t, feet *p)
+{
+    const part_ground *k = part_of(g);
+    (void)lane;
+    k->f->is->foot(k->f, k->part, n, x, t, p);
+}
+
+static void part_steep(const ground *g, int n, const int32_t *lane, const rays *x, const feet *p, real Pu_max, real Pw_max, real *rate,
+                       real *reach)
+{
+    const part_ground *k = part_of(g);
+    (void)lane;
+    k->f->is->steep(k->f, k->part, n, x, p, Pu_max, Pw_max, rate, reach);
+}
+
+static void part_extent(const ground *g, int32_t lane, double u[2], double w[2])
+{
+    const part_ground *k = part_of(g);
+    (void)lane;
+    k->f->is->extent(k->f, k->part, u, w);
+}
+
+long displace_search(const surface *f, const perturb *P, int part, int n, const rays *x, const real *end, const int32_t *on, real *t,
+                     int32_t *found)
+{
+    const part_ground k = {{part_shell, part_foot, part_steep, part_extent, f->is->loose, STEPS}, f, part};
+    int32_t own[LANES];
+    for (int i = 0; i < n; i++)
+        own[i] = on && on[i] == part;
+    return displace_search_over(&k.base, P, n, x, end, own, t, found);
 }
 
 static void keep_nearer(int n, int part, const real *t, const int32_t *found, int32_t id, hits *h, displace_counts *c)
@@ -269,6 +318,10 @@ void displace_hit(const surface *f, const perturb *P, int n, const rays *x, cons
 {
     real t[LANES];
     int32_t found[LANES], on[LANES];
+    if (f->rough) {
+        f->rough->hit(f, P, n, x, from, id, h, c);
+        return;
+    }
     for (int i = 0; from && i < n; i++)
         on[i] = from->id[i] == id ? from->part[i] : -1;
     for (int part = 0; part < f->is->parts; part++) {
@@ -284,6 +337,10 @@ void displace_occlude(const surface *f, const perturb *P, int n, const rays *x, 
 {
     real t[LANES], end[LANES];
     int32_t found[LANES];
+    if (f->rough) {
+        f->rough->occlude(f, P, n, x, on, lit, c);
+        return;
+    }
     for (int i = 0; i < n; i++)
         end[i] = lit[i] > 0 ? R(1) : R(-1); /* what is dark already need not be searched */
     for (int part = 0; part < f->is->parts; part++) {
@@ -317,7 +374,10 @@ static void group_feet(const surface *f, const group *g, feet *all)
 void displace_shape(const surface *f, const perturb *P, group *g)
 {
     feet p;
-    group_feet(f, g, &p);
+    if (f->rough)
+        f->rough->feet(f, g->n, &g->x, g->t, g->part, &p);
+    else
+        group_feet(f, g, &p);
     memcpy(g->u, p.u, sizeof g->u);
     memcpy(g->w, p.w, sizeof g->w);
     P->is->eval(P, g->n, g->u, g->w, 1, &g->h);
@@ -353,6 +413,8 @@ void displace_shift(const surface *f, const perturb *P, group *g, displace_count
         g->order[i] = h.id[i] == 0 ? ORDER_EXACT : 0;
     }
 }
+
+bool displace_prepare(surface *f, const perturb *P) { return !f->rough || f->rough->prepare(f, P); }
 
 bool displace_possible(const perturb *P)
 {

@@ -25,9 +25,43 @@ typedef struct displace_counts {
     long uncertain; /* hits that could not be confirmed */
 } displace_counts;
 
-/* The first hits with 0 < t < end[i] on one part of the surface: t[i], where found[i] is DISPLACE_HIT (or DISPLACE_UNCERTAIN: then
- * the best there is). on: the part on whose rough surface each ray starts, so that this hit at t = 0 does not count; NULL: they
- * start elsewhere. P must have bounds of value and gradient (displace_possible). Returns how often P was looked up. */
+/* What a surface does itself that has no closed forms for a search: shell, foot and steep of surface.h are not there. */
+typedef struct displaced {
+    /* Before the first search. False: out of memory. */
+    bool (*prepare)(surface *f, const perturb *P);
+
+    /* As displace_hit, where h->part is the surface's own secret, for feet; and as displace_occlude, own: the segments start on the
+     * rough surface. */
+    void (*hit)(const surface *f, const perturb *P, int n, const rays *x, const starts *from, int32_t id, hits *h, displace_counts *c);
+    void (*occlude)(const surface *f, const perturb *P, int n, const rays *x, bool own, real *lit, displace_counts *c);
+
+    /* The feet of hits, each on the part that was told; this is then made that of the surface. */
+    void (*feet)(const surface *f, int n, const rays *x, const real *t, int32_t *part, feet *p);
+} displaced;
+
+/* Once for each object whose true hits are asked for. False: out of memory. */
+bool displace_prepare(surface *f, const perturb *P);
+
+/* What a search goes over: for each lane a piece of a smooth surface that is taken as if it alone were there. lane[i]: which of the
+ * rays that the search began with is the i-th now. The rest is as in surface.h. */
+typedef struct ground ground;
+struct ground {
+    void (*shell)(const ground *g, int n, const rays *x, const real *end, real Pmin, real Pmax, real *t0, real *t1);
+    void (*foot)(const ground *g, int n, const int32_t *lane, const rays *x, const real *t, feet *p);
+    void (*steep)(const ground *g, int n, const int32_t *lane, const rays *x, const feet *p, real Pu_max, real Pw_max, real *rate,
+                  real *reach);
+    void (*extent)(const ground *g, int32_t lane, double u[2], double w[2]);
+    bool loose;
+    int steps; /* of a search at most: where the bounds are no help it goes on by this share of the shell */
+};
+
+/* The first hits with 0 < t < end[i]: t[i], where found[i] is DISPLACE_HIT (or DISPLACE_UNCERTAIN: then the best there is). own: 1
+ * where the ray starts on this piece's rough surface, so that the hit at t = 0 does not count; NULL: none does. P must have
+ * bounds of value and gradient (displace_possible). Returns how often P was looked up. */
+long displace_search_over(const ground *g, const perturb *P, int n, const rays *x, const real *end, const int32_t *own, real *t,
+                          int32_t *found);
+
+/* The same on one part of a surface. on: the part on whose rough surface each ray starts; NULL: they start elsewhere. */
 long displace_search(const surface *f, const perturb *P, int part, int n, const rays *x, const real *end, const int32_t *on,
                      real *t, int32_t *found);
 

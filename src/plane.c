@@ -317,4 +317,10 @@ surface *disc_new(vec3 centre, vec3 normal, double radius)
     return &f->base;
 }
 
-void surface_free(surface *f) { free(f); }
+void surface_free(surface *f)
+{
+    if (f && f->free)
+        f->free(f);
+    else
+        free(f);
+}

@@ -13,7 +13,7 @@
 static bool has_uw(const object *o)
 {
     const shape_kind kind = o->shape_said.kind;
-    return kind != SHAPE_CYLINDER && kind != SHAPE_CONE && kind != SHAPE_TORUS && !(kind == SHAPE_SPHERE && pov_mirrored(o));
+    return kind != SHAPE_CYLINDER && kind != SHAPE_CONE && kind != SHAPE_TORUS && kind != SHAPE_SEARCHED && !(kind == SHAPE_SPHERE && pov_mirrored(o));
 }
 
 /* Whether all of the surface is on the image. */

@@ -155,6 +155,8 @@ static void put_smooth(pov_text *t, const scene *s, const object *o)
         pov_print(t, " // y is the axis\n");
         break;
     }
+    case SHAPE_SEARCHED: /* pov_sheet.c */
+        break;
     }
     if (o->moved && !pov_by_parts(s, o)) {
         pov_matrix(t, o->placed.x, o->placed.y, o->placed.z, o->placed.o);
@@ -191,7 +193,9 @@ bool pov_write(const scene *s, const pov_options *how, const char *path, pov_rep
         const object *o = &s->object[k];
         pov_print(&t, "// object %s: %s%s%s\n", o->name, o->shape->is->kind, o->bump ? ", bump by " : "",
                   o->bump ? o->bump->is->kind : "");
-        if (s->displaced && o->bump)
+        if (o->shape_said.kind == SHAPE_SEARCHED)
+            good = pov_sheet(&t, s, o);
+        else if (s->displaced && o->bump)
             good = put_displaced(&t, s, k, report);
         else
             put_smooth(&t, s, o);

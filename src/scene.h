@@ -77,6 +77,7 @@ typedef enum shape_kind {
     SHAPE_CYLINDER,
     SHAPE_CONE,
     SHAPE_TORUS,
+    SHAPE_SEARCHED, /* parametric, patches */
 } shape_kind;
 
 typedef struct shape_spec {
@@ -90,7 +91,7 @@ typedef struct shape_spec {
 /* Whether light that goes through it goes into it. An endless plane has an inside, the side away from n. */
 static inline bool shape_has_inside(const shape_spec *f)
 {
-    return f->kind != SHAPE_RECTANGLE && f->kind != SHAPE_DISC && !f->open;
+    return f->kind != SHAPE_RECTANGLE && f->kind != SHAPE_DISC && f->kind != SHAPE_SEARCHED && !f->open;
 }
 
 /* A bump likewise: a function's text and scale, or where a map's samples lie (how many: map_note). */
@@ -140,6 +141,9 @@ typedef struct scene {
     object *object;
     int objects;
 } scene;
+
+/* Whether true hits of bumped objects are asked for (displace.h). */
+static inline bool scene_wants_truth(const scene *s) { return s->displaced || s->shadow.kind == METHOD_EXACT; }
 
 /* The number of threads, lights and so on that a scene can have at most. */
 enum { SCENE_MAX_SIDE = 32768, SCENE_MAX_ITEMS = 4096, SCENE_MAX_AA = 16, SCENE_MAX_DEPTH = 32 };

@@ -247,7 +247,7 @@ static void place(reader *r, node *v, object *o)
     }
     if (!good || !o->moved || !o->own || !reader_place(r, at, o))
         return;
-    if (o->bump && !o->shape->is->foot && (r->s->displaced || r->s->shadow.kind == METHOD_EXACT))
+    if (o->bump && !o->shape->is->foot && !o->shape->rough && scene_wants_truth(r->s))
         yaml_error(r->y, at, "a %s with a bump is stretched more one way than another, expected the same scale all ways for %s",
                    o->shape->is->kind, r->s->displaced ? "surface displaced" : "shadow exact");
 }
@@ -277,11 +277,13 @@ static void read_object(reader *r, const queue *q, int i)
             o->bump_said = (bump_spec){0};
             o->bump = read_bump(r, bump, o->own, &o->map, &o->bump_said);
         }
-        if (bump && o->bump && (s->displaced || s->shadow.kind == METHOD_EXACT) && !displace_possible(o->bump))
+        if (bump && o->bump && scene_wants_truth(s) && !displace_possible(o->bump))
             yaml_error(r->y, bump, "no bounds of P or of its slope are known, expected them for %s: a function that is bounded, "
                                    "without jumps, over the whole surface",
                        s->displaced ? "surface displaced" : "shadow exact");
         place(r, v, o);
+        if (o->shape && o->bump && scene_wants_truth(s) && !displace_prepare(o->shape, o->bump))
+            errors_add(r->e, "out of memory");
     }
     q->state[i] = DONE;
 }

@@ -47,7 +47,7 @@ void reader_materials(reader *r);
 void reader_pigment(reader *r, node *at, object *o);
 
 /* The surface of an object, by the one key of READER_SHAPES that it has. NULL: an error is told. (scene_surfaces.c) */
-#define READER_SHAPES "plane rectangle disc box sphere cylinder cone torus"
+#define READER_SHAPES "plane rectangle disc box sphere cylinder cone torus parametric patches"
 surface *reader_surface(reader *r, node *at, shape_spec *said);
 bool reader_no_shape(reader *r, node *at); /* it has none; otherwise an error is told */
 
@@ -56,6 +56,10 @@ bool reader_transform(reader *r, node *at, affine *m);
 
 /* Put an object's shape where `placed` says. False: an error is told, at the node. */
 bool reader_place(reader *r, node *at, object *o);
+
+/* The surfaces that are found by search. (scene_sheets.c) */
+surface *reader_parametric(reader *r, node *at, shape_spec *said);
+surface *reader_patches(reader *r, node *at, shape_spec *said);
 
 /* The objects with their surfaces and bumps; after the materials, whose names they give. (scene_objects.c) */
 void reader_objects(reader *r);

@@ -163,8 +163,16 @@ static surface *centred(const shape_spec *f, vec3 *middle)
         return cone_new(other, f->radius[0], half, f->radius[1], f->open);
     case SHAPE_TORUS:
         return torus_new(here, f->u, f->radius[0], f->radius[1]);
+    case SHAPE_SEARCHED: /* in double anyway */
+        break;
     }
     return NULL;
+}
+
+/* Its true displacement needs a sheet of its own. */
+static bool wants_leaves(const reader *r, const object *o)
+{
+    return o->shape_said.kind == SHAPE_SEARCHED && o->bump && scene_wants_truth(r->s);
 }
 
 bool reader_place(reader *r, node *at, object *o)
@@ -174,7 +182,9 @@ bool reader_place(reader *r, node *at, object *o)
     const double here = vec3_dot(back.x, back.x) + vec3_dot(back.y, back.y) + vec3_dot(back.z, back.z);
     affine whole = affine_identity();
     double wrong = 0;
-    o->centred = centred(&o->shape_said, &whole.o);
+    const surface *from = o->own;
+    if (o->shape_said.kind != SHAPE_SEARCHED)
+        from = o->centred = centred(&o->shape_said, &whole.o);
     const vec3 to = affine_point(m, whole.o);
     const double far = fmax(fabs(to.x), fmax(fabs(to.y), fabs(to.z)));
     if (!(far <= BIG))
@@ -182,7 +192,7 @@ bool reader_place(reader *r, node *at, object *o)
     if (!(there * here <= STRETCH * STRETCH))
         return yaml_error(r->y, at, "one way is stretched more than %g times as much as another, expected less", STRETCH);
     whole = affine_then(&whole, m);
-    surface *f = o->centred ? surface_transformed(o->centred, &whole) : NULL;
+    surface *f = !from ? NULL : wants_leaves(r, o) ? searched_moved(from, &whole) : surface_transformed(from, &whole);
     if (!f)
         return errors_add(r->e, "out of memory");
     o->shape = f;

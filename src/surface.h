@@ -67,6 +67,8 @@ typedef struct surface_methods {
 
 struct surface {
     const surface_methods *is;
+    void (*free)(surface *f); /* NULL: it owns nothing but itself */
+    const struct displaced *rough; /* its own way to its rough surface (displace.h), in place of shell, foot and steep; NULL: none */
 };
 
 /* Q = origin + u U + w W; over all (u,w), or over 0..1 where `bounded`. NULL where U and W are parallel, zero or not
@@ -99,6 +101,14 @@ surface *torus_new(vec3 centre, vec3 axis, double major, double minor);
  * where the map mirrors u runs the other way in its extent (on a plane: -u), so that n points outward still. Where the map does not
  * keep angles, images of round surfaces have no feet. NULL where the map leaves nothing of a volume (then only: or out of memory). */
 surface *surface_transformed(const surface *from, const affine *m);
+/* Q(u,w) from its points alone (sheet.h): three expressions, or Bezier patches, each a part. n = Qu x Qw is outward by definition.
+ * Owns q, also on failure. NULL where Q has no bounds over its range, or is all in one place (then only: or out of memory). */
+struct sheet;
+surface *searched_new(struct sheet *q);
+
+/* The image of such a surface by an affine map, in leaves of its own: what surface_transformed makes of it has no true displacement.
+ * `from` must outlive it; as there, where the map mirrors u runs the other way. NULL: as searched_new. */
+surface *searched_moved(const surface *from, const affine *m);
 
 void surface_free(surface *f);
 

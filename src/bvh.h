@@ -1,0 +1,29 @@
+/* Which of many boxes a ray passes, or are near a place. The answer is no more than candidates: it may hold boxes that are missed by
+ * a rounding of float, and its order has no meaning. None that is met is left out. By Embree, version 3 or 4, which bvh_embree.c alone
+ * knows; coordinates should be about 1, as floats are kept there.
+ */
+#ifndef KAGE_BVH_H
+#define KAGE_BVH_H
+
+#include <stdint.h>
+
+typedef struct bvh bvh;
+
+typedef struct bvh_box {
+    float lo[3], hi[3];
+} bvh_box;
+
+/* Called with the index of each box. */
+typedef void bvh_visit(void *user, int32_t box);
+
+/* Copies the boxes. NULL: Embree failed, for want of memory. */
+bvh *bvh_new(int n, const bvh_box *box);
+void bvh_free(bvh *b);
+
+/* The boxes that r + s t, 0 <= t <= end, passes. Reentrant. */
+void bvh_along(const bvh *b, const float r[3], const float s[3], float end, bvh_visit *visit, void *user);
+
+/* The boxes that are within `radius` of p. */
+void bvh_around(const bvh *b, const float p[3], float radius, bvh_visit *visit, void *user);
+
+#endif
