@@ -537,7 +537,7 @@ static void displaced_as_closed_forms(void **state)
     (void)state;
     surface *f = surface_of(RING), *g = torus_new((vec3){0.1, -0.1, 0.2}, (vec3){0, 1, 0}, 0.9, 0.4);
     double U[2], W[2];
-    long uncertain = 0;
+    displace_counts c = {0};
     int differ = 0, met = 0;
     f->is->extent(f, 0, U, W);
     perturb *P = bumps(0.04, U, W);
@@ -554,18 +554,18 @@ static void displaced_as_closed_forms(void **state)
         }
         no_hits(&a, LANES);
         no_hits(&b, LANES);
-        displace_hit(f, P, LANES, &x, 0, &a, &uncertain);
-        displace_hit(g, P, LANES, &x, 0, &b, &uncertain);
-        displace_occlude(f, P, LANES, &x, NULL, lit_a, &uncertain);
-        displace_occlude(g, P, LANES, &x, NULL, lit_b, &uncertain);
+        displace_hit(f, P, LANES, &x, NULL, 0, &a, &c);
+        displace_hit(g, P, LANES, &x, NULL, 0, &b, &c);
+        displace_occlude(f, P, LANES, &x, NULL, lit_a, &c);
+        displace_occlude(g, P, LANES, &x, NULL, lit_b, &c);
         for (int i = 0; i < LANES; i++) {
             const double off = distance(lane_at(&x, i, a.t[i]), lane_at(&x, i, b.t[i]));
             differ += a.id[i] != b.id[i] || lit_a[i] != lit_b[i] || (a.id[i] >= 0 && off > sqrt(EPS));
             met += a.id[i] >= 0;
         }
     }
-    print_message("displaced: %d hits, %d unlike the closed form's, %ld uncertain\n", met, differ, uncertain);
-    assert_true(met > 300 && differ <= 1 && uncertain <= 1);
+    print_message("displaced: %d hits, %d unlike the closed form's, %ld uncertain\n", met, differ, c.uncertain);
+    assert_true(met > 300 && differ <= 1 && c.uncertain <= 1);
     perturb_free(P);
     surface_free(g);
 }
@@ -575,7 +575,7 @@ static void displaced_as_closed_forms(void **state)
 static double error_of(surface *f, double A, int order, const rays *x, const hits *h, const partials *q, const real *u, const real *w)
 {
     double U[2], W[2], worst = 0;
-    long uncertain = 0;
+    displace_counts c = {0};
     static hits rough;
     static heights p;
     f->is->extent(f, 0, U, W);
@@ -583,7 +583,7 @@ static double error_of(surface *f, double A, int order, const rays *x, const hit
     assert_true(displace_prepare(f, P));
     P->is->eval(P, LANES, u, w, 2, &p);
     no_hits(&rough, LANES);
-    displace_hit(f, P, LANES, x, 0, &rough, &uncertain);
+    displace_hit(f, P, LANES, x, NULL, 0, &rough, &c);
     int n = 0;
     for (int i = 0; i < LANES; i++) {
         if (h->id[i] < 0 || rough.id[i] < 0)
