@@ -22,7 +22,7 @@ leaf leaf_of(const sheet *q, int32_t part, const double u[2], const double w[2])
     sheet_bounds b;
     sheet_jets q0;
     double A[3], B[3], ra[3], rb[3], c[3], far[3];
-    q->is->bound(q, part, u, w, &b);
+    q->is->bound(q, part, u, w, &b, NULL);
     q->is->eval(q, 1, &part, &mu, &mw, 0, &q0);
     for (int k = 0; k < 3; k++) {
         const expr_bounds *z = &b.axis[k];
@@ -49,7 +49,9 @@ leaf leaf_of(const sheet *q, int32_t part, const double u[2], const double w[2])
 
 leaf leaf_half(const sheet *q, const leaf *f, int which)
 {
-    const bool along_u = vec3_length(f->A) + f->ea >= vec3_length(f->B) + f->eb;
+    const double lu = vec3_length(f->A) + f->ea, lw = vec3_length(f->B) + f->eb;
+    const double share_u = (f->u[1] - f->u[0]) / (q->u[1] - q->u[0]), share_w = (f->w[1] - f->w[0]) / (q->w[1] - q->w[0]);
+    const bool known = lu < HUGE_VAL || lw < HUGE_VAL, along_u = known ? lu >= lw : share_u >= share_w;
     double u[2] = {f->u[0], f->u[1]}, w[2] = {f->w[0], f->w[1]};
     double *x = along_u ? u : w;
     const double middle = x[0] + 0.5 * (x[1] - x[0]);

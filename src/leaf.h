@@ -22,7 +22,8 @@ typedef struct leaf {
 /* The leaf over a range. */
 leaf leaf_of(const sheet *q, int32_t part, const double u[2], const double w[2]);
 
-/* Its half, of two: `which` is 0 or 1; across the direction in which it is longer. */
+/* Its half, of two: `which` is 0 or 1; across the direction in which it is longer, or, where that
+ * is not known, in which it has more of the sheet's range. */
 leaf leaf_half(const sheet *q, const leaf *f, int which);
 
 /* How far from its middle it reaches at most. */

@@ -40,13 +40,42 @@ static void function_eval(const perturb *base, int n, const real *u, const real 
     }
 }
 
+static void function_jets(const perturb *base, int n, const double *u, const double *w, expr_jets *out)
+{
+    const function *p = (const function *)base;
+    const double scale = p->scale;
+    expr_eval(p->f, n, u, w, 1, out);
+    for (int i = 0; i < n; i++) {
+        out->v[i] *= scale;
+        out->u[i] *= scale;
+        out->w[i] *= scale;
+    }
+}
+
+/* scale times a range, 0 for a scale of 0 */
+static void scaled(double scale, double range[2])
+{
+    const double a = scale == 0 ? 0 : scale * range[0], b = scale == 0 ? 0 : scale * range[1];
+    range[0] = fmin(a, b);
+    range[1] = fmax(a, b);
+}
+
+static void function_bound(const perturb *base, const double u[2], const double w[2], expr_bounds *out)
+{
+    const function *p = (const function *)base;
+    expr_range_gradient(p->f, u[0], u[1], w[0], w[1], out);
+    scaled(p->scale, out->v);
+    scaled(p->scale, out->u);
+    scaled(p->scale, out->w);
+}
+
 static void function_free(perturb *base)
 {
     expr_free(((function *)base)->f);
     free(base);
 }
 
-static const perturb_methods function_methods = {"function", function_eval, function_free};
+static const perturb_methods function_methods = {"function", function_eval, function_jets, function_bound, function_free};
 
 static double widest(const double range[2], double so_far) { return fmax(so_far, fmax(fabs(range[0]), fabs(range[1]))); }
 

@@ -109,9 +109,25 @@ static void hold(double range[2], double x, double air)
     range[1] = fmax(range[1], x + air);
 }
 
+/* Quu, Quw and Qww in the hulls of second differences, as below. */
+static void bezier_bends(const double p[16], double air, double du, double dw, expr_bends *z)
+{
+    *z = (expr_bends){{HUGE_VAL, -HUGE_VAL}, {HUGE_VAL, -HUGE_VAL}, {HUGE_VAL, -HUGE_VAL}};
+    for (int j = 0; j < 4; j++)
+        for (int i = 0; i < 4; i++) {
+            const double *q = p + 4 * j + i;
+            if (i < 2)
+                hold(z->uu, 6 * (q[2] - 2 * q[1] + q[0]) / (du * du), 24 * air / (du * du));
+            if (i < 3 && j < 3)
+                hold(z->uw, 9 * (q[5] - q[4] - q[1] + q[0]) / (du * dw), 36 * air / (du * dw));
+            if (j < 2)
+                hold(z->ww, 6 * (q[8] - 2 * q[4] + q[0]) / (dw * dw), 24 * air / (dw * dw));
+        }
+}
+
 /* Q is in the hull of the control points of the piece, Qu and Qw in those of their differences. The air is more than what
  * some thirty roundings come to. */
-static void bezier_bound(const sheet *base, int part, const double u[2], const double w[2], sheet_bounds *out)
+static void bezier_bound(const sheet *base, int part, const double u[2], const double w[2], sheet_bounds *out, sheet_bends *second)
 {
     const bezier *q = (const bezier *)base;
     for (int k = 0; k < 3; k++) {
@@ -136,6 +152,8 @@ static void bezier_bound(const sheet *base, int part, const double u[2], const d
                 if (j < 3)
                     hold(z->w, 3 * (p[4 * j + i + 4] - here) / dw, 6 * air / dw);
             }
+        if (second)
+            bezier_bends(p, air, du, dw, &second->axis[k]);
     }
 }
 

@@ -141,7 +141,7 @@ static void check_rows(const sheet *q, struct fy_node *rows, double *worst, int 
         /* and what is bounded holds it, over a box about the place */
         sheet_bounds b;
         const double u[2] = {want[0] - 0.01, want[0] + 0.03}, w[2] = {want[1] - 0.02, want[1] + 0.01};
-        q->is->bound(q, 0, u, w, &b);
+        q->is->bound(q, 0, u, w, &b, NULL);
         for (int k = 0; k < 9; k++) {
             const expr_bounds *a = &b.axis[k % 3];
             const double *range = k < 3 ? a->v : k < 6 ? a->u : a->w;
