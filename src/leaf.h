@@ -37,8 +37,9 @@ typedef struct leaves {
     double radius;
 } leaves;
 
-/* False: out of memory, or Q has no bounds, when n is 0. leaves_free in either case. */
-bool leaves_of(const sheet *q, leaves *out);
+/* flat: by how much, in radians or as a share, Qu and Qw may change within a leaf that is not very small. False: out of memory, or Q
+ * has no bounds, when n is 0. leaves_free in either case. */
+bool leaves_of(const sheet *q, double flat, leaves *out);
 void leaves_free(leaves *l);
 
 /* A ray against a leaf. The ray is r + s t, lo <= t <= hi. */

@@ -303,7 +303,7 @@ static surface_methods *methods_of(const sheet *q)
     return is;
 }
 
-surface *searched_new(sheet *q)
+searched *searched_make(sheet *q, double flat)
 {
     searched *f = calloc(1, sizeof *f);
     if (!f) {
@@ -314,13 +314,20 @@ surface *searched_new(sheet *q)
     f->base.free = searched_free;
     f->base.rough = &searched_displaced;
     f->base.is = f->methods = methods_of(q);
-    if (f->base.is && leaves_of(q, &f->l))
+    if (f->base.is && leaves_of(q, flat, &f->l))
         f->tree = tree_of(&f->l);
     if (!f->tree) {
         searched_free(&f->base);
         return NULL;
     }
-    return &f->base;
+    return f;
+}
+
+surface *searched_new(sheet *q)
+{
+    const double FLAT = 0.045;
+    searched *f = searched_make(q, FLAT);
+    return f ? &f->base : NULL;
 }
 
 surface *searched_moved(const surface *base, const affine *m)

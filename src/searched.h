@@ -24,6 +24,9 @@ struct rough_form {
     rough_form *next;
 };
 
+/* As searched_new, with leaves as flat as that. */
+searched *searched_make(sheet *q, double flat);
+
 void searched_free_rough(rough_form *first);
 
 /* For true displacement. */

@@ -6,6 +6,8 @@
 
 #include <stdlib.h>
 
+#define FLAT 0.5 /* of leaves: what slopes of P turn is worth halving only where a ray comes */
+
 void searched_free_rough(rough_form *first)
 {
     while (first) {
@@ -48,13 +50,13 @@ static bool rough_prepare(surface *base, const perturb *P)
     drop(f, P);
     rough_form *k = calloc(1, sizeof *k);
     sheet *q = k ? sheet_rough(f->q, P) : NULL;
-    surface *shape = q ? searched_new(q) : NULL;
+    searched *shape = q ? searched_make(q, FLAT) : NULL;
     if (!shape) {
         free(k);
         return false;
     }
-    ((searched *)shape)->broken = true;
-    *k = (rough_form){P, shape, f->rough};
+    shape->broken = true;
+    *k = (rough_form){P, &shape->base, f->rough};
     f->rough = k;
     return true;
 }

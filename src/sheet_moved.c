@@ -57,9 +57,9 @@ static void mix(const double m[3], double o, double *const v[3], double turn, do
         const double a = m[k] * turn * v[k][0], b = m[k] * turn * v[k][1];
         if (m[k] == 0)
             continue;
-        lo += fmin(a, b);
-        hi += fmax(a, b);
-        size += fmax(fabs(a), fabs(b));
+        lo += lesser(a, b);
+        hi += greater(a, b);
+        size += greater(fabs(a), fabs(b));
     }
     const bool known = size < HUGE_VAL;
     to[0] = known ? lo - 1e-15 * size : -HUGE_VAL;
@@ -69,7 +69,7 @@ static void mix(const double m[3], double o, double *const v[3], double turn, do
 static void moved_bound(const sheet *base, int part, const double u[2], const double w[2], sheet_bounds *out, sheet_bends *second)
 {
     const moved *q = (const moved *)base;
-    const double a = q->ends + q->turn * u[0], b = q->ends + q->turn * u[1], there[2] = {fmin(a, b), fmax(a, b)};
+    const double a = q->ends + q->turn * u[0], b = q->ends + q->turn * u[1], there[2] = {lesser(a, b), greater(a, b)};
     sheet_bounds f;
     sheet_bends g;
     q->from->is->bound(q->from, part, there, w, &f, second ? &g : NULL);

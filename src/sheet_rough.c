@@ -108,15 +108,15 @@ static ball turn_of(ball nu, const normals *n)
     return (ball){vec3_scale(c, 1 / n->length), (nu.r + n->sine * (size + vec3_length(c))) / n->least};
 }
 
-static double most(const double range[2]) { return fmax(fabs(range[0]), fabs(range[1])); }
+static double most(const double range[2]) { return greater(fabs(range[0]), fabs(range[1])); }
 
 /* range becomes range + p n + h v, n a number and v within r of it; air. */
 static void add_to(double range[2], const double p[2], double n, double n_air, const double h[2], double v, double v_air)
 {
     const double off = most(p) * n_air + most(h) * v_air;
     const double air = off + AIR * (most(range) + most(p) * (fabs(n) + n_air) + most(h) * (fabs(v) + v_air));
-    range[0] += fmin(p[0] * n, p[1] * n) + fmin(h[0] * v, h[1] * v) - air;
-    range[1] += fmax(p[0] * n, p[1] * n) + fmax(h[0] * v, h[1] * v) + air;
+    range[0] += lesser(p[0] * n, p[1] * n) + lesser(h[0] * v, h[1] * v) - air;
+    range[1] += greater(p[0] * n, p[1] * n) + greater(h[0] * v, h[1] * v) + air;
 }
 
 static void unknown(double range[2])
