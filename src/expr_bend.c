@@ -23,6 +23,9 @@ typedef struct triple {
  * are below 1.876 and 5.78, and places in the unit square. */
 static const interval most_bent_noise = {-31, 31};
 
+/* Most factors are 0: what is linear, or along what an operand does not depend on. */
+static interval product(interval x, interval y) { return is_point(x, 0) || is_point(y, 0) ? zero : term(x, y); }
+
 static interval times(double k, interval a) { return multiply((interval){k, k}, a); }
 static interval power_range(interval a, double k) { return expr_value_range(&(expr_code){.op = OP_POWI, .k = k}, &a); }
 
@@ -118,11 +121,14 @@ static bend chain(const expr_code *p, const interval *value, const slope *s, con
     for (int m = 0; m < BENDS; m++) {
         const interval ai = s[A].along[first_of[m]], aj = s[A].along[second_of[m]];
         const interval bi = s[B].along[first_of[m]], bj = s[B].along[second_of[m]];
-        const interval aa = m == UW ? term(ai, aj) : square(ai), bb = m == UW ? term(bi, bj) : square(bi);
-        interval x = plus(term(d.a, h[A].d[m]), term(d.b, h[B].d[m]));
-        x = plus(x, term(k.aa, aa));
-        x = plus(x, term(k.ab, plus(term(ai, bj), term(aj, bi))));
-        z.d[m] = plus(x, term(k.bb, bb));
+        interval x = plus(product(d.a, h[A].d[m]), product(d.b, h[B].d[m]));
+        if (!is_point(k.aa, 0))
+            x = plus(x, product(k.aa, m == UW ? product(ai, aj) : square(ai)));
+        if (!is_point(k.ab, 0))
+            x = plus(x, product(k.ab, plus(product(ai, bj), product(aj, bi))));
+        if (!is_point(k.bb, 0))
+            x = plus(x, product(k.bb, m == UW ? product(bi, bj) : square(bi)));
+        z.d[m] = x;
     }
     return z;
 }

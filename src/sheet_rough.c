@@ -54,14 +54,32 @@ STAGE static void raise(int n, const expr_jets *restrict P, sheet_jets *restrict
     }
 }
 
+/* The same of order 0 from order 1: X alone. */
+STAGE static void lift(int n, const double *restrict P, sheet_jets *restrict j)
+{
+    double *restrict x = j->axis[0].v, *restrict y = j->axis[1].v, *restrict z = j->axis[2].v;
+    const double *restrict xu = j->axis[0].u, *restrict yu = j->axis[1].u, *restrict zu = j->axis[2].u;
+    const double *restrict xw = j->axis[0].w, *restrict yw = j->axis[1].w, *restrict zw = j->axis[2].w;
+    for (int i = 0; i < n; i++) {
+        const double ux = xu[i], uy = yu[i], uz = zu[i], wx = xw[i], wy = yw[i], wz = zw[i];
+        const double Nx = uy * wz - uz * wy, Ny = uz * wx - ux * wz, Nz = ux * wy - uy * wx;
+        const double h = P[i] / sqrt(Nx * Nx + Ny * Ny + Nz * Nz);
+        x[i] += h * Nx;
+        y[i] += h * Ny;
+        z[i] += h * Nz;
+    }
+}
+
 static void rough_eval(const sheet *base, int n, const int32_t *part, const double *u, const double *w, int order, sheet_jets *out)
 {
     const rough *k = (const rough *)base;
     expr_jets P;
-    (void)order; /* X needs second partials of Q for its first ones; there is no less to do for X alone */
-    k->q->is->eval(k->q, n, part, u, w, 2, out);
+    k->q->is->eval(k->q, n, part, u, w, order ? 2 : 1, out);
     k->P->is->jets(k->P, n, u, w, &P);
-    raise(n, &P, out);
+    if (order)
+        raise(n, &P, out);
+    else
+        lift(n, P.v, out);
 }
 
 /* ---- bounds ---- */
