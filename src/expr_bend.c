@@ -19,10 +19,6 @@ typedef struct triple {
     interval aa, ab, bb;
 } triple;
 
-/* No second partial of noise() is beyond: by the triangle inequality, with gradients below 1.4143, fades whose first two derivatives
- * are below 1.876 and 5.78, and places in the unit square. */
-static const interval most_bent_noise = {-31, 31};
-
 /* Most factors are 0: what is linear, or along what an operand does not depend on. */
 static interval product(interval x, interval y) { return is_point(x, 0) || is_point(y, 0) ? zero : term(x, y); }
 
@@ -101,7 +97,7 @@ static triple bends_of(const expr_code *p, interval a, interval b, interval f)
     case OP_ATAN2:
         return angle_bend(a, b);
     case OP_NOISE:
-        return (triple){most_bent_noise, most_bent_noise, most_bent_noise};
+        return (triple){expr_noise_range(a, b).xx, expr_noise_range(a, b).xy, expr_noise_range(a, b).yy};
     case OP_MIN:
     case OP_MAX:
     case OP_SELECT:

@@ -10,10 +10,6 @@
 
 #include "expr_rules.h"
 
-/* The largest |partial| of noise(): 2.9262, at the centre of a cell whose four gradients are at their worst; found on a
- * grid of 4001 x 4001, rounded up by more than it can rise between. */
-static const interval steepest_noise = {-2.93, 2.93};
-
 static const interval minus_one = {-1, -1};
 
 /* A derivative that is positive, from its values at the ends, in either order. Where these underflow it is still not 0,
@@ -124,7 +120,7 @@ pair expr_partials_range(const expr_code *p, interval a, interval b, interval f)
     case OP_FLOOR:
         return (pair){floor(a.lo) == floor(a.hi) ? zero : everything, zero};
     case OP_NOISE:
-        return (pair){steepest_noise, steepest_noise};
+        return (pair){expr_noise_range(a, b).x, expr_noise_range(a, b).y};
     case OP_MIN:
     case OP_MAX:
     case OP_SELECT:

@@ -158,7 +158,7 @@ static void take_point(quest *k, int lane, const leaf *f)
     if (t - leaf_size(f) / sqrt(s2) > k->from[lane] && t < k->to[lane]) {
         k->to[lane] = k->any ? -HUGE_VAL : t;
         k->found[lane] = true;
-        k->unsure[lane] = true;
+        k->unsure[lane] = false;
     }
 }
 
