@@ -21,7 +21,7 @@ typedef struct rough {
 } rough;
 
 /* In place: the jets of Q, of order 2, become those of X, of order 1. */
-STAGE static void raise(int n, const expr_jets *restrict P, sheet_jets *restrict j)
+STAGE static void add_bump(int n, const expr_jets *restrict P, sheet_jets *restrict j)
 {
     double *restrict x = j->axis[0].v, *restrict y = j->axis[1].v, *restrict z = j->axis[2].v;
     double *restrict xu = j->axis[0].u, *restrict yu = j->axis[1].u, *restrict zu = j->axis[2].u;
@@ -55,7 +55,7 @@ STAGE static void raise(int n, const expr_jets *restrict P, sheet_jets *restrict
 }
 
 /* The same of order 0 from order 1: X alone. */
-STAGE static void lift(int n, const double *restrict P, sheet_jets *restrict j)
+STAGE static void add_height(int n, const double *restrict P, sheet_jets *restrict j)
 {
     double *restrict x = j->axis[0].v, *restrict y = j->axis[1].v, *restrict z = j->axis[2].v;
     const double *restrict xu = j->axis[0].u, *restrict yu = j->axis[1].u, *restrict zu = j->axis[2].u;
@@ -77,9 +77,9 @@ static void rough_eval(const sheet *base, int n, const int32_t *part, const doub
     k->q->is->eval(k->q, n, part, u, w, order ? 2 : 1, out);
     k->P->is->jets(k->P, n, u, w, &P);
     if (order)
-        raise(n, &P, out);
+        add_bump(n, &P, out);
     else
-        lift(n, P.v, out);
+        add_height(n, P.v, out);
 }
 
 /* ---- bounds ---- */

@@ -21,12 +21,10 @@ MOEBIUS = '{x: "(1 + w*cos(u/2))*cos(u)", y: "0.9 + w*sin(u/2)", z: "(1 + w*cos(
 PATCH = "[" + ", ".join(f"[{i - 1.5}, {1 + (i % 2) * (j % 2)}, {1.5 - j}]" for j in range(4) for i in range(4)) + "]"
 
 
-RING = '{x: "(0.7 + 0.3*cos(w))*cos(u)", y: "0.9 - 0.3*sin(w)", z: "(0.7 + 0.3*cos(w))*sin(u)", u: [-pi, pi], w: [-pi, pi]}'
 SHAPES = {
     "waves": (f"parametric: {PARAMETRIC}", "0.02*sin(9*u)*sin(9*w)"),
     "moebius": (f"parametric: {MOEBIUS}", "0.02*sin(9*u)*sin(9*w)"),
-    "ring": (f"parametric: {RING}", "0.03*sin(8*u)*sin(5*w)"),
-    "teapot": (f"patches: {{file: {TOP / 'scenes' / 'data' / 'teapot.txt'}}}", "0.05*sin(6*pi*u)*sin(6*pi*w)"),
+    "teapot": (f"patches: {{file: {TOP / 'scenes' / 'data' / 'teapot.txt'}}}", "0.04*sin(3*pi*u)*sin(3*pi*w)"),
 }
 
 
