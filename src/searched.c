@@ -8,8 +8,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define AIR 4e-6 /* of the boxes, in the sheet's radius: more than what float leaves of coordinates about 1, and of a ray's */
-
 #ifdef KAGE_DOUBLE
 #define ROUNDING 4e-16
 #else
@@ -257,17 +255,28 @@ static void searched_extent(const surface *base, int part, double u[2], double w
     }
 }
 
+static void searched_box(const surface *base, double lo[3], double hi[3])
+{
+    const leaves *l = &((const searched *)base)->l;
+    for (int k = 0; k < 3; k++) {
+        lo[k] = HUGE_VAL;
+        hi[k] = -HUGE_VAL;
+    }
+    for (int i = 0; i < l->n; i++)
+        for (int k = 0; k < 3; k++) {
+            lo[k] = fmin(lo[k], l->leaf[i].box[0][k]);
+            hi[k] = fmax(hi[k], l->leaf[i].box[1][k]);
+        }
+}
+
 /* ---- */
 
 static bvh *tree_of(const leaves *l)
 {
     bvh_box *box = malloc(sizeof *box * (size_t)l->n);
-    const double C[3] = {l->centre.x, l->centre.y, l->centre.z};
+    const bvh_space space = {l->centre, l->radius};
     for (int i = 0; box && i < l->n; i++)
-        for (int k = 0; k < 3; k++) {
-            box[i].lo[k] = (float)((l->leaf[i].box[0][k] - C[k]) / l->radius - AIR);
-            box[i].hi[k] = (float)((l->leaf[i].box[1][k] - C[k]) / l->radius + AIR);
-        }
+        box[i] = bvh_box_in(&space, l->leaf[i].box[0], l->leaf[i].box[1]);
     bvh *b = box ? bvh_new(l->n, box) : NULL;
     free(box);
     return b;
@@ -298,6 +307,7 @@ static surface_methods *methods_of(const sheet *q)
             .occlude = searched_occlude,
             .occlude_own = searched_occlude_own,
             .extent = searched_extent,
+            .box = searched_box,
             .parts = q->parts,
         };
     return is;

@@ -28,7 +28,6 @@ enum {
 #define ROUNDING 1e-14 /* of u and w, likewise: pieces can be so small that it counts */
 #define SHRED (1 / 4096.) /* a piece of this share of the range, of which nothing is proved, is tried */
 #define TINY 1e-10    /* a piece of this share of the sheet's size and place is not halved any more: it is a point */
-#define MARGIN 4e-6f  /* of the boxes, against float's rounding of coordinates about 1 */
 
 /* Pairs of a ray and a range that are waiting to be solved, side by side. */
 typedef struct pairs {
@@ -277,23 +276,10 @@ void quest_add(quest *k, int i, vec3 r, vec3 s, double from, double to)
     k->found[i] = k->unsure[i] = false;
 }
 
-/* Without a direction, or with NaN, there is no stretch. */
 bool searched_enter(const searched *f, double radius, vec3 r, vec3 s, double *from, double *to, float at[3], float way[3], float *end)
 {
-    const double length = vec3_length(s), R = (1 + 1e-5) * radius, unit = 1 / f->l.radius;
-    const vec3 o = vec3_sub(r, f->l.centre);
-    const double start = -vec3_dot(o, s) / (length * length);
-    const vec3 near = vec3_add(o, vec3_scale(s, start));
-    const double half = sqrt(R * R - vec3_dot(near, near)) / length; /* NaN beside it */
-    *from = fmax(*from, start - half);
-    *to = fmin(*to, start + half);
-    if (!(half >= 0 && half < HUGE_VAL) || !(*from <= *to))
-        return false;
-    const vec3 p = vec3_scale(vec3_add(near, vec3_scale(s, *from - start)), unit), d = vec3_scale(s, 1 / length);
-    at[0] = (float)p.x, at[1] = (float)p.y, at[2] = (float)p.z;
-    way[0] = (float)d.x, way[1] = (float)d.y, way[2] = (float)d.z;
-    *end = (float)((*to - *from) * length * unit) + MARGIN;
-    return true;
+    const bvh_space space = {f->l.centre, f->l.radius};
+    return bvh_enter(&space, radius, r, s, from, to, at, way, end);
 }
 
 void quest_run(quest *k, int n)
