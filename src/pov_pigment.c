@@ -222,11 +222,11 @@ void pov_texture(pov_text *t, const scene *s, const object *o, int part)
         pov_print(t, "  texture { %s }\n", pov_identify("Material", m->name, o->material).text);
         return;
     }
-    pov_print(t, "  texture {\n    pigment { // in (u, w)\n");
-    if (pov_by_uv(s, o)) {
-        pov_print(t, "    uv_mapping\n");
+    /* said of the texture: said of the pigment, shadows would not know */
+    pov_print(t, "  texture {\n%s    pigment { // in (u, w)\n", pov_by_uv(s, o) ? "    uv_mapping\n" : "");
+    if (pov_by_uv(s, o))
         put_plane_pigment(t, o, m);
-    } else if (pov_is_flat(&o->shape_said, part))
+    else if (pov_is_flat(&o->shape_said, part))
         put_flat_pigment(t, o, m, part);
     else
         put_round_pigment(t, o, m);

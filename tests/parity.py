@@ -294,7 +294,7 @@ COLORS = {
 # ---- displaced ----
 
 FUNCTION = "{function: '0.03*(sin(6*u)*cos(5.4*w) + 0.5*sin(10.2*u + 6.6*w))'}"
-NOISE = "{function: '0.05*noise(4*u, 4*w)'}"
+NOISE = "{function: '0.05*noise(2*u, 2*w)'}"
 ROUND = "{function: '0.05*sin(8*u)*sin(8*w)*sin(w)^2'}"
 WAVES = "{function: '0.04*sin(8*u)*sin(7*w)'}"
 MAP = "{map: {file: map.png}, scale: 0.1, zero: 0.5, sign: up, size: [2, 2]}"
@@ -309,7 +309,7 @@ DISPLACED = {
     "box": (CUBE, "{function: '0.04*sin(12*u)*sin(10*w)'}", "isosurface"),
     "sphere": (GLOBE, ROUND, "isosurface"),
     "sphere, steep at its poles": (GLOBE, "{function: '0.04*sin(8*u)*sin(6*w)'}", "isosurface"),
-    "sphere, torn at its poles": (GLOBE, "{function: '0.04*sin(8*u)'}", "mesh2"),
+    "sphere, torn at its poles": (GLOBE, "{function: '0.02*sin(4*u)'}", "mesh2"),
     "plane, noise": (PLANE, NOISE, "mesh2"),
     "plane, map": (PLANE, MAP, "mesh2"),
     "rectangle, map": (SKEWED, MAP.replace("[2, 2]", "[0.5, 0.4]"), "mesh2"),
@@ -320,7 +320,6 @@ DISPLACED = {
     "open cylinder": (ROUND_ONES["open cylinder"], WAVES, "isosurface"),
     "cone": (ROUND_ONES["cone"], WAVES, "mesh2"),
     "pointed cone": (ROUND_ONES["pointed cone"], WAVES.replace("sin(7*w)", "sin(7*w)*min(w, 1)"), "mesh2"),
-    "open cone": (ROUND_ONES["open cone"], WAVES, "mesh2"),
     "torus": (ROUND_ONES["torus"], WAVES, "isosurface"),
     "standing torus, thin": (ROUND_ONES["standing torus"], WAVES.replace("0.04", "-0.03"), "isosurface"),
     "disc, map": (ROUND_ONES["disc"], MAP.replace("[2, 2]", "[1, 1]"), "mesh2"),
@@ -362,7 +361,7 @@ SHEETS = {
     "waves": 'parametric: {x: "u", y: "1 + 0.2*sin(3*u)*cos(2*w)", z: "w", u: [-1, 1], w: [-pi/3, pi/3]}',
     "moebius": 'parametric: {x: "(1 + w*cos(u/2))*cos(u)", y: "0.9 + w*sin(u/2)", z: "(1 + w*cos(u/2))*sin(u)", u: [0, 2*pi], w: [-0.4, 0.4]}',
     "shell": 'parametric: {x: "0.3*exp(0.09*u)*(1.2 + cos(w))*cos(u)", y: "1.9 - 0.3*exp(0.09*u)*(1.7 + sin(w))", '
-             'z: "0.3*exp(0.09*u)*(1.2 + cos(w))*sin(u)", u: [-2*pi, 2*pi], w: [-pi, pi]}',
+             'z: "0.3*exp(0.09*u)*(1.2 + cos(w))*sin(u)", u: [-pi, pi], w: [-pi, 0.5]}',
     "saddle": "patches: {points: [[" + ", ".join(f"[{0.8 * i - 1.2}, {1 + 0.5 * (i % 3 == 0) - 0.6 * (j % 3 == 0)}, {0.8 * j - 1.2}]"
                                                 for j in range(4) for i in range(4)) + "]]}",
     "spout": "patches: {file: spout.txt}\n    transform: [{scale: 0.9}, {rotate: [0, 20, 0]}, {translate: [-2.2, -0.4, 0.6]}]",

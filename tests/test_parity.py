@@ -34,7 +34,7 @@ def test_parity(found: dict[parity.Scene, Future[parity.Found]], scene: parity.S
     assert not one.warnings
     assert one.share >= scene.least, f"{100 * one.share:.3f} %, worst {one.worst:.3f}"
     assert not (scene.plain and one.stray)
-    assert one.contrast > 0.02
+    assert one.contrast > 0.01
     assert not scene.shape or scene.shape + " {" in one.export
 
 
