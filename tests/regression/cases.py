@@ -27,9 +27,11 @@ HERE = Path(__file__).resolve().parent
 TOP = HERE.parent.parent
 OUT = TOP / "out" / "regression"
 PROGRAM = Path(os.environ.get("KAGE", TOP / "build" / "float" / "kage")).resolve()
-sys.path.insert(0, str(TOP / "reference"))
+sys.path[:0] = [str(TOP), str(TOP / "reference")]
 
 import references  # noqa: E402  (the folder is no package)
+
+from bench import images  # noqa: E402
 
 SIZES = {"scenes": "128x96", "tests/regression": "80x60"}
 CHANNELS = ("R", "G", "B", "tau")
@@ -90,10 +92,9 @@ def differs(old: Layers, new: Layers) -> np.ndarray:
 # Showing --------------------------------------------------------------------------------------------
 
 
-def srgb(linear: np.ndarray) -> np.ndarray:
+def levels(linear: np.ndarray) -> np.ndarray:
     """8-bit sRGB."""
-    x = np.clip(linear.astype(np.float64), 0, 1)
-    return np.rint(255 * np.where(x <= 0.0031308, 12.92 * x, 1.055 * x ** (1 / 2.4) - 0.055)).astype(np.uint8)
+    return np.rint(255 * images.srgb(linear)).astype(np.uint8)
 
 
 def difference(old: np.ndarray, new: np.ndarray) -> np.ndarray:
@@ -106,8 +107,8 @@ def difference(old: np.ndarray, new: np.ndarray) -> np.ndarray:
 def write_pictures(name: str, old: np.ndarray, new: np.ndarray) -> None:
     """Linear pictures as OUT/NAME-old.png, -new.png and -difference.png."""
     OUT.mkdir(parents=True, exist_ok=True)
-    Image.fromarray(srgb(old)).save(OUT / f"{name}-old.png")
-    Image.fromarray(srgb(new)).save(OUT / f"{name}-new.png")
+    Image.fromarray(levels(old)).save(OUT / f"{name}-old.png")
+    Image.fromarray(levels(new)).save(OUT / f"{name}-new.png")
     grey = np.rint(255 * np.clip(difference(old, new), 0, 1)).astype(np.uint8)
     Image.fromarray(grey).save(OUT / f"{name}-difference.png")
 
