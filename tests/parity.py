@@ -240,7 +240,7 @@ SECONDARY = {
     **{f"{material} {name}": (CAMERA, LIGHTS, 6, f"{TILED}{SIDE}  it: {{{ROUND_ONES[name]}, material: {material}}}\n")
        for material, name in (("mirror", "torus"), ("glass", "torus"), ("clear", "standing torus"), ("glass", "cylinder"),
                               ("pane", "open cylinder"), ("mirror", "cone"), ("clear", "pointed cone"), ("gold", "open cone"),
-                              ("mirror", "disc"), ("pane", "disc"))},
+                              ("mirror", "disc"), ("pane", "disc"), ("stained", "cylinder"), ("printed", "torus"))},
     **{f"{material} {name}, {move}": (CAMERA, LIGHTS, 7, f"{TILED}{SIDE}  it:\n    material: {material}\n    {moved(name, move)}\n")
        for material, name, move in (("glass", "box", "sheared"), ("glass", "sphere", "stretched"), ("clear", "cylinder", "mirrored"),
                                     ("mirror", "torus", "moved"))},
