@@ -66,6 +66,8 @@ double pov_scale(const object *o) { return o->moved ? affine_scale(&o->placed) :
 
 bool pov_mirrored(const object *o) { return o->moved && affine_volume(&o->placed) < 0; }
 
+const char *pov_around(const object *o) { return pov_mirrored(o) ? "atan2(-z, x)" : "atan2(z, x)"; }
+
 shape_spec pov_sized(const object *o)
 {
     const double k = pov_scale(o);

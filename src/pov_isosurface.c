@@ -167,9 +167,6 @@ static void put_motion(pov_text *t, const object *o)
     pov_print(t, " // the object's transform\n");
 }
 
-/* u of what turns about y. */
-static const char *around(const object *o) { return pov_mirrored(o) ? "atan2(-z, x)" : "atan2(z, x)"; }
-
 /* A round one's function begins, and ends. */
 static void begin_function(pov_text *t, const scene *s, const object *o)
 {
@@ -189,7 +186,7 @@ static void put_sphere(pov_text *t, const scene *s, const object *o, const char 
     double y[2], radius = f.radius[0];
     pov_levels(o, y);
     begin_function(t, s, o);
-    pov_print(t, "sqrt(x*x + y*y + z*z) - %s\n    - %s(%s, atan2(sqrt(x*x + z*z), y))", pov_exact(radius).text, name, around(o));
+    pov_print(t, "sqrt(x*x + y*y + z*z) - %s\n    - %s(%s, atan2(sqrt(x*x + z*z), y))", pov_exact(radius).text, name, pov_around(o));
     end_function(t, s, o);
     pov_print(t, "  contained_by { sphere { 0, %g } }\n  accuracy %g\n", radius + y[1], accuracy(s));
     pov_print(t, "  max_gradient %g // a bound but for 0.001 radians around the poles\n  translate %v\n",
@@ -206,7 +203,7 @@ static void put_side(pov_text *t, const scene *s, const object *o, const char *n
     double y[2], radius = f.radius[0], length = vec3_length(axis);
     pov_levels(o, y);
     begin_function(t, s, o);
-    pov_print(t, "sqrt(x*x + z*z) - %s\n    - %s(%s, ", pov_exact(radius).text, name, around(o));
+    pov_print(t, "sqrt(x*x + z*z) - %s\n    - %s(%s, ", pov_exact(radius).text, name, pov_around(o));
     pov_print(t, pov_scale(o) == 1 ? "%s - y" : "(%s - y)", pov_exact(length).text);
     put_over(t, "", pov_scale(o));
     pov_print(t, ")");
@@ -230,7 +227,7 @@ static void put_torus(pov_text *t, const scene *s, const object *o, const char *
     const pov_digits major = pov_exact(f.radius[0]);
     begin_function(t, s, o);
     pov_print(t, "sqrt(pow(sqrt(x*x + z*z) - %s, 2) + y*y) - %s\n", major.text, pov_exact(f.radius[1]).text);
-    pov_print(t, "    - %s(%s, atan2(-y, sqrt(x*x + z*z) - %s))", name, around(o), major.text);
+    pov_print(t, "    - %s(%s, atan2(-y, sqrt(x*x + z*z) - %s))", name, pov_around(o), major.text);
     end_function(t, s, o);
     pov_print(t, "  contained_by { box { <%g, %g, %g>, <%g, %g, %g> } }\n", -wide, -high, -wide, wide, high, wide);
     pov_print(t, "  accuracy %g\n  max_gradient %g // a bound: none is steeper\n", accuracy(s), pov_isosurface_gradient(s, o, 0));

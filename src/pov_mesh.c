@@ -312,24 +312,10 @@ static void tessellate(tessellation *x, int part)
 
 /* ---- writing ---- */
 
-static void put_floats(pov_text *t, const float *v)
-{
-    pov_print(t, "<%s,%s,%s>", pov_number((double)v[0], 7).text, pov_number((double)v[1], 7).text, pov_number((double)v[2], 7).text);
-}
-
 static void put_mesh(pov_text *t, const tessellation *x)
 {
-    pov_print(t, "mesh2 {\n  vertex_vectors { %d", x->v.count);
-    for (int k = 0; k < x->v.count; k++) {
-        pov_print(t, k % 4 ? "," : ",\n");
-        put_floats(t, x->v.vertex[k].at);
-    }
-    pov_print(t, " }\n  normal_vectors { %d", x->v.count);
-    for (int k = 0; k < x->v.count; k++) {
-        pov_print(t, k % 4 ? "," : ",\n");
-        put_floats(t, x->v.vertex[k].normal);
-    }
-    pov_print(t, " }\n  face_indices { %d", (int)x->faces);
+    pov_begin_mesh(t, x->v.vertex, x->v.count, pov_by_uv(x->s, x->o));
+    pov_print(t, "  face_indices { %d", (int)x->faces);
     for (long k = 0; k < x->faces; k++)
         pov_print(t, k % 8 ? ",<%d,%d,%d>" : ",\n<%d,%d,%d>", (int)x->face[k][0], (int)x->face[k][1], (int)x->face[k][2]);
     pov_print(t, " }\n");

@@ -20,8 +20,9 @@ bool pov_is_flat(const shape_spec *f, int part);
 /* What the object's transform makes of lengths: 1 where it has none, 0 where not all grow alike. */
 double pov_scale(const object *o);
 
-/* Whether u runs the other way (surface_transformed). */
+/* Whether u runs the other way (surface_transformed); u of what turns about y, as a function of x and z. */
 bool pov_mirrored(const object *o);
+const char *pov_around(const object *o);
 
 /* The shape before its transform, but for the size. */
 shape_spec pov_sized(const object *o);
@@ -46,10 +47,12 @@ typedef struct pov_identifier {
 
 pov_identifier pov_identify(const char *kind, const char *name, int index);
 
-/* All materials; and that of an object, on a part of its surface. pov_by_parts: each part has its own. */
+/* All materials; and that of an object, on a part of its surface. pov_by_parts: each part has its own; pov_by_uv: its mesh must say
+ * where in (u,w) vertices are. */
 void pov_materials(pov_text *t, const scene *s);
 void pov_texture(pov_text *t, const scene *s, const object *o, int part);
 bool pov_by_parts(const scene *s, const object *o);
+bool pov_by_uv(const scene *s, const object *o);
 
 /* P as a POV-Ray function of u and w, named by `name`. False where there is none. */
 bool pov_function(pov_text *t, const object *o, const char *name);

@@ -1,20 +1,15 @@
 /* Materials for the POV-Ray writer. A colour that is not constant becomes a pigment in the surface's own (u,w): on a flat surface in its
- * frame, on a sphere by POV-Ray's spherical warp, whose axis is y and whose x is u/2pi in 0..1.
+ * frame, on a round one by a warp of POV-Ray's, about y, whose x is u/2pi in 0..1, and on a mesh that says them by its vertices' (u,w).
  */
 #include "pov_parts.h"
+
+#include "frame.h"
 
 #include <string.h>
 
 #define PI 3.14159265358979323846
 
 /* ---- what has to do ---- */
-
-/* Whether POV-Ray is told how (u,w) lie on the surface. */
-static bool has_uw(const object *o)
-{
-    const shape_kind kind = o->shape_said.kind;
-    return kind != SHAPE_CYLINDER && kind != SHAPE_CONE && kind != SHAPE_TORUS && kind != SHAPE_SEARCHED && !(kind == SHAPE_SPHERE && pov_mirrored(o));
-}
 
 /* Whether all of the surface is on the image. */
 static bool covers(const object *o)
@@ -31,10 +26,7 @@ bool pov_possible(const scene *s, errors *e)
     for (int k = 0; k < s->objects; k++) {
         const object *o = &s->object[k];
         const material *m = &s->material[o->material];
-        if (m->pattern && !has_uw(o))
-            good = errors_add(e, "%s: object %s: the colours of material %s can't be laid on a %s%s in POV-Ray, expected a constant color",
-                              s->path, o->name, m->name, pov_mirrored(o) ? "mirrored " : "", o->shape->is->kind);
-        else if (m->pattern == PATTERN_IMAGE && m->layout.wrap != MAP_REPEAT && !(m->layout.wrap == MAP_CLAMP && m->nearest && covers(o)))
+        if (m->pattern == PATTERN_IMAGE && m->layout.wrap != MAP_REPEAT && !(m->layout.wrap == MAP_CLAMP && m->nearest && covers(o)))
             good = errors_add(e, "%s: object %s: POV-Ray's images repeat and do nothing else, expected 'wrap: repeat' in material %s%s", s->path,
                               o->name, m->name,
                               m->layout.wrap == MAP_CLAMP ? ", or 'interpolation: nearest' on an image as large as the surface" : "");
@@ -86,13 +78,55 @@ void pov_materials(pov_text *t, const scene *s)
                      "#declare Checker = function(u, w) { 0.5*(floor(u) + floor(w)) - floor(0.5*(floor(u) + floor(w))) }\n\n");
 }
 
-static void put_checker(pov_text *t, const object *o, int part, const material *m)
+/* ---- (u,w) on round surfaces ---- */
+
+/* In a frame about y, u is an angle from x to z, or, where a transform mirrors, from z to x. */
+typedef struct winding {
+    char w[160]; /* as a function of x, y and z */
+    char warp[80];
+    double low, rate; /* the warp's y is low + rate w */
+    frame axes;
+} winding;
+
+static winding winding_of(const object *o)
 {
-    const map_layout *l = &o->color_layout;
-    const bool flat = pov_is_flat(&o->shape_said, part);
-    pov_print(t, "    function { Checker((%s - %s)/%s, ", flat ? "x" : "atan2(z, x)", pov_exact(l->offset[0]).text,
-              pov_exact(l->size[0]).text);
-    pov_print(t, "(%s - %s)/%s) }\n", flat ? "y" : "atan2(sqrt(x*x + z*z), y)", pov_exact(l->offset[1]).text, pov_exact(l->size[1]).text);
+    const shape_spec *f = &o->shape_said;
+    const vec3 up = {0, 1, 0};
+    winding a;
+    if (f->kind == SHAPE_SPHERE) {
+        snprintf(a.w, sizeof a.w, "atan2(sqrt(x*x + z*z), y)");
+        snprintf(a.warp, sizeof a.warp, "spherical");
+        a.low = 1;
+        a.rate = -1 / PI;
+        a.axes = frame_about(up);
+    } else if (f->kind == SHAPE_TORUS) {
+        const pov_digits major = pov_exact(f->radius[0]);
+        snprintf(a.w, sizeof a.w, "atan2(-y, sqrt(x*x + z*z) - %s)", major.text);
+        snprintf(a.warp, sizeof a.warp, "toroidal major_radius %s", major.text);
+        a.low = 0.5;
+        a.rate = -0.5 / PI;
+        a.axes = frame_about(f->u);
+    } else { /* the side of a cylinder or cone: w is the way down it */
+        const vec3 axis = vec3_sub(f->u, f->a);
+        const double high = vec3_length(axis), slant = hypot(high, f->radius[1] - f->radius[0]) / high;
+        if (slant > 1)
+            snprintf(a.w, sizeof a.w, "%s*(%s - y)", pov_exact(slant).text, pov_exact(high).text);
+        else
+            snprintf(a.w, sizeof a.w, "%s - y", pov_exact(high).text);
+        snprintf(a.warp, sizeof a.warp, "cylindrical");
+        a.low = high;
+        a.rate = -1 / slant;
+        a.axes = frame_about(axis);
+    }
+    return a;
+}
+
+/* ---- pigments ---- */
+
+static void put_checker(pov_text *t, const material *m, const map_layout *l, const char *u, const char *w)
+{
+    pov_print(t, "    function { Checker((%s - %s)/%s, ", u, pov_exact(l->offset[0]).text, pov_exact(l->size[0]).text);
+    pov_print(t, "(%s - %s)/%s) }\n", w, pov_exact(l->offset[1]).text, pov_exact(l->size[1]).text);
     pov_print(t, "    color_map { [0.25 ");
     put_color(t, m, m->field[0]);
     pov_print(t, "] [0.25 ");
@@ -112,38 +146,73 @@ static void put_image_map(pov_text *t, const material *m)
 }
 
 /* In POV-Ray an image's lower left corner is in the origin. */
-static void put_flat_image(pov_text *t, const object *o, const material *m)
+static void put_flat_image(pov_text *t, const material *m, const map_layout *l)
 {
-    const map_layout *l = &o->color_layout;
     pov_print(t, "    ");
     put_image_map(t, m);
     pov_print(t, "\n    scale <1, -1, 1> translate y // its first row at the lowest w\n");
     pov_print(t, "    scale <%g, %g, 1> translate <%g, %g, 0>\n", l->size[0], l->size[1], l->offset[0], l->offset[1]);
 }
 
-/* `turns`: 1 for u below 0. */
-static void put_round_image(pov_text *t, const object *o, const material *m, int turns)
+/* `turns`: 1 for angles below 0. */
+static void put_wound_image(pov_text *t, const object *o, const material *m, const winding *a, int turns)
 {
     const map_layout *l = &o->color_layout;
+    const double around = (pov_mirrored(o) ? -0.5 : 0.5) / PI;
     put_image_map(t, m);
-    pov_print(t, "\n      scale <%g, %g, 1> translate <%g, %g, 0> warp { spherical orientation z dist_exp 0 }\n", l->size[0] / (2 * PI),
-              l->size[1] / PI, l->offset[0] / (2 * PI) + turns, 1 - (l->offset[1] + l->size[1]) / PI);
+    pov_print(t, "\n      scale <%g, %g, 1> translate <%g, %g, 0> warp { %s orientation z dist_exp 0 }\n", l->size[0] * around,
+              -l->size[1] * a->rate, l->offset[0] * around + turns, a->low + a->rate * (l->offset[1] + l->size[1]), a->warp);
 }
 
-/* An image that does not close around the sphere has its seam at u = pi, where z changes its sign behind the axis. */
-static void put_sphere_image(pov_text *t, const object *o, const material *m)
+/* An image that does not close around the surface has its seam at u = pi, where z changes its sign behind the axis. */
+static void put_round_image(pov_text *t, const object *o, const material *m, const winding *a)
 {
     const double times = 2 * PI / o->color_layout.size[0];
     if (fabs(times - floor(times + 0.5)) < 1e-9) {
         pov_print(t, "      ");
-        put_round_image(t, o, m, 0);
+        put_wound_image(t, o, m, a, 0);
         return;
     }
     pov_print(t, "    function { select(z, 0, 1) }\n    pigment_map {\n      [0.5 ");
-    put_round_image(t, o, m, 1);
+    put_wound_image(t, o, m, a, 1);
     pov_print(t, "      ]\n      [0.5 ");
-    put_round_image(t, o, m, 0);
+    put_wound_image(t, o, m, a, 0);
     pov_print(t, "      ]\n    }\n");
+}
+
+/* Where x is u and y is w. */
+static void put_plane_pigment(pov_text *t, const object *o, const material *m)
+{
+    if (m->pattern == PATTERN_CHECKER)
+        put_checker(t, m, &o->color_layout, "x", "y");
+    else
+        put_flat_image(t, m, &o->color_layout);
+}
+
+static void put_flat_pigment(pov_text *t, const object *o, const material *m, int part)
+{
+    const pov_flat p = pov_flat_of(o, part);
+    put_plane_pigment(t, o, m);
+    pov_print(t, "  ");
+    pov_matrix(t, p.U, p.W, p.y, p.O);
+    pov_print(t, "\n");
+}
+
+static void put_round_pigment(pov_text *t, const object *o, const material *m)
+{
+    const winding a = winding_of(o);
+    if (m->pattern == PATTERN_CHECKER)
+        put_checker(t, m, &o->color_layout, pov_around(o), a.w);
+    else
+        put_round_image(t, o, m, &a);
+    pov_print(t, "  ");
+    pov_matrix(t, a.axes.x, a.axes.y, a.axes.z, o->shape_said.a);
+    pov_print(t, " // y is the axis\n");
+    if (o->moved) {
+        pov_print(t, "  ");
+        pov_matrix(t, o->placed.x, o->placed.y, o->placed.z, o->placed.o);
+        pov_print(t, "\n");
+    }
 }
 
 void pov_texture(pov_text *t, const scene *s, const object *o, int part)
@@ -153,27 +222,24 @@ void pov_texture(pov_text *t, const scene *s, const object *o, int part)
         pov_print(t, "  texture { %s }\n", pov_identify("Material", m->name, o->material).text);
         return;
     }
-    pov_print(t, "  texture {\n    pigment { // in (u, w)\n");
-    if (m->pattern == PATTERN_CHECKER)
-        put_checker(t, o, part, m);
+    /* said of the texture: said of the pigment, shadows would not know */
+    pov_print(t, "  texture {\n%s    pigment { // in (u, w)\n", pov_by_uv(s, o) ? "    uv_mapping\n" : "");
+    if (pov_by_uv(s, o))
+        put_plane_pigment(t, o, m);
     else if (pov_is_flat(&o->shape_said, part))
-        put_flat_image(t, o, m);
+        put_flat_pigment(t, o, m, part);
     else
-        put_sphere_image(t, o, m);
-    if (pov_is_flat(&o->shape_said, part)) {
-        const pov_flat p = pov_flat_of(o, part);
-        pov_print(t, "  ");
-        pov_matrix(t, p.U, p.W, p.y, p.O);
-        pov_print(t, "\n");
-    } else {
-        pov_print(t, "    translate %v\n", o->shape_said.a);
-        if (o->moved) {
-            pov_print(t, "  ");
-            pov_matrix(t, o->placed.x, o->placed.y, o->placed.z, o->placed.o);
-            pov_print(t, "\n");
-        }
-    }
+        put_round_pigment(t, o, m);
     pov_print(t, "    }\n    finish { %s }\n  }\n", pov_identify("Finish", m->name, o->material).text);
 }
 
-bool pov_by_parts(const scene *s, const object *o) { return s->material[o->material].pattern && o->shape->is->parts > 1; }
+bool pov_by_uv(const scene *s, const object *o)
+{
+    const bool cone = o->shape_said.kind == SHAPE_CONE && s->displaced && o->bump; /* by no warp: its w is that of the foot */
+    return s->material[o->material].pattern && (cone || o->shape_said.kind == SHAPE_SEARCHED);
+}
+
+bool pov_by_parts(const scene *s, const object *o)
+{
+    return s->material[o->material].pattern && o->shape->is->parts > 1 && !pov_by_uv(s, o);
+}

@@ -4,6 +4,7 @@
 #include "pov_parts.h"
 
 #include "offset.h"
+#include "pov_vertices.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -13,10 +14,6 @@ enum { MOST_TRIANGLES = 1500000, PROBES = 64, LEAST = 8, FINEST = 4096 };
 #define PIXELS 3.0  /* a cell's side on the screen: what is bent less than TURN has no corner there */
 #define TURN 0.012  /* between the normals of neighbours, radians: a facet that shades its neighbour does so where light counts for
                        less than a step of 1/255 */
-
-typedef struct vertex {
-    float at[3], normal[3];
-} vertex;
 
 typedef struct grid {
     const scene *s;
@@ -35,7 +32,7 @@ static void put_lane(float to[3], bs_vec3 x)
 }
 
 /* A line of the grid along u: n[0] + 1 vertices. */
-static void evaluate(const grid *g, int part, int row, vertex *out)
+static void evaluate(const grid *g, int part, int row, pov_vertex *out)
 {
     double U[2], W[2];
     const surface *f = g->o->shape;
@@ -60,6 +57,8 @@ static void evaluate(const grid *g, int part, int row, vertex *out)
             const offset o = offset_of(Qu, Qw, lane_get(&q.Quu, i), lane_get(&q.Quw, i), lane_get(&q.Qww, i), h.P[i]);
             put_lane(out[first + i].at, offset_mix(lane_get(&q.Q, i), h.P[i], o.n));
             put_lane(out[first + i].normal, bs_regular(bs_normal(Qu, Qw), Qu, Qw) ? offset_normal(o, h.Pu[i], h.Pw[i]) : o.n);
+            out[first + i].uv[0] = (float)u[i];
+            out[first + i].uv[1] = (float)w[i];
         }
     }
 }
@@ -82,7 +81,7 @@ static double turn_between(const float a[3], const float b[3])
     return turn < HUGE_VAL ? turn : 0; /* where there is no normal */
 }
 
-static void probe(const vertex *a, const vertex *b, const grid *g, double *most)
+static void probe(const pov_vertex *a, const pov_vertex *b, const grid *g, double *most)
 {
     *most = fmax(*most, fmax(pixels_between(g->s, a->at, b->at) / PIXELS, turn_between(a->normal, b->normal) / TURN));
 }
@@ -91,7 +90,7 @@ static void probe(const vertex *a, const vertex *b, const grid *g, double *most)
 static bool measure(grid *g)
 {
     const int parts = g->o->shape->is->parts;
-    vertex *row = malloc(sizeof *row * 2 * (PROBES + 1)), *last = row + PROBES + 1;
+    pov_vertex *row = malloc(sizeof *row * 2 * (PROBES + 1)), *last = row + PROBES + 1;
     double most[2] = {0, 0};
     if (!row)
         return false;
@@ -135,15 +134,10 @@ static void fit_map(grid *g)
 
 /* ---- writing ---- */
 
-static void put_floats(pov_text *t, const float *v)
-{
-    pov_print(t, "<%s,%s,%s>", pov_number((double)v[0], 7).text, pov_number((double)v[1], 7).text, pov_number((double)v[2], 7).text);
-}
-
-static bool same(const vertex *a, const vertex *b) { return memcmp(a->at, b->at, sizeof a->at) == 0; }
+static bool same(const pov_vertex *a, const pov_vertex *b) { return memcmp(a->at, b->at, sizeof a->at) == 0; }
 
 /* The two triangles of each cell, but for those without an area; counted, or written. */
-static int faces(pov_text *t, const grid *g, const vertex *v)
+static int faces(pov_text *t, const grid *g, const pov_vertex *v)
 {
     const int row = g->n[0] + 1, all = (g->n[1] + 1) * row;
     int n = 0;
@@ -163,21 +157,12 @@ static int faces(pov_text *t, const grid *g, const vertex *v)
     return n;
 }
 
-static void put_mesh(pov_text *t, const grid *g, const vertex *v, int n)
+static void put_mesh(pov_text *t, const grid *g, const pov_vertex *v, int n)
 {
     pov_print(t, "// a mesh made for %d x %d pixels: %d x %d cells%s\n", g->s->width, g->s->height, g->n[0], g->n[1],
               g->o->shape->is->parts > 1 ? " a part" : "");
-    pov_print(t, "mesh2 {\n  vertex_vectors { %d", n);
-    for (int k = 0; k < n; k++) {
-        pov_print(t, k % 4 ? "," : ",\n");
-        put_floats(t, v[k].at);
-    }
-    pov_print(t, " }\n  normal_vectors { %d", n);
-    for (int k = 0; k < n; k++) {
-        pov_print(t, k % 4 ? "," : ",\n");
-        put_floats(t, v[k].normal);
-    }
-    pov_print(t, " }\n  face_indices { %d,", faces(NULL, g, v));
+    pov_begin_mesh(t, v, n, pov_by_uv(g->s, g->o));
+    pov_print(t, "  face_indices { %d,", faces(NULL, g, v));
     faces(t, g, v);
     pov_print(t, " }\n");
 }
@@ -190,7 +175,7 @@ bool pov_sheet(pov_text *t, const scene *s, const object *o)
     if (g.rough && o->map.file)
         fit_map(&g);
     const int row = g.n[0] + 1, all = (g.n[1] + 1) * row, parts = o->shape->is->parts;
-    vertex *v = malloc(sizeof *v * (size_t)all * (size_t)parts);
+    pov_vertex *v = malloc(sizeof *v * (size_t)all * (size_t)parts);
     for (int part = 0; v && part < parts; part++)
         for (int j = 0; j <= g.n[1]; j++)
             evaluate(&g, part, j, v + part * all + j * row);

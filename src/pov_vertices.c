@@ -6,6 +6,27 @@
 #include <stdlib.h>
 #include <string.h>
 
+static void put_list(pov_text *t, const char *kind, const float *v, int n, int each)
+{
+    pov_print(t, "  %s { %d", kind, n);
+    for (int k = 0; k < n; k++, v += sizeof(pov_vertex) / sizeof *v) {
+        pov_print(t, k % 4 ? ",<" : ",\n<");
+        for (int a = 0; a < each; a++)
+            pov_print(t, a ? ",%s" : "%s", pov_number((double)v[a], 7).text);
+        pov_print(t, ">");
+    }
+    pov_print(t, " }\n");
+}
+
+void pov_begin_mesh(pov_text *t, const pov_vertex *v, int n, bool uv)
+{
+    pov_print(t, "mesh2 {\n");
+    put_list(t, "vertex_vectors", v->at, n, 3);
+    put_list(t, "normal_vectors", v->normal, n, 3);
+    if (uv)
+        put_list(t, "uv_vectors", v->uv, n, 2);
+}
+
 static double line(const pov_lattice *l, int axis, int64_t i)
 {
     return fmin(fmax(l->start[axis] + (double)i * l->step[axis], l->lo[axis]), l->hi[axis]);
@@ -47,7 +68,7 @@ static void evaluate(pov_vertices *v, int n, const real *u, const real *w, pov_v
                          gh.z - h.Pu[i] * gu.z - h.Pw[i] * gw.z};
             m = lane_unit(g);
         }
-        out[i] = (pov_vertex){{(float)X.x, (float)X.y, (float)X.z}, {(float)m.x, (float)m.y, (float)m.z}};
+        out[i] = (pov_vertex){{(float)X.x, (float)X.y, (float)X.z}, {(float)m.x, (float)m.y, (float)m.z}, {(float)u[i], (float)w[i]}};
     }
 }
 

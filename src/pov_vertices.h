@@ -1,5 +1,5 @@
-/* The vertices of a displaced mesh, each once: places on a lattice of (u,w), with X = Q + P n/|n| and the normal of the rough
- * surface. Private to pov_*.c. */
+/* The vertices of meshes. Those of a displaced one are made each once: places on a lattice of (u,w), with X = Q + P n/|n| and the
+ * normal of the rough surface. Private to pov_*.c. */
 #ifndef KAGE_POV_VERTICES_H
 #define KAGE_POV_VERTICES_H
 
@@ -7,6 +7,7 @@
 #include <stdint.h>
 
 #include "perturb.h"
+#include "pov_text.h"
 #include "surface.h"
 
 enum { LATTICE = 16 }; /* places along a cell's side */
@@ -21,8 +22,11 @@ typedef struct pov_lattice {
 double pov_lattice_at(const pov_lattice *l, int axis, int64_t i, int s);
 
 typedef struct pov_vertex {
-    float at[3], normal[3];
+    float at[3], normal[3], uv[2];
 } pov_vertex;
+
+/* A mesh2 begins with its vertices; where `uv`, with their (u,w). */
+void pov_begin_mesh(pov_text *t, const pov_vertex *v, int n, bool uv);
 
 typedef struct pov_vertices {
     const surface *f;

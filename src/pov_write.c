@@ -106,13 +106,49 @@ static void put_rectangle(pov_text *t, vec3 O, vec3 U, vec3 W)
     pov_print(t, " // u, w, n, origin\n");
 }
 
-/* A box whose faces have colours of their own, each where it is in the scene. */
-static void put_faces(pov_text *t, const scene *s, const object *o)
+/* A disc, of which a transform may have made an ellipse; the brace stays open. */
+static void put_cap(pov_text *t, const pov_flat *p, double radius)
+{
+    pov_print(t, "disc {\n  0, z, %g\n", radius);
+    pov_matrix(t, p->U, p->W, p->y, p->O);
+    pov_print(t, " // u, w, n, origin\n");
+}
+
+/* The side of a cylinder or cone, with its caps or without; the brace stays open. */
+static void put_side(pov_text *t, const shape_spec *f, bool open)
+{
+    if (f->kind == SHAPE_CYLINDER)
+        pov_print(t, "cylinder {\n  %v, %v, %g%s\n", f->a, f->u, f->radius[0], open ? " open" : "");
+    else
+        pov_print(t, "cone {\n  %v, %g, %v, %g%s\n", f->a, f->radius[0], f->u, f->radius[1], open ? " open" : "");
+}
+
+static void put_transform(pov_text *t, const object *o)
+{
+    if (o->moved) {
+        pov_matrix(t, o->placed.x, o->placed.y, o->placed.z, o->placed.o);
+        pov_print(t, " // its transform\n");
+    }
+}
+
+/* A shape whose faces, or side and caps, have colours of their own, each where it is in the scene. */
+static void put_parts(pov_text *t, const scene *s, const object *o)
 {
     pov_print(t, "union {\n");
     for (int part = 0; part < o->shape->is->parts; part++) {
-        const pov_flat p = pov_flat_of(o, part);
-        put_rectangle(t, p.O, p.U, p.W);
+        const double rim = pov_rim(&o->shape_said, part);
+        if (rim == 0)
+            continue;
+        if (!pov_is_flat(&o->shape_said, part)) {
+            put_side(t, &o->shape_said, true);
+            put_transform(t, o);
+        } else {
+            const pov_flat p = pov_flat_of(o, part);
+            if (rim < 0)
+                put_rectangle(t, p.O, p.U, p.W);
+            else
+                put_cap(t, &p, rim);
+        }
         pov_texture(t, s, o, part);
         pov_print(t, "}\n");
     }
@@ -121,6 +157,10 @@ static void put_faces(pov_text *t, const scene *s, const object *o)
 static void put_smooth(pov_text *t, const scene *s, const object *o)
 {
     const shape_spec *f = &o->shape_said;
+    if (pov_by_parts(s, o)) {
+        put_parts(t, s, o);
+        return;
+    }
     switch (f->kind) {
     case SHAPE_PLANE: {
         vec3 n = vec3_unit(vec3_cross(f->u, f->w));
@@ -134,19 +174,14 @@ static void put_smooth(pov_text *t, const scene *s, const object *o)
         pov_print(t, "disc {\n  %v, %v, %g\n", f->a, f->u, f->radius[0]);
         break;
     case SHAPE_BOX:
-        if (pov_by_parts(s, o))
-            put_faces(t, s, o);
-        else
-            pov_print(t, "box {\n  %v, %v\n", f->a, f->u);
+        pov_print(t, "box {\n  %v, %v\n", f->a, f->u);
         break;
     case SHAPE_SPHERE:
         pov_print(t, "sphere {\n  %v, %g\n", f->a, f->radius[0]);
         break;
     case SHAPE_CYLINDER:
-        pov_print(t, "cylinder {\n  %v, %v, %g%s\n", f->a, f->u, f->radius[0], f->open ? " open" : "");
-        break;
     case SHAPE_CONE:
-        pov_print(t, "cone {\n  %v, %g, %v, %g%s\n", f->a, f->radius[0], f->u, f->radius[1], f->open ? " open" : "");
+        put_side(t, f, f->open);
         break;
     case SHAPE_TORUS: {
         const frame a = frame_about(f->u);
@@ -158,10 +193,7 @@ static void put_smooth(pov_text *t, const scene *s, const object *o)
     case SHAPE_SEARCHED: /* pov_sheet.c */
         break;
     }
-    if (o->moved && !pov_by_parts(s, o)) {
-        pov_matrix(t, o->placed.x, o->placed.y, o->placed.z, o->placed.o);
-        pov_print(t, " // its transform\n");
-    }
+    put_transform(t, o);
 }
 
 static bool put_displaced(pov_text *t, const scene *s, int k, pov_report *report)

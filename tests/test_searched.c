@@ -16,7 +16,7 @@
 #include "golden_json.h"
 #include "lane.h"
 #include "patch_file.h"
-#include "random_in.h"
+#include "random_rays.h"
 #include "sheet.h"
 #include "surface.h"
 
@@ -96,22 +96,6 @@ static int free_all(void **state)
 }
 
 static const char *const names[KINDS] = {"moebius", "klein", "roof", "ball", "ring", "teapot"};
-
-static void random_ray(rays *x, int i)
-{
-    double a = random_in(0, 6.283), z = random_in(-1, 1), l = 4 * sqrt(1 - z * z), k = random_in(0.2, 3);
-    double r[3] = {l * cos(a), 4 * z, l * sin(a)}, to[3] = {random_in(-1.3, 1.3), random_in(-1, 1), random_in(-1.3, 1.3)};
-    x->r.x[i] = (real)r[0], x->r.y[i] = (real)r[1], x->r.z[i] = (real)r[2];
-    x->s.x[i] = (real)(k * (to[0] - r[0])), x->s.y[i] = (real)(k * (to[1] - r[1])), x->s.z[i] = (real)(k * (to[2] - r[2]));
-}
-
-static void no_hits(hits *h, int n)
-{
-    for (int i = 0; i < n; i++) {
-        h->t[i] = REAL_FAR;
-        h->id[i] = -1;
-    }
-}
 
 static double distance(bs_vec3 a, bs_vec3 b)
 {
@@ -210,7 +194,7 @@ static void hits_are_on_the_surface(void **state)
             int32_t part[LANES];
             real u[LANES], w[LANES];
             for (int i = 0; i < LANES; i++)
-                random_ray(&x, i);
+                random_ray(&x, i, 1.3);
             no_hits(&h, LANES);
             f->is->hit(f, LANES, &x, 3, &h);
             f->is->locate(f, LANES, &x, h.t, part, u, w);
@@ -247,7 +231,7 @@ static void closed_forms(void **state)
             int32_t part[LANES];
             real lit_a[LANES], lit_b[LANES], u[LANES], w[LANES];
             for (int i = 0; i < LANES; i++) {
-                random_ray(&x, i);
+                random_ray(&x, i, 1.3);
                 if (round % 3 == 1) { /* from inside, or from between */
                     x.r.x[i] *= R(0.2), x.r.y[i] *= R(0.05), x.r.z[i] *= R(0.2);
                 }
@@ -293,7 +277,7 @@ static void own_shadows(void **state)
             int32_t part[LANES];
             real u[LANES], w[LANES], a[LANES], b[LANES];
             for (int i = 0; i < LANES; i++)
-                random_ray(&x, i);
+                random_ray(&x, i, 1.3);
             no_hits(&h, LANES);
             g->is->hit(g, LANES, &x, 0, &h);
             int n = 0;
@@ -373,7 +357,7 @@ static void brute_force(void **state)
         static hits h;
         int off = 0, met = 0;
         for (int i = 0; i < LANES; i++)
-            random_ray(&x, i);
+            random_ray(&x, i, 1.3);
         no_hits(&h, LANES);
         f->is->hit(f, LANES, &x, 0, &h);
         for (int i = 0; i < LANES; i++) {
@@ -417,7 +401,7 @@ static void no_cracks(void **state)
             }
             f->is->eval(f, LANES, part, u, w, 1, &q);
             for (int i = 0; i < LANES; i++) {
-                random_ray(&x, i);
+                random_ray(&x, i, 1.3);
                 const bs_vec3 n = lane_unit(bs_normal(lane_get(&q.Qu, i), lane_get(&q.Qw, i))), Q = lane_get(&q.Q, i);
                 assert_true(bs_dot(n, n) > R(0.9)); /* none is NaN, not even where Qu is 0 */
                 /* from 0.05 above, up to 0.2 aside, straight to the place and on by as much */
@@ -518,7 +502,7 @@ static void each_ray_by_itself(void **state)
         static rays x, one;
         static hits h, alone;
         for (int i = 0; i < LANES; i++)
-            random_ray(&x, i);
+            random_ray(&x, i, 1.3);
         no_hits(&h, LANES);
         f->is->hit(f, LANES, &x, 0, &h);
         for (int i = LANES - 1; i >= 0; i--) {
@@ -622,7 +606,7 @@ static void displaced_as_closed_forms(void **state)
         static hits a, b;
         real lit_a[LANES], lit_b[LANES];
         for (int i = 0; i < LANES; i++) {
-            random_ray(&x, i);
+            random_ray(&x, i, 1.3);
             if (round % 3 == 1)
                 x.r.x[i] *= R(0.2), x.r.y[i] *= R(0.02), x.r.z[i] *= R(0.2);
             lit_a[i] = lit_b[i] = 1;
@@ -693,7 +677,7 @@ static void error_slopes(void **state)
         int32_t part[LANES];
         real u[LANES], w[LANES];
         for (int i = 0; i < LANES; i++)
-            random_ray(&x, i);
+            random_ray(&x, i, 1.3);
         no_hits(&h, LANES);
         f->is->hit(f, LANES, &x, 0, &h);
         f->is->locate(f, LANES, &x, h.t, part, u, w);

@@ -1,5 +1,5 @@
 """Surfaces without closed forms, through the program: errors in the scene and in files of patches, the same bytes for any number of
-threads, and POV-Ray's picture of them.
+threads. POV-Ray's picture of them: test_parity.py.
 """
 
 from __future__ import annotations
@@ -10,27 +10,19 @@ from pathlib import Path
 import numpy as np
 import pytest
 from conftest import TOP, Kage
-from test_pov import CAMERA, FLOOR, HEAD, LIGHTS, layers, needs_povray, povray
+from parity import CAMERA, FLOOR, HEAD, LIGHTS, SHEETS
 
 sys.path.insert(0, str(TOP / "scripts"))
 
 import make_teapot  # noqa: E402
 
 PARAMETRIC = '{x: "u", y: "1 + 0.2*sin(3*u)*cos(2*w)", z: "w", u: [-1, 1], w: [-pi/3, pi/3]}'
-MOEBIUS = '{x: "(1 + w*cos(u/2))*cos(u)", y: "0.9 + w*sin(u/2)", z: "(1 + w*cos(u/2))*sin(u)", u: [0, 2*pi], w: [-0.4, 0.4]}'
 PATCH = "[" + ", ".join(f"[{i - 1.5}, {1 + (i % 2) * (j % 2)}, {1.5 - j}]" for j in range(4) for i in range(4)) + "]"
-
-
-SHAPES = {
-    "waves": (f"parametric: {PARAMETRIC}", "0.02*sin(9*u)*sin(9*w)"),
-    "moebius": (f"parametric: {MOEBIUS}", "0.02*sin(9*u)*sin(9*w)"),
-    "teapot": (f"patches: {{file: {TOP / 'scenes' / 'data' / 'teapot.txt'}}}", "0.04*sin(3*pi*u)*sin(3*pi*w)"),
-}
 
 
 def scene(kage: Kage, shape: str, bump: str = "") -> Path:
     path = kage.folder / "sheet.yaml"
-    text = HEAD.format(camera=CAMERA, lights=LIGHTS).replace("[200, 150]", "[96, 72]") + FLOOR + f"  it:\n    {shape}\n    material: shiny\n"
+    text = HEAD.format(camera=CAMERA, lights=LIGHTS).replace("[160, 120]", "[96, 72]") + FLOOR + f"  it:\n    {shape}\n    material: shiny\n"
     path.write_text(text + (f"    bump: {bump}\n" if bump else ""))
     return path
 
@@ -123,31 +115,9 @@ def test_teapot_is_newells() -> None:
 
 @pytest.mark.parametrize("options", [[], ["--surface", "displaced"]])
 def test_threads(kage: Kage, options: list[str]) -> None:
-    path = scene(kage, f"parametric: {MOEBIUS}", '{function: "0.02*sin(9*u)*sin(9*w)"}')
+    path = scene(kage, SHEETS["moebius"], '{function: "0.02*sin(9*u)*sin(9*w)"}')
     made = []
     for threads in (1, 2, 7):
         kage.good("render", path, "-o", "x.exr", "--quiet", "--threads", str(threads), *options)
         made.append((kage.folder / "x.exr").read_bytes())
     assert made[0] == made[1] == made[2]
-
-
-def share(kage: Kage, path: Path, *options: str) -> float:
-    kage.good("pov", path, "-o", "x.pov", *options)
-    kage.good("render", path, "-o", "x.exr", "--quiet", *options)
-    picture = layers(kage.folder / "x.exr")
-    theirs, words = povray(kage.folder / "x.pov", (96, 72))
-    assert not words.strip()
-    off = np.abs(np.stack([picture[c] for c in "RGB"], axis=-1) - theirs).max(axis=-1)
-    return float((off <= np.maximum(1 / 255, np.abs(theirs).max(axis=-1) * 2.0**-10)).mean())
-
-
-@needs_povray
-@pytest.mark.parametrize("shape", SHAPES)
-def test_parity(kage: Kage, shape: str) -> None:
-    """A bump on a patch is 0 at its edges, so that patches that join still do."""
-    said, bump = SHAPES[shape]
-    for surface, text, least in (("smooth", "", 0.999), ("displaced", f'{{function: "{bump}"}}', 0.995)):
-        path = scene(kage, said, text)
-        if shape == "teapot":
-            path.write_text(path.read_text().replace(CAMERA, "{from: [1.3, 5, -9], at: [0.2, 1.2, 0], fov: 40}"))
-        assert share(kage, path, "--surface", surface) >= least

@@ -13,7 +13,7 @@
 
 #include "frame.h"
 #include "lane.h"
-#include "random_in.h"
+#include "random_rays.h"
 #include "surface.h"
 
 /* Digits of a place a few units from the origin. */
@@ -59,23 +59,6 @@ static surface *make(int kind)
     }
 }
 
-/* A ray from about 4 units off towards the surface's middle. */
-static void random_ray(rays *x, int i)
-{
-    double a = random_in(0, 6.283), z = random_in(-1, 1), l = 4 * sqrt(1 - z * z), k = random_in(0.2, 3);
-    double r[3] = {l * cos(a), 4 * z, l * sin(a)}, to[3] = {random_in(-1, 1), random_in(-1, 1), random_in(-1, 1)};
-    x->r.x[i] = (real)r[0], x->r.y[i] = (real)r[1], x->r.z[i] = (real)r[2];
-    x->s.x[i] = (real)(k * (to[0] - r[0])), x->s.y[i] = (real)(k * (to[1] - r[1])), x->s.z[i] = (real)(k * (to[2] - r[2]));
-}
-
-static void no_hits(hits *h, int n)
-{
-    for (int i = 0; i < n; i++) {
-        h->t[i] = REAL_FAR;
-        h->id[i] = -1;
-    }
-}
-
 static double distance(bs_vec3 a, bs_vec3 b)
 {
     bs_vec3 d = {a.x - b.x, a.y - b.y, a.z - b.z};
@@ -95,7 +78,7 @@ static void hits_are_on_the_surface(void **state)
             int32_t part[LANES];
             real u[LANES], w[LANES];
             for (int i = 0; i < LANES; i++)
-                random_ray(&x, i);
+                random_ray(&x, i, 1);
             no_hits(&h, LANES);
             f->is->hit(f, LANES, &x, 3, &h);
             f->is->locate(f, LANES, &x, h.t, part, u, w);
@@ -207,7 +190,7 @@ static void shadows_agree_with_hits(void **state)
             static hits h;
             real lit[LANES];
             for (int i = 0; i < LANES; i++) {
-                random_ray(&x, i);
+                random_ray(&x, i, 1);
                 lit[i] = 1;
             }
             no_hits(&h, LANES);
@@ -246,7 +229,7 @@ static void own_shadow(void **state)
             real u[LANES], w[LANES], lit[LANES], cosine[LANES];
             int n = 0;
             for (int i = 0; i < LANES; i++)
-                random_ray(&x, i);
+                random_ray(&x, i, 1);
             no_hits(&h, LANES);
             f->is->hit(f, LANES, &x, 0, &h);
             for (int i = 0; i < LANES; i++)
@@ -306,7 +289,7 @@ static void own_hits(void **state)
             real u[LANES], w[LANES], cosine[LANES];
             int n = 0;
             for (int i = 0; i < LANES; i++)
-                random_ray(&x, i);
+                random_ray(&x, i, 1);
             no_hits(&h, LANES);
             f->is->hit(f, LANES, &x, 7, &h);
             for (int i = 0; i < LANES; i++)
@@ -374,7 +357,7 @@ static void from_inside(void **state)
         static rays x;
         static hits h;
         for (int i = 0; i < LANES; i++) {
-            random_ray(&x, i);
+            random_ray(&x, i, 1);
             x.r.x[i] = R(0.1), x.r.y[i] = R(-0.1), x.r.z[i] = R(0.2);
         }
         no_hits(&h, LANES);

@@ -12,7 +12,7 @@
 
 #include "displace.h"
 #include "lane.h"
-#include "random_in.h"
+#include "random_rays.h"
 #include "surface.h"
 
 /* Digits of a place a few units from the origin. */
@@ -77,22 +77,6 @@ static void map_ray(const affine *m, const rays *own, rays *x, int i)
     lane_set(&x->s, i, narrow(affine_vector(m, widen(lane_get(&own->s, i)))));
 }
 
-static void random_ray(rays *x, int i)
-{
-    const double a = random_in(0, 6.283), z = random_in(-1, 1), l = 4 * sqrt(1 - z * z), k = random_in(0.2, 3);
-    const vec3 r = {l * cos(a), 4 * z, l * sin(a)}, to = {random_in(-1, 1), random_in(-1, 1), random_in(-1, 1)};
-    lane_set(&x->r, i, narrow(r));
-    lane_set(&x->s, i, narrow(vec3_scale(vec3_sub(to, r), k)));
-}
-
-static void no_hits(hits *h)
-{
-    for (int i = 0; i < LANES; i++) {
-        h->t[i] = REAL_FAR;
-        h->id[i] = -1;
-    }
-}
-
 static double turned(const surface *f, int part, const affine *m, double u)
 {
     double U[2], W[2];
@@ -130,12 +114,12 @@ static void rays_meet_alike(int kind, int map, const surface *own, const surface
     real u[LANES], w[LANES], v[LANES], z[LANES], lit[LANES], dark[LANES];
     int differ = 0, met = 0;
     for (int i = 0; i < LANES; i++) {
-        random_ray(&y, i);
+        random_ray(&y, i, 1);
         map_ray(m, &y, &x, i);
         lit[i] = dark[i] = 1;
     }
-    no_hits(&h);
-    no_hits(&g);
+    no_hits(&h, LANES);
+    no_hits(&g, LANES);
     f->is->hit(f, LANES, &x, 7, &h);
     own->is->hit(own, LANES, &y, 7, &g);
     f->is->occlude(f, LANES, &x, lit);
@@ -240,8 +224,8 @@ static void own_shadow_alike(int kind, int map, const surface *own, const surfac
     if (!own->is->occlude_own)
         return;
     for (int i = 0; i < LANES; i++)
-        random_ray(&y, i);
-    no_hits(&h);
+        random_ray(&y, i, 1);
+    no_hits(&h, LANES);
     own->is->hit(own, LANES, &y, 0, &h);
     for (int i = 0; i < LANES; i++)
         if (h.id[i] == 0) {
@@ -264,8 +248,8 @@ static void own_shadow_alike(int kind, int map, const surface *own, const surfac
     /* and where the surface is met again */
     static hits again, want;
     static starts from, there;
-    no_hits(&again);
-    no_hits(&want);
+    no_hits(&again, LANES);
+    no_hits(&want, LANES);
     from.at = x.r;
     there.at = y.r;
     for (int i = 0; i < n; i++) {
@@ -367,11 +351,11 @@ static void rough_alike(int kind, int map, const surface *own, const surface *f,
                                                                                       : "0.06*sin(1-4*u)*cos(3*w)", &wrong),
                                   1 / k, all, all);
     for (int i = 0; i < LANES; i++) {
-        random_ray(&y, i);
+        random_ray(&y, i, 1);
         map_ray(m, &y, &x, i);
     }
-    no_hits(&h);
-    no_hits(&g);
+    no_hits(&h, LANES);
+    no_hits(&g, LANES);
     displace_hit(f, P, LANES, &x, NULL, 0, &h, &counts);
     displace_hit(own, S, LANES, &y, NULL, 0, &g, &counts);
     for (int i = 0; i < LANES; i++) {
@@ -409,10 +393,10 @@ static void rough_box(void **state)
         displace_counts counts = {0};
         int met = 0;
         for (int i = 0; i < LANES; i++) {
-            random_ray(&y, i);
+            random_ray(&y, i, 1);
             map_ray(&m, &y, &g.x, i);
         }
-        no_hits(&h);
+        no_hits(&h, LANES);
         displace_hit(f, P, LANES, &g.x, NULL, 0, &h, &counts);
         g.n = LANES;
         for (int i = 0; i < LANES; i++) {

@@ -1,7 +1,8 @@
 """The pictures that must stay as they are: the cases, how they are compared, and the page that shows old and new.
 
-A case is a scene and a method at 128x96. Its picture is kept beside this file as an EXR with R, G, B and tau in half
-floats, some 50 kB each.
+A case is a scene and a method: each of scenes/ by every method at 128x96, and those of this folder, which show what the others
+have not (lights, colours, mirrors, glass, surfaces by their points), as they say themselves at 80x60. Its picture is kept beside this
+file as an EXR with R, G, B and tau in half floats, some 50 and 15 kB each.
 
 Tolerance: kage's bytes are the same on every processor, with any compiler and any number of threads, so on unchanged code
 nothing differs at all. A change may round sums differently in float's last bits, which can turn the rounding to half: two
@@ -26,11 +27,13 @@ HERE = Path(__file__).resolve().parent
 TOP = HERE.parent.parent
 OUT = TOP / "out" / "regression"
 PROGRAM = Path(os.environ.get("KAGE", TOP / "build" / "float" / "kage")).resolve()
-sys.path.insert(0, str(TOP / "reference"))
+sys.path[:0] = [str(TOP), str(TOP / "reference")]
 
 import references  # noqa: E402  (the folder is no package)
 
-SIZE = "128x96"
+from bench import images  # noqa: E402
+
+SIZES = {"scenes": "128x96", "tests/regression": "80x60"}
 CHANNELS = ("R", "G", "B", "tau")
 AMPLIFY = 8  # of differences, so that 1/255 can be seen
 
@@ -40,6 +43,7 @@ METHODS: dict[str, tuple[str, ...]] = {
     "2-bare": ("--shadow", "2", "--no-guard"),
     "displaced": ("--surface", "displaced"),
     "displaced-cast": ("--surface", "displaced", "--no-self-shadow"),
+    "own": (),  # as the scene says
 }
 
 Layers = dict[str, np.ndarray]
@@ -49,6 +53,7 @@ Layers = dict[str, np.ndarray]
 class Case:
     scene: str
     method: str
+    folder: str = "scenes"
 
     @property
     def name(self) -> str:
@@ -56,11 +61,12 @@ class Case:
 
     def command(self, output: Path) -> list[str]:
         """From the project's top folder."""
-        return [os.path.relpath(PROGRAM, TOP), "render", f"scenes/{self.scene}.yaml", *METHODS[self.method], "--size", SIZE,
-                "--quiet", "-o", os.path.relpath(output, TOP)]
+        return [os.path.relpath(PROGRAM, TOP), "render", f"{self.folder}/{self.scene}.yaml", *METHODS[self.method], "--size",
+                SIZES[self.folder], "--quiet", "-o", os.path.relpath(output, TOP)]
 
 
-CASES = tuple(Case(scene.stem, method) for scene in sorted((TOP / "scenes").glob("*.yaml")) for method in METHODS)
+CASES = (*(Case(scene.stem, method) for scene in sorted((TOP / "scenes").glob("*.yaml")) for method in METHODS if method != "own"),
+         *(Case(scene.stem, "own", "tests/regression") for scene in sorted(HERE.glob("*.yaml"))))
 
 
 def render(case: Case, folder: Path) -> Layers:
@@ -86,10 +92,9 @@ def differs(old: Layers, new: Layers) -> np.ndarray:
 # Showing --------------------------------------------------------------------------------------------
 
 
-def srgb(linear: np.ndarray) -> np.ndarray:
+def levels(linear: np.ndarray) -> np.ndarray:
     """8-bit sRGB."""
-    x = np.clip(linear.astype(np.float64), 0, 1)
-    return np.rint(255 * np.where(x <= 0.0031308, 12.92 * x, 1.055 * x ** (1 / 2.4) - 0.055)).astype(np.uint8)
+    return np.rint(255 * images.srgb(linear)).astype(np.uint8)
 
 
 def difference(old: np.ndarray, new: np.ndarray) -> np.ndarray:
@@ -102,8 +107,8 @@ def difference(old: np.ndarray, new: np.ndarray) -> np.ndarray:
 def write_pictures(name: str, old: np.ndarray, new: np.ndarray) -> None:
     """Linear pictures as OUT/NAME-old.png, -new.png and -difference.png."""
     OUT.mkdir(parents=True, exist_ok=True)
-    Image.fromarray(srgb(old)).save(OUT / f"{name}-old.png")
-    Image.fromarray(srgb(new)).save(OUT / f"{name}-new.png")
+    Image.fromarray(levels(old)).save(OUT / f"{name}-old.png")
+    Image.fromarray(levels(new)).save(OUT / f"{name}-new.png")
     grey = np.rint(255 * np.clip(difference(old, new), 0, 1)).astype(np.uint8)
     Image.fromarray(grey).save(OUT / f"{name}-difference.png")
 
