@@ -179,6 +179,14 @@ static real side_of(const search *s, int i, real slope)
     return (slope > 0) == (s->own[i] != 0) ? R(1) : R(-1);
 }
 
+/* Where a ray starts on the surface, the gap is what rounding has made of 0: of sums, too, that are not known here, as of a camera far
+ * away. */
+static real tolerance_of(const search *s, int i)
+{
+    const real off = s->own[i] ? 2 * real_abs(s->gap[i]) : 0;
+    return real_max(s->tolerance[i], real_min(off, 8 * s->tolerance[i]));
+}
+
 long displace_search_over(const ground *f, const perturb *P, int n, const rays *x, const real *end, const int32_t *own, real *t,
                           int32_t *found)
 {
@@ -193,10 +201,12 @@ long displace_search_over(const ground *f, const perturb *P, int n, const rays *
         for (int i = 0; i < s.n; i++) {
             if (!s.open[i])
                 continue;
+            if (s.side[i] == 0) {
+                s.side[i] = side_of(&s, i, slope[i]);
+                s.tolerance[i] = tolerance_of(&s, i);
+            }
             /* On its way from the surface itself a ray is on its side until it is clearly on the other. */
             real least = s.own[i] ? s.tolerance[i] : 0;
-            if (s.side[i] == 0)
-                s.side[i] = side_of(&s, i, slope[i]);
             real above = s.side[i] * s.gap[i];
             /* A map's partials are not the slopes of its bilinear surface, so a ray can leave to the other side than they tell: it is
              * there, and does not turn back. One that has come back to its start turns to it. */

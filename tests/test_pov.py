@@ -528,9 +528,16 @@ DISPLACED = {
     "stretched disc, map": (moved("disc", "stretched"), MAP.replace("[2, 2]", "[1, 1]"), "mesh2"),
 }
 
+#: P is 0 at the edges, so that nothing is open between the parts.
+CLOSED = {
+    "closed box": (CUBE, "{function: '0.64*sin(12*u)*sin(10*w)*u*(1-u)*w*(1-w)'}", "isosurface"),
+    "closed cylinder": ("cylinder: {from: [0.1, 0.1, 0], to: [0.1, 1.6, 0], radius: 0.8}",
+                        "{function: '0.07*sin(8*u)*sin(7*w)*w*(1.5-w)*(0.64-u^2-w^2)/(0.64+u^2+w^2)'}", "isosurface"),
+}
+
 
 def write_displaced(kage: Kage, name: str, camera: str = CAMERA) -> Path:
-    shape, bump, _ = DISPLACED[name]
+    shape, bump, _ = {**DISPLACED, **CLOSED}[name]
     scene = kage.folder / "rough.yaml"
     scene.write_text(
         HEAD.format(camera=camera, lights=LIGHTS).replace("[200, 150]", "[100, 75]")
@@ -627,11 +634,13 @@ def test_displaced_parity(kage: Kage, capsys: pytest.CaptureFixture[str]) -> Non
 
 
 @needs_povray
-@pytest.mark.parametrize("material", ["mirror", "glass"])
-@pytest.mark.parametrize("name", ["plane", "skewed rectangle", "box", "sphere", "rectangle, map"])
+@pytest.mark.parametrize(("name", "material"), [
+    *((name, material) for name in ("plane", "skewed rectangle", "box", "sphere", "rectangle, map") for material in ("mirror", "glass")),
+    *((name, "clear") for name in ("torus", "standing torus, thin", *CLOSED)),
+])
 def test_displaced_secondary(kage: Kage, name: str, material: str) -> None:
     """Rough mirrors, and rough glass: rays that start on a rough surface, and on its far side from within."""
-    scene, (shape, bump, _) = write_displaced(kage, name), DISPLACED[name]
+    scene, (shape, bump, _) = write_displaced(kage, name), {**DISPLACED, **CLOSED}[name]
     scene.write_text(SECOND_HEAD.format(camera=CAMERA, lights=LIGHTS, depth=5).replace("[200, 150]", "[100, 75]")
                      + f"  rough:\n    {shape}\n    material: {material}\n    bump: {bump}\n"
                      + "  above: {sphere: {center: [0.4, 2.4, -0.6], radius: 0.3}, material: red}\n"
@@ -644,6 +653,29 @@ def test_displaced_secondary(kage: Kage, name: str, material: str) -> None:
     off = np.abs(np.stack([picture[channel] for channel in "RGB"], axis=-1) - theirs).max(axis=-1)
     assert not words.strip()
     assert (off <= STEP).mean() > (0.995 if material == "glass" else PARITY[False])
+
+
+@needs_povray
+@pytest.mark.parametrize(("shape", "bump"), [
+    ("cylinder: {from: [-1, 0.6, 0], to: [1, 0.6, 0], radius: 0.3, open: true}", "0.2*sin(2*u)"),
+    ("torus: {center: [0, 0.7, 0], axis: [0.2, 1, -0.3], major: 0.6, minor: 0.3}", "0.1*sin(3*u)*cos(2*w)"),
+    ("sphere: {center: [0, 1, 0], radius: 0.5}", "0.2*sin(3*u)*sin(w)^4"),
+    ("sphere: {center: [0, 1, 0], radius: 0.5}", "0.05"),
+], ids=["cylinder", "torus", "sphere", "level"])
+def test_glass_where_angles_turn(kage: Kage, shape: str, bump: str) -> None:
+    """Bumps that are large for what they lie on: rays come near to an axis or a middle, where a function of angles is as steep as can be."""
+    scene = kage.folder / "rough.yaml"
+    scene.write_text(SECOND_HEAD.format(camera=CAMERA, lights=LIGHTS, depth=5).replace("[200, 150]", "[100, 75]") + TILED.replace("[0, 0, 0]", "[0, -1, 0]")
+                     + f"  rough:\n    {shape}\n    material: glass\n    bump: {{function: {bump}}}\n")
+    write_images(kage.folder)
+    kage.good("pov", scene, "-o", "rough.pov", "--surface", "displaced")
+    kage.good("render", scene, "-o", "rough.exr", "--quiet", "--surface", "displaced")
+    assert "isosurface {" in (kage.folder / "rough.pov").read_text()
+    picture = layers(kage.folder / "rough.exr")
+    theirs, words = povray(kage.folder / "rough.pov", (100, 75))
+    off = np.abs(np.stack([picture[channel] for channel in "RGB"], axis=-1) - theirs).max(axis=-1)
+    assert not words.strip()
+    assert (off <= STEP).mean() > PARITY[False]
 
 
 @needs_povray
