@@ -59,7 +59,7 @@ bool pov_function(pov_text *t, const object *o, const char *name);
 
 /* The displaced object as isosurfaces that call the function `name`. pov_isosurface_gradient: the bound of its gradient, infinite
  * where none is known or none serves. */
-double pov_isosurface_gradient(const scene *s, const object *o, int part);
+double pov_isosurface_gradient(const object *o, int part);
 void pov_isosurface(pov_text *t, const scene *s, const object *o, const char *name);
 
 /* The displaced object as one mesh. False: out of memory. */

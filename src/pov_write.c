@@ -202,7 +202,7 @@ static bool put_displaced(pov_text *t, const scene *s, int k, pov_report *report
     pov_identifier P = pov_identify("P", o->name, k);
     double gradient = 0;
     for (int part = 0; part < o->shape->is->parts; part++)
-        gradient = fmax(gradient, pov_isosurface_gradient(s, o, part));
+        gradient = fmax(gradient, pov_isosurface_gradient(o, part));
     if (gradient < HUGE_VAL && pov_function(t, o, P.text)) {
         pov_isosurface(t, s, o, P.text);
         return true;
