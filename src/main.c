@@ -68,7 +68,7 @@ int command_fail(errors *e, int status)
 scene *command_scene(const arguments *a)
 {
     errors e = {0};
-    scene *s = scene_read(a->operand[0], a->sets, a->set, &e);
+    scene *s = scene_read(a->operand[0], a->sets, a->set, NULL, &e);
     if (!s)
         command_fail(&e, EXIT_INPUT);
     return s;

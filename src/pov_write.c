@@ -156,6 +156,7 @@ static void put_smooth(pov_text *t, const scene *s, const object *o)
         break;
     }
     case SHAPE_SEARCHED: /* pov_sheet.c */
+    case SHAPE_MESH:     /* pov_triangles.c */
         break;
     }
     if (o->moved && !pov_by_parts(s, o)) {

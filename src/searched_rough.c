@@ -300,7 +300,7 @@ static void starts_on(tour *k, const pieces *g, int32_t *own)
 /* Each search knows its ray and its leaf alone, so that nothing depends on the order. */
 static void search_all(tour *k)
 {
-    const pieces g = {{pieces_shell, pieces_foot, pieces_steep, pieces_extent, true, SEARCH}, k->f, k->index};
+    const pieces g = {{pieces_shell, pieces_foot, pieces_steep, pieces_extent, NULL, true, SEARCH}, k->f, k->index};
     real end[LANES], t[LANES];
     int32_t found[LANES], own[LANES];
     for (int i = 0; i < k->n; i++)
