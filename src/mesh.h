@@ -53,6 +53,16 @@ static inline vec3 mesh_mix(const vec3 v[3], double b, double c)
 /* How much of b and c, the shares of the second and the third corner, there is at (u,w); not kept within the triangle. */
 void mesh_shares(const mesh_triangle *x, double u, double w, double *b, double *c);
 
+/* What is known at the shares b and c of a triangle and at the height h: the place Q + h N, N, and how the place changes with b and with c. */
+typedef struct mesh_prism {
+    vec3 place, N, Xb, Xc;
+} mesh_prism;
+
+mesh_prism mesh_prism_at(const mesh_triangle *x, double b, double c, double h);
+
+/* How u and w change in space there. det: Xb x Xc . N, or what stands for it where normals meet. */
+void mesh_gradients(const mesh_triangle *x, const mesh_prism *p, double det, vec3 *gu, vec3 *gw);
+
 /* The stretch of a ray within a sphere about the mesh's centre, and the same ray in the trees' units. False: there is none. */
 bool mesh_enter(const mesh *f, double radius, vec3 r, vec3 s, double *from, double *to, float at[3], float way[3], float *end);
 

@@ -118,21 +118,23 @@ static bool shell_of(const mesh_triangle *x, double air, vec3 r, vec3 s, double 
 
 /* ---- feet ---- */
 
-/* What is known at a place b, c of a triangle, at the height h: N, and how Q + h N changes with b and c. */
-typedef struct prism {
-    vec3 place, N, Xb, Xc;
-} prism;
-
-static prism prism_at(const mesh_triangle *x, double b, double c, double h)
+mesh_prism mesh_prism_at(const mesh_triangle *x, double b, double c, double h)
 {
     const vec3 M = mesh_mix(x->normal, b, c), Mb = vec3_sub(x->normal[1], x->normal[0]), Mc = vec3_sub(x->normal[2], x->normal[0]);
     const double length = vec3_length(M), k = h / length;
-    prism p;
+    mesh_prism p;
     p.N = vec3_scale(M, 1 / length);
     p.Xb = vec3_add(vec3_sub(x->at[1], x->at[0]), vec3_scale(vec3_sub(Mb, vec3_scale(p.N, vec3_dot(Mb, p.N))), k));
     p.Xc = vec3_add(vec3_sub(x->at[2], x->at[0]), vec3_scale(vec3_sub(Mc, vec3_scale(p.N, vec3_dot(Mc, p.N))), k));
     p.place = vec3_add(mesh_mix(x->at, b, c), vec3_scale(p.N, h));
     return p;
+}
+
+void mesh_gradients(const mesh_triangle *x, const mesh_prism *p, double det, vec3 *gu, vec3 *gw)
+{
+    const vec3 gb = vec3_scale(vec3_cross(p->Xc, p->N), 1 / det), gc = vec3_scale(vec3_cross(p->N, p->Xb), 1 / det);
+    *gu = vec3_add(vec3_scale(gb, x->u[1] - x->u[0]), vec3_scale(gc, x->u[2] - x->u[0]));
+    *gw = vec3_add(vec3_scale(gb, x->w[1] - x->w[0]), vec3_scale(gc, x->w[2] - x->w[0]));
 }
 
 /* Not farther beyond a triangle than it is wide: what lies there is another's. */
@@ -143,23 +145,24 @@ static void foot_of(const mesh_triangle *x, vec3 at, feet *out, int lane)
     const vec3 n = vec3_cross(vec3_sub(x->at[1], x->at[0]), vec3_sub(x->at[2], x->at[0]));
     double b = 1.0 / 3, c = 1.0 / 3, h = vec3_dot(vec3_sub(at, x->at[0]), n) / vec3_length(n);
     for (int step = 0; step < STEPS; step++) {
-        const prism p = prism_at(x, b, c, h);
+        const mesh_prism p = mesh_prism_at(x, b, c, h);
         const vec3 d = vec3_sub(at, p.place), up = vec3_cross(p.Xb, p.Xc);
         const double det = vec3_dot(up, p.N), k = det > 0 ? 1 / det : 0; /* beyond where normals meet: stay */
         b = near_triangle(b + k * vec3_dot(d, vec3_cross(p.Xc, p.N)));
         c = near_triangle(c + k * vec3_dot(d, vec3_cross(p.N, p.Xb)));
         h += k * vec3_dot(d, up);
     }
-    const prism p = prism_at(x, b, c, h);
+    const mesh_prism p = mesh_prism_at(x, b, c, h);
     const vec3 up = vec3_cross(p.Xb, p.Xc);
-    const double k = 1 / fmax(vec3_dot(up, p.N), 1e-6 * vec3_length(n)); /* beyond that: as steep as may be */
-    const vec3 gb = vec3_scale(vec3_cross(p.Xc, p.N), k), gc = vec3_scale(vec3_cross(p.N, p.Xb), k);
+    const double det = fmax(vec3_dot(up, p.N), 1e-6 * vec3_length(n)); /* beyond where normals meet: as steep as may be */
+    vec3 gu, gw;
+    mesh_gradients(x, &p, det, &gu, &gw);
     out->u[lane] = (real)(x->u[0] + b * (x->u[1] - x->u[0]) + c * (x->u[2] - x->u[0]));
     out->w[lane] = (real)(x->w[0] + b * (x->w[1] - x->w[0]) + c * (x->w[2] - x->w[0]));
     out->h[lane] = (real)h;
-    lane_set(&out->gu, lane, to_real(vec3_add(vec3_scale(gb, x->u[1] - x->u[0]), vec3_scale(gc, x->u[2] - x->u[0]))));
-    lane_set(&out->gw, lane, to_real(vec3_add(vec3_scale(gb, x->w[1] - x->w[0]), vec3_scale(gc, x->w[2] - x->w[0]))));
-    lane_set(&out->gh, lane, to_real(vec3_scale(up, k)));
+    lane_set(&out->gu, lane, to_real(gu));
+    lane_set(&out->gw, lane, to_real(gw));
+    lane_set(&out->gh, lane, to_real(vec3_scale(up, 1 / det)));
 }
 
 /* ---- triangles as the ground of a search ---- */

@@ -86,10 +86,9 @@ void pov_materials(pov_text *t, const scene *s)
                      "#declare Checker = function(u, w) { 0.5*(floor(u) + floor(w)) - floor(0.5*(floor(u) + floor(w))) }\n\n");
 }
 
-static void put_checker(pov_text *t, const object *o, int part, const material *m)
+static void put_checker(pov_text *t, const object *o, bool flat, const material *m)
 {
     const map_layout *l = &o->color_layout;
-    const bool flat = pov_is_flat(&o->shape_said, part);
     pov_print(t, "    function { Checker((%s - %s)/%s, ", flat ? "x" : "atan2(z, x)", pov_exact(l->offset[0]).text,
               pov_exact(l->size[0]).text);
     pov_print(t, "(%s - %s)/%s) }\n", flat ? "y" : "atan2(sqrt(x*x + z*z), y)", pov_exact(l->offset[1]).text, pov_exact(l->size[1]).text);
@@ -153,14 +152,17 @@ void pov_texture(pov_text *t, const scene *s, const object *o, int part)
         pov_print(t, "  texture { %s }\n", pov_identify("Material", m->name, o->material).text);
         return;
     }
-    pov_print(t, "  texture {\n    pigment { // in (u, w)\n");
+    const bool vectors = o->shape_said.kind == SHAPE_MESH, flat = vectors || pov_is_flat(&o->shape_said, part); /* x is u, y is w */
+    pov_print(t, "  texture {\n    pigment { // in (u, w)\n%s", vectors ? "    uv_mapping\n" : "");
     if (m->pattern == PATTERN_CHECKER)
-        put_checker(t, o, part, m);
-    else if (pov_is_flat(&o->shape_said, part))
+        put_checker(t, o, flat, m);
+    else if (flat)
         put_flat_image(t, o, m);
     else
         put_sphere_image(t, o, m);
-    if (pov_is_flat(&o->shape_said, part)) {
+    if (vectors) {
+        ; /* mesh2 has them for each vertex */
+    } else if (pov_is_flat(&o->shape_said, part)) {
         const pov_flat p = pov_flat_of(o, part);
         pov_print(t, "  ");
         pov_matrix(t, p.U, p.W, p.y, p.O);

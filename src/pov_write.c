@@ -196,6 +196,8 @@ bool pov_write(const scene *s, const pov_options *how, const char *path, pov_rep
                   o->bump ? o->bump->is->kind : "");
         if (o->shape_said.kind == SHAPE_SEARCHED)
             good = pov_sheet(&t, s, o);
+        else if (o->shape_said.kind == SHAPE_MESH)
+            good = pov_triangles(&t, s, o);
         else if (s->displaced && o->bump)
             good = put_displaced(&t, s, k, report);
         else
