@@ -50,7 +50,7 @@ typedef struct progress {
     bool on;
     double start, shown;
     long pixels;
-    const char *name;
+    const char *name, *what; /* what: is done with a file */
 } progress;
 
 /* The same for a scene's files, which have no pixels: what is done with the file, and its share. */

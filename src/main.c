@@ -84,7 +84,8 @@ scene *command_scene(const arguments *a)
     progress_end(&p);
     if (!s)
         command_fail(&e, EXIT_INPUT);
-    for (int k = 0; s && !a->quiet && k < s->objects; k++)
+    const bool tell = !a->quiet && strcmp(a->command, "check") != 0; /* which tells it itself */
+    for (int k = 0; s && tell && k < s->objects; k++)
         tell_flat(&s->object[k]);
     return s;
 }

@@ -40,6 +40,10 @@ void progress_load(void *user, const char *what, double share)
 {
     progress *p = user;
     char bar[BAR + 1];
+    if (p->what != what) { /* the first of each is seen, and the last of none hides it */
+        p->what = what;
+        p->shown = 0;
+    }
     if (is_due(p, share, bar))
         fprintf(stderr, "\r%.24s [%s] %3.0f %%  %s \033[K", p->name, bar, 100 * share, what);
 }

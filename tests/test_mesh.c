@@ -180,7 +180,8 @@ static void hits_as_by_brute_force(void **state)
                 continue;
             met++;
             assert_int_equal(h.part[i], at);
-            assert_true(fabs((double)h.t[i] - (double)best) <= EPS * (double)best);
+            /* rounded to a real, from double's digits on thin triangles and flat rays */
+            assert_true(fabs((double)h.t[i] - (double)best) <= (EPS + 1e-12) * (double)best);
             /* float's (u,w) tell the place to a share of the triangle's size; the thinnest of these have little of it */
             assert_true(apart(lane_get(&q.Q, i), lane_at(&x, i, h.t[i])) < 1e4 * EPS * 4);
         }
@@ -417,7 +418,8 @@ static void displaced_plane(void **state)
         }
     f->u[0] = f->w[0] = 0;
     f->u[1] = f->w[1] = 1;
-    displaced_as("plane", f, g, "sin(20*u)*cos(15*w)", 0.1, 1e3 * EPS * 8, 0);
+    /* a mesh has its (u,w) in float in either build, and P is 2 steep; the hits that float finds are 2e-6 off (test_displace.c), in scenes as wide */
+    displaced_as("plane", f, g, "sin(20*u)*cos(15*w)", 0.1, 1e-5, 0);
 }
 
 static void displaced_ball(void **state)
