@@ -15,7 +15,7 @@
 #include <unistd.h>
 
 #define MIB ((size_t)1 << 20)
-enum { MOST_MIB = 1024, SECONDS = 5, MIB_A_SECOND = 1, ROOM_MIB = 512, TIMES = 96 };
+enum { MOST_MIB = 1024, SECONDS = 3, MIB_A_SECOND = 1, ROOM_MIB = 512, TIMES = 96 };
 
 /* What comes through the pipe: a share of the file that is read, the end with an error, or the end with triangles, their corners and skins. */
 typedef struct letter {

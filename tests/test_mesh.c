@@ -258,6 +258,38 @@ static void partials_are_those_of_the_triangle(void **state)
     surface_free(&f->base);
 }
 
+/* Of places Q + h N, (u,w) change along a ray by the method's a and b exactly; on a flat mesh the partials are the plane's. */
+static void the_way_past(void **state)
+{
+    (void)state;
+    for (int flat = 0; flat < 2; flat++) {
+        mesh *f = flat ? mesh_of(floor_of, 8, 8) : mesh_of(ball, 24, 12);
+        for (int k = 0; k < 400; k++) {
+            const int32_t part = (int32_t)random_in(0, f->d.n - 1e-3);
+            const mesh_triangle x = mesh_triangle_of(f, part);
+            const double b = random_in(0, 0.5), c = random_in(0, 0.5);
+            const real u = (real)(x.u[0] + b * (x.u[1] - x.u[0]) + c * (x.u[2] - x.u[0]));
+            const real w = (real)(x.w[0] + b * (x.w[1] - x.w[0]) + c * (x.w[2] - x.w[0]));
+            const bs_vec3 s = {(real)random_in(-1, 1), (real)random_in(-1, 1), (real)random_in(-1, 1)};
+            static partials q;
+            vec3 gu, gw;
+            f->base.is->eval(&f->base, 1, &part, &u, &w, 2, &q);
+            const bs_vec3 Qu = lane_get(&q.Qu, 0), Qw = lane_get(&q.Qw, 0);
+            const bs_view v = bs_view_of(s, bs_normal(Qu, Qw), Qu, Qw);
+            const mesh_prism p = mesh_prism_at(&x, b, c, 0);
+            mesh_gradients(&x, &p, vec3_dot(vec3_cross(p.Xb, p.Xc), p.N), &gu, &gw);
+            /* (u,w), which are reals here, tell b and c to 1e3 roundings on these triangles, of 1/24 and more of 2 pi */
+            assert_true(fabs((double)v.a - vec3_dot(gu, wide(s))) <= 1e3 * EPS * (1 + vec3_length(gu)));
+            assert_true(fabs((double)v.b - vec3_dot(gw, wide(s))) <= 1e3 * EPS * (1 + vec3_length(gw)));
+            if (flat) {
+                assert_true(apart(Qu, (bs_vec3){0, 0, 1}) < 4 * EPS && apart(Qw, (bs_vec3){1, 0, 0}) < 4 * EPS);
+                assert_true(vec3_length(wide(lane_get(&q.Quu, 0))) + vec3_length(wide(lane_get(&q.Quw, 0))) + vec3_length(wide(lane_get(&q.Qww, 0))) == 0);
+            }
+        }
+        surface_free(&f->base);
+    }
+}
+
 /* A ball's mesh from its own surface: outward all is light, inward all is dark, from every place on it, edges and vertices with them. */
 static void own_shadows(void **state)
 {
@@ -550,7 +582,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(hits_as_by_brute_force), cmocka_unit_test(no_ray_passes_between), cmocka_unit_test(partials_are_those_of_the_triangle),
-        cmocka_unit_test(own_shadows),            cmocka_unit_test(images),                cmocka_unit_test(displaced_plane),
+        cmocka_unit_test(the_way_past), cmocka_unit_test(own_shadows),            cmocka_unit_test(images),                cmocka_unit_test(displaced_plane),
         cmocka_unit_test(displaced_ball),         cmocka_unit_test(cleaning),              cmocka_unit_test(creases),
         cmocka_unit_test(odd_textures),
     };
