@@ -214,7 +214,8 @@ static void pieces_steep(const ground *g, int n, const int32_t *lane, const rays
     }
 }
 
-/* (u,w) of the triangle's place that is nearest to the foot: the foot's own on the triangle. */
+/* (u,w) of a place of the triangle, as far as it goes on, that is near the foot: the foot's own where it is one. So P goes on from there without
+ * a step, which a ray that comes by would cross. */
 static void pieces_within(const ground *g, int n, const int32_t *lane, const feet *p, real *u, real *w)
 {
     for (int i = 0; i < n; i++) {
@@ -225,9 +226,9 @@ static void pieces_within(const ground *g, int n, const int32_t *lane, const fee
         w[i] = p->w[i];
         if (b >= -OVERLAP && c >= -OVERLAP && b + c <= 1 + OVERLAP)
             continue;
-        b = b > 0 ? b : 0;
-        c = c > 0 ? c : 0;
-        const double k = b + c > 1 ? 1 / (b + c) : 1;
+        b = b > -OVERLAP ? b : -OVERLAP;
+        c = c > -OVERLAP ? c : -OVERLAP;
+        const double k = b + c > 1 + OVERLAP ? (1 + OVERLAP) / (b + c) : 1;
         u[i] = (real)(x->u[0] + k * (b * (x->u[1] - x->u[0]) + c * (x->u[2] - x->u[0])));
         w[i] = (real)(x->w[0] + k * (b * (x->w[1] - x->w[0]) + c * (x->w[2] - x->w[0])));
     }
