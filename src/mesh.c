@@ -109,8 +109,8 @@ bool mesh_enter(const mesh *f, double radius, vec3 r, vec3 s, double *from, doub
     const double start = -vec3_dot(o, s) / (length * length);
     const vec3 near = vec3_add(o, vec3_scale(s, start));
     const double half = sqrt(R * R - vec3_dot(near, near)) / length; /* NaN beside it */
-    *from = fmax(*from, start - half);
-    *to = fmin(*to, start + half);
+    *from = *from > start - half ? *from : start - half;
+    *to = *to < start + half ? *to : start + half;
     if (!(half >= 0 && half < HUGE_VAL) || !(*from <= *to))
         return false;
     const vec3 p = vec3_scale(vec3_add(near, vec3_scale(s, *from - start)), unit), d = vec3_scale(s, 1 / length);

@@ -13,7 +13,7 @@
 #include <stdlib.h>
 
 enum {
-    SEARCH = 256, /* steps along a ray over one triangle */
+    SEARCH = 1024, /* steps along a ray over one triangle: what is steeper than they tell apart is at a pole of the texture */
     STEPS = 4,    /* of Newton's iteration: normals turn by less than a right angle over a triangle, and by far less on a fine mesh */
 };
 
@@ -144,17 +144,19 @@ static void foot_of(const mesh_triangle *x, vec3 at, feet *out, int lane)
 {
     const vec3 n = vec3_cross(vec3_sub(x->at[1], x->at[0]), vec3_sub(x->at[2], x->at[0]));
     double b = 1.0 / 3, c = 1.0 / 3, h = vec3_dot(vec3_sub(at, x->at[0]), n) / vec3_length(n);
-    for (int step = 0; step < STEPS; step++) {
+    double off = HUGE_VAL, area = vec3_length(n);
+    for (int step = 0; step < STEPS && off > 1e-16 * area; step++) { /* what is off by 1e-8 of the size, squared: the step was the last */
         const mesh_prism p = mesh_prism_at(x, b, c, h);
         const vec3 d = vec3_sub(at, p.place), up = vec3_cross(p.Xb, p.Xc);
         const double det = vec3_dot(up, p.N), k = det > 0 ? 1 / det : 0; /* beyond where normals meet: stay */
         b = near_triangle(b + k * vec3_dot(d, vec3_cross(p.Xc, p.N)));
         c = near_triangle(c + k * vec3_dot(d, vec3_cross(p.N, p.Xb)));
         h += k * vec3_dot(d, up);
+        off = vec3_dot(d, d);
     }
     const mesh_prism p = mesh_prism_at(x, b, c, h);
     const vec3 up = vec3_cross(p.Xb, p.Xc);
-    const double det = fmax(vec3_dot(up, p.N), 1e-6 * vec3_length(n)); /* beyond where normals meet: as steep as may be */
+    const double det = fmax(vec3_dot(up, p.N), 1e-6 * area); /* beyond where normals meet: as steep as may be */
     vec3 gu, gw;
     mesh_gradients(x, &p, det, &gu, &gw);
     out->u[lane] = (real)(x->u[0] + b * (x->u[1] - x->u[0]) + c * (x->u[2] - x->u[0]));

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_TRIANGLES = 1500000, FINEST = 256 };
+enum { MOST_TRIANGLES = 1500000, FINEST = 800 };
 
 #define FINE 1.0 /* a facet's longest side in pixels: it covers less than half a pixel */
 
