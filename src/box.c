@@ -216,8 +216,17 @@ static void box_extent(const surface *base, int part, double u[2], double w[2])
     u[1] = w[1] = 1;
 }
 
+static void box_box(const surface *base, double lo[3], double hi[3])
+{
+    const box *f = (const box *)base;
+    for (int k = 0; k < 3; k++) {
+        lo[k] = (double)f->lo[k];
+        hi[k] = (double)f->hi[k];
+    }
+}
+
 static const surface_methods box_methods = {
-    "box", box_hit,   box_hit_own, box_locate, box_eval,  box_occlude, box_occlude_own, box_extent,
+    "box", box_hit,   box_hit_own, box_locate, box_eval,  box_occlude, box_occlude_own, box_extent, box_box,
     6,     box_shell, box_foot,   box_steep,  false,
 };
 

@@ -5,13 +5,31 @@
 #ifndef KAGE_BVH_H
 #define KAGE_BVH_H
 
+#include <stdbool.h>
 #include <stdint.h>
+
+#include "vec3.h"
 
 typedef struct bvh bvh;
 
 typedef struct bvh_box {
     float lo[3], hi[3];
 } bvh_box;
+
+/* Space as a hierarchy has it: of all that is in it the centre is the origin, and the radius the unit. (bvh_space.c) */
+typedef struct bvh_space {
+    vec3 centre;
+    double radius;
+} bvh_space;
+
+bvh_space bvh_space_about(const double lo[3], const double hi[3]);
+
+/* A box there, wider by more than float leaves of its place and of a ray's. */
+bvh_box bvh_box_in(const bvh_space *p, const double lo[3], const double hi[3]);
+
+/* The stretch of a ray, within from..to, that is in a sphere of radius `reach` about the centre, and as a ray there. False: there is
+ * none. */
+bool bvh_enter(const bvh_space *p, double reach, vec3 r, vec3 s, double *from, double *to, float at[3], float way[3], float *end);
 
 /* Called with the index of each box. */
 typedef void bvh_visit(void *user, int32_t box);

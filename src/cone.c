@@ -412,14 +412,26 @@ static void cone_extent(const surface *base, int part, double u[2], double w[2])
     }
 }
 
+/* That of the discs at the ends. */
+static void cone_box(const surface *base, double lo[3], double hi[3])
+{
+    const cone *f = (const cone *)base;
+    for (int k = 0; k < 3; k++) {
+        const double Y = (double)f->Y[k], across = sqrt(fmax(1 - Y * Y, 0));
+        const double a = (double)f->F[k], b = a + (double)f->length * Y, ra = (double)f->from * across, rb = (double)f->to * across;
+        lo[k] = fmin(a - ra, b - rb);
+        hi[k] = fmax(a + ra, b + rb);
+    }
+}
+
 static const surface_methods cone_methods[2][2] = {
-    {{"cylinder", cone_open_hit, cone_open_hit_own, cone_locate, cone_eval, cone_open_occlude, cone_open_occlude_own, cone_extent,
+    {{"cylinder", cone_open_hit, cone_open_hit_own, cone_locate, cone_eval, cone_open_occlude, cone_open_occlude_own, cone_extent, cone_box,
       1,          cone_shell,    cone_foot,         cone_steep,  false},
-     {"cylinder", cone_capped_hit, cone_capped_hit_own, cone_locate, cone_eval, cone_capped_occlude, cone_capped_occlude_own, cone_extent,
+     {"cylinder", cone_capped_hit, cone_capped_hit_own, cone_locate, cone_eval, cone_capped_occlude, cone_capped_occlude_own, cone_extent, cone_box,
       3,          cone_shell,      cone_foot,           cone_steep,  false}},
-    {{"cone", cone_open_hit, cone_open_hit_own, cone_locate, cone_eval, cone_open_occlude, cone_open_occlude_own, cone_extent,
+    {{"cone", cone_open_hit, cone_open_hit_own, cone_locate, cone_eval, cone_open_occlude, cone_open_occlude_own, cone_extent, cone_box,
       1,      cone_shell,    cone_foot,         cone_steep,  true},
-     {"cone", cone_capped_hit, cone_capped_hit_own, cone_locate, cone_eval, cone_capped_occlude, cone_capped_occlude_own, cone_extent,
+     {"cone", cone_capped_hit, cone_capped_hit_own, cone_locate, cone_eval, cone_capped_occlude, cone_capped_occlude_own, cone_extent, cone_box,
       3,      cone_shell,      cone_foot,           cone_steep,  true}},
 };
 

@@ -25,7 +25,7 @@ STAGE static void turn(int n, const real *restrict sign, real *restrict x)
 
 typedef struct folded_perturb {
     perturb base;
-    perturb_methods methods; /* the kind is that of what is folded */
+    perturb_methods methods; /* the kind is that of what is folded; without jets and bound, as meshes are no sheets */
     perturb *of;
     ends k;
 } folded_perturb;
@@ -55,7 +55,7 @@ perturb *perturb_folded(perturb *p, double lo, double hi)
         perturb_free(p);
         return NULL;
     }
-    *f = (folded_perturb){*p, {p->is->kind, perturb_eval, perturb_end}, p, {(real)lo, (real)hi}};
+    *f = (folded_perturb){*p, {.kind = p->is->kind, .eval = perturb_eval, .free = perturb_end}, p, {(real)lo, (real)hi}};
     f->base.is = &f->methods;
     return &f->base;
 }

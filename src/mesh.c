@@ -11,8 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define AIR 4e-6    /* of the boxes, in the mesh's radius: more than what float leaves of coordinates about 1, and of a ray's */
-#define MARGIN 4e-6f /* where a ray in the tree's units ends */
+#define MARGIN 4e-6f /* of where a ray ends in the tree's units, against float, as the boxes have it */
 #define SPREAD (1 / 4096.0)
 #define THIN 2e-5 /* a texture triangle that is lower than this share of the largest coordinate has no digits of float left */
 
@@ -102,24 +101,6 @@ static float visit(void *user, int32_t index, float end)
     return now < end ? now : end;
 }
 
-bool mesh_enter(const mesh *f, double radius, vec3 r, vec3 s, double *from, double *to, float at[3], float way[3], float *end)
-{
-    const double length = vec3_length(s), R = (1 + 1e-5) * radius, unit = 1 / f->radius;
-    const vec3 o = vec3_sub(r, f->centre);
-    const double start = -vec3_dot(o, s) / (length * length);
-    const vec3 near = vec3_add(o, vec3_scale(s, start));
-    const double half = sqrt(R * R - vec3_dot(near, near)) / length; /* NaN beside it */
-    *from = *from > start - half ? *from : start - half;
-    *to = *to < start + half ? *to : start + half;
-    if (!(half >= 0 && half < HUGE_VAL) || !(*from <= *to))
-        return false;
-    const vec3 p = vec3_scale(vec3_add(near, vec3_scale(s, *from - start)), unit), d = vec3_scale(s, 1 / length);
-    at[0] = (float)p.x, at[1] = (float)p.y, at[2] = (float)p.z;
-    way[0] = (float)d.x, way[1] = (float)d.y, way[2] = (float)d.z;
-    *end = (float)((*to - *from) * length * unit) + MARGIN;
-    return true;
-}
-
 /* The first hit of r + s t in from < t < to, but for one triangle; in q->to and q->index. */
 static void seek(quest *q, vec3 r, vec3 s, double from, double to, int32_t but)
 {
@@ -129,11 +110,11 @@ static void seek(quest *q, vec3 r, vec3 s, double from, double to, int32_t but)
     q->index = -1;
     q->from = from;
     q->to = to;
-    if (!(from < to) || !mesh_enter(q->f, q->f->radius, r, s, &enter, &leave, at, way, &end))
+    if (!(from < to) || !bvh_enter(&q->f->space, q->f->space.radius, r, s, &enter, &leave, at, way, &end))
         return;
     q->k = shear_of(r, s);
     q->enter = enter;
-    q->unit = vec3_length(s) / q->f->radius;
+    q->unit = vec3_length(s) / q->f->space.radius;
     bvh_toward(q->f->tree, at, way, end, visit, q);
 }
 
@@ -194,7 +175,7 @@ static vec3 departure(const mesh *f, int32_t index, vec3 at, vec3 s, double *bey
     foot_shares(&x, at, &b, &c);
     keep_inside(&b, &c);
     const vec3 from = mesh_mix(x.at, b, c);
-    *beyond = 1e-12 * (vec3_length(from) + f->radius) / vec3_length(s);
+    *beyond = 1e-12 * (vec3_length(from) + f->space.radius) / vec3_length(s);
     return from;
 }
 
@@ -368,18 +349,18 @@ static void lay_texture(mesh *f)
 
 /* ---- making one ---- */
 
-static bool measure(mesh *f)
+static void mesh_box(const surface *base, double lo[3], double hi[3])
 {
-    double lo[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, hi[3] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
-    for (int k = 0; k < f->d.n; k++)
-        for (int i = 0; i < 3; i++)
-            for (int a = 0; a < 3; a++) {
-                lo[a] = fmin(lo[a], (double)f->d.at[k][i][a]);
-                hi[a] = fmax(hi[a], (double)f->d.at[k][i][a]);
-            }
-    f->centre = (vec3){0.5 * (lo[0] + hi[0]), 0.5 * (lo[1] + hi[1]), 0.5 * (lo[2] + hi[2])};
-    f->radius = 0.5 * vec3_length((vec3){hi[0] - lo[0], hi[1] - lo[1], hi[2] - lo[2]});
-    return f->radius > 0;
+    const mesh *f = (const mesh *)base;
+    for (int a = 0; a < 3; a++) {
+        lo[a] = HUGE_VAL;
+        hi[a] = -HUGE_VAL;
+        for (int k = 0; k < 3 * f->d.n; k++) {
+            const double x = (double)f->d.at[k / 3][k % 3][a];
+            lo[a] = x < lo[a] ? x : lo[a];
+            hi[a] = x > hi[a] ? x : hi[a];
+        }
+    }
 }
 
 static void show_tree(void *user, double share) { watch_show(user, "building", share); }
@@ -387,13 +368,15 @@ static void show_tree(void *user, double share) { watch_show(user, "building", s
 static bvh *tree_of(const mesh *f, const watch *w)
 {
     bvh_box *box = malloc(sizeof *box * (size_t)f->d.n);
-    const double C[3] = {f->centre.x, f->centre.y, f->centre.z};
-    for (int k = 0; box && k < f->d.n; k++)
+    for (int k = 0; box && k < f->d.n; k++) {
+        double lo[3], hi[3];
         for (int a = 0; a < 3; a++) {
             const double x = (double)f->d.at[k][0][a], y = (double)f->d.at[k][1][a], z = (double)f->d.at[k][2][a];
-            box[k].lo[a] = (float)((fmin(x, fmin(y, z)) - C[a]) / f->radius - AIR);
-            box[k].hi[a] = (float)((fmax(x, fmax(y, z)) - C[a]) / f->radius + AIR);
+            lo[a] = fmin(x, fmin(y, z));
+            hi[a] = fmax(x, fmax(y, z));
         }
+        box[k] = bvh_box_in(&f->space, lo, hi);
+    }
     watch to = w ? *w : (watch){NULL, NULL};
     bvh *b = box ? bvh_new_watched(f->d.n, box, show_tree, &to) : NULL;
     free(box);
@@ -418,6 +401,7 @@ static const surface_methods methods = {
     .occlude = mesh_occlude,
     .occlude_own = mesh_occlude_own,
     .extent = mesh_extent,
+    .box = mesh_box,
     .parts = 1, /* all the same to who goes over them: part is the triangle */
 };
 
@@ -427,7 +411,10 @@ static surface *finish(mesh *f, const watch *w)
     f->base.is = &methods;
     f->base.free = mesh_free;
     f->base.rough = &mesh_displaced;
-    if (measure(f) && (f->tree = tree_of(f, w)))
+    double lo[3], hi[3];
+    mesh_box(&f->base, lo, hi);
+    f->space = bvh_space_about(lo, hi);
+    if (f->space.radius > 0 && (f->tree = tree_of(f, w)))
         return &f->base;
     mesh_free(&f->base);
     return NULL;

@@ -20,9 +20,8 @@ typedef struct mesh {
     mesh_data d;
     bool textured;
     double u[2], w[2]; /* the range of the texture coordinates; 0..1 where there are none */
-    vec3 centre;       /* all is within `radius` of it */
-    double radius;
-    bvh *tree;  /* over the triangles; its unit is the radius, its origin the centre */
+    bvh_space space;
+    bvh *tree;  /* over the triangles */
     bvh *rough; /* the same over what their rough surfaces may be in, with any P so far; NULL: not prepared */
     double lowest, highest, height; /* of those P, 0 among them: least, greatest, and the larger magnitude */
 } mesh;
@@ -62,8 +61,5 @@ mesh_prism mesh_prism_at(const mesh_triangle *x, double b, double c, double h);
 
 /* How u and w change in space there. det: Xb x Xc . N, or what stands for it where normals meet. */
 void mesh_gradients(const mesh_triangle *x, const mesh_prism *p, double det, vec3 *gu, vec3 *gw);
-
-/* The stretch of a ray within a sphere about the mesh's centre, and the same ray in the trees' units. False: there is none. */
-bool mesh_enter(const mesh *f, double radius, vec3 r, vec3 s, double *from, double *to, float at[3], float way[3], float *end);
 
 #endif

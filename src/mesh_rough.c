@@ -60,21 +60,21 @@ static void rough_box(const mesh_triangle *x, double lo, double hi, double box[2
 static bool rough_prepare(surface *base, const perturb *P)
 {
     mesh *f = (mesh *)base;
-    const double C[3] = {f->centre.x, f->centre.y, f->centre.z};
     if (f->rough && f->lowest <= (double)P->Pmin && f->highest >= (double)P->Pmax)
         return true;
     const double lo = f->lowest = fmin(f->lowest, (double)P->Pmin), hi = f->highest = fmax(f->highest, (double)P->Pmax);
     f->height = fmax(fabs(lo), fabs(hi));
     bvh_box *box = malloc(sizeof *box * (size_t)f->d.n);
-    const double air = AIR * (1 + f->height / f->radius);
+    const double air = AIR * (f->space.radius + f->height);
     for (int i = 0; box && i < f->d.n; i++) {
         const mesh_triangle x = mesh_triangle_of(f, i);
         double b[2][3];
         rough_box(&x, lo, hi, b);
         for (int a = 0; a < 3; a++) {
-            box[i].lo[a] = (float)((b[0][a] - C[a]) / f->radius - air);
-            box[i].hi[a] = (float)((b[1][a] - C[a]) / f->radius + air);
+            b[0][a] -= air;
+            b[1][a] += air;
         }
+        box[i] = bvh_box_in(&f->space, b[0], b[1]);
     }
     bvh_free(f->rough);
     f->rough = box ? bvh_new(f->d.n, box) : NULL;
@@ -179,7 +179,7 @@ static const mesh_triangle *piece(const ground *g, int32_t lane) { return &((con
 
 static void pieces_shell(const ground *g, int n, const rays *x, const real *end, real Pmin, real Pmax, real *t0, real *t1)
 {
-    const double air = AIR * ((const pieces *)g)->f->radius;
+    const double air = AIR * ((const pieces *)g)->f->space.radius;
     for (int i = 0; i < n; i++) {
         double from = 0, to = (double)end[i];
         const bool some = shell_of(piece(g, i), air, get(&x->r, i), get(&x->s, i), (double)Pmin, (double)Pmax, &from, &to);
@@ -304,7 +304,7 @@ static void visit(void *user, int32_t index)
     const int i = k->n;
     double from = 0, to = (double)k->end[k->lane];
     k->triangle[i] = mesh_triangle_of(k->f, index);
-    if (!shell_of(&k->triangle[i], AIR * k->f->radius, get(&k->x->r, k->lane), get(&k->x->s, k->lane), (double)k->P->Pmin, (double)k->P->Pmax, &from, &to))
+    if (!shell_of(&k->triangle[i], AIR * k->f->space.radius, get(&k->x->r, k->lane), get(&k->x->s, k->lane), (double)k->P->Pmin, (double)k->P->Pmax, &from, &to))
         return;
     k->n++;
     k->of[i] = k->lane;
@@ -329,7 +329,7 @@ static void go_round(tour *k, int n, const rays *x, real *t, int32_t *index, dis
         k->end[i] = t[i];
         index[i] = -1;
         k->lane = i;
-        if (mesh_enter(k->f, k->f->radius + k->f->height, get(&x->r, i), get(&x->s, i), &from, &to, at, way, &far))
+        if (bvh_enter(&k->f->space, k->f->space.radius + k->f->height, get(&x->r, i), get(&x->s, i), &from, &to, at, way, &far))
             bvh_along(k->f->rough, at, way, far, visit, k);
     }
     search_all(k);
@@ -371,8 +371,9 @@ static void rough_occlude(const surface *base, const perturb *P, int n, const ra
 }
 
 /* The height changes along N there, whatever the triangle itself is like: so the rough surface is as smooth as the mesh is shown. */
-static void rough_feet(const surface *base, int n, const rays *x, const real *t, int32_t *part, feet *p)
+static void rough_feet(const surface *base, const perturb *P, int n, const rays *x, const real *t, int32_t *part, feet *p)
 {
+    (void)P;
     for (int i = 0; i < n; i++) {
         const mesh_triangle a = mesh_triangle_of((const mesh *)base, part[i]);
         double b, c;

@@ -243,18 +243,48 @@ static void disc_extent(const surface *base, int part, double u[2], double w[2])
     u[1] = w[1] = R;
 }
 
+static void plane_box(const surface *base, double lo[3], double hi[3])
+{
+    (void)base;
+    for (int k = 0; k < 3; k++) {
+        lo[k] = -HUGE_VAL;
+        hi[k] = HUGE_VAL;
+    }
+}
+
+static void rectangle_box(const surface *base, double lo[3], double hi[3])
+{
+    const plane *f = (const plane *)base;
+    for (int k = 0; k < 3; k++) {
+        const double O = (double)f->O[k], U = (double)f->U[k], W = (double)f->W[k];
+        lo[k] = O + fmin(U, 0) + fmin(W, 0);
+        hi[k] = O + fmax(U, 0) + fmax(W, 0);
+    }
+}
+
+/* U and W may be oblique, where a disc is an ellipse. */
+static void disc_box(const surface *base, double lo[3], double hi[3])
+{
+    const plane *f = (const plane *)base;
+    for (int k = 0; k < 3; k++) {
+        const double O = (double)f->O[k], U = (double)f->U[k], W = (double)f->W[k], r = (double)f->R * sqrt(U * U + W * W);
+        lo[k] = O - r;
+        hi[k] = O + r;
+    }
+}
+
 static const surface_methods plane_methods = {
-    "plane", plane_hit,   plane_hit_own, plane_locate, plane_eval, plane_occlude, NULL, plane_extent,
+    "plane", plane_hit,   plane_hit_own, plane_locate, plane_eval, plane_occlude, NULL, plane_extent, plane_box,
     1,       plane_shell, plane_foot,    plane_steep,  false,
 };
 
 static const surface_methods rectangle_methods = {
-    "rectangle", rectangle_hit,   rectangle_hit_own, plane_locate, plane_eval, rectangle_occlude, NULL, rectangle_extent,
+    "rectangle", rectangle_hit,   rectangle_hit_own, plane_locate, plane_eval, rectangle_occlude, NULL, rectangle_extent, rectangle_box,
     1,           rectangle_shell, plane_foot,        plane_steep,  false,
 };
 
 static const surface_methods disc_methods = {
-    "disc", disc_hit,   disc_hit_own, plane_locate, plane_eval, disc_occlude, NULL, disc_extent,
+    "disc", disc_hit,   disc_hit_own, plane_locate, plane_eval, disc_occlude, NULL, disc_extent, disc_box,
     1,      disc_shell, plane_foot,   plane_steep,  false,
 };
 

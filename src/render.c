@@ -1,6 +1,7 @@
 #include "render.h"
 
 #include "contrast.h"
+#include "crowd.h"
 #include "lane.h"
 
 #include <stdlib.h>
@@ -31,13 +32,22 @@ static workspace *workspace_chain(int lights, int deeper)
 workspace *workspace_new(const scene *s)
 {
     workspace *v = workspace_chain(s->lights, s->sends && s->depth > 1 ? s->depth : 0);
+    meetings *m = v && s->crowd ? meetings_new(s->crowd) : NULL;
+    if (v && s->crowd && !m) {
+        workspace_free(v);
+        return NULL;
+    }
     if (v)
         v->left = s->depth - 1;
+    for (workspace *w = v; w; w = w->deeper)
+        w->meetings = m;
     return v;
 }
 
 void workspace_free(workspace *v)
 {
+    if (v)
+        meetings_free(v->meetings);
     while (v) {
         workspace *next = v->deeper;
         free(v->visibility);

@@ -146,6 +146,7 @@ typedef struct scene {
     int materials;
     object *object;
     int objects;
+    struct crowd *crowd; /* where there are many (crowd.h); NULL: few */
 } scene;
 
 /* Whether true hits of bumped objects are asked for (displace.h). */

@@ -3,6 +3,8 @@
  */
 #include "scene_reader.h"
 
+#include "crowd.h"
+
 #include "image.h"
 
 #include <math.h>
@@ -192,6 +194,16 @@ static void note_secondary(scene *s)
     }
 }
 
+/* Once all objects are good. */
+static void note_crowd(reader *r, int before)
+{
+    bool good = true;
+    if (r->e->count == before)
+        r->s->crowd = crowd_new(r->s, &good);
+    if (!good)
+        errors_add(r->e, "out of memory");
+}
+
 scene *scene_read(const char *path, int sets, char *const *set, const watch *w, errors *e)
 {
     reader r = {.e = e, .watch = w, .s = calloc(1, sizeof *r.s)};
@@ -209,6 +221,7 @@ scene *scene_read(const char *path, int sets, char *const *set, const watch *w, 
             reader_materials(&r);
             reader_objects(&r);
             note_secondary(r.s);
+            note_crowd(&r, before);
         }
         yaml_close(r.y);
     }
@@ -224,6 +237,7 @@ void scene_free(scene *s)
 {
     if (!s)
         return;
+    crowd_free(s->crowd);
     for (int i = 0; i < s->lights; i++)
         free(s->light[i].name);
     for (int i = 0; i < s->materials; i++) {

@@ -186,7 +186,7 @@ static surface *image_of(const reader *r, const object *o, const surface *from, 
 static bool is_mesh_sized(const surface *f, const affine *m, double *wrong)
 {
     const double longest = fmax(vec3_length(m->x), fmax(vec3_length(m->y), vec3_length(m->z)));
-    *wrong = longest * ((const mesh *)f)->radius;
+    *wrong = longest * ((const mesh *)f)->space.radius;
     return *wrong >= SMALL / 4 && *wrong <= BIG * 4;
 }
 
@@ -201,7 +201,7 @@ bool reader_place(reader *r, node *at, object *o)
     const bool is_mesh = o->shape_said.kind == SHAPE_MESH;
     if (o->shape_said.kind != SHAPE_SEARCHED && !is_mesh)
         from = o->centred = centred(&o->shape_said, &whole.o);
-    const vec3 to = affine_point(m, is_mesh ? ((const mesh *)from)->centre : whole.o);
+    const vec3 to = affine_point(m, is_mesh ? ((const mesh *)from)->space.centre : whole.o);
     const double far = fmax(fabs(to.x), fmax(fabs(to.y), fabs(to.z)));
     if (!(far <= BIG))
         return yaml_error(r->y, at, "it goes %.4g scene units away, expected 1000000 at most", far);

@@ -204,8 +204,17 @@ static void sphere_extent(const surface *base, int part, double u[2], double w[2
     w[1] = pi;
 }
 
+static void sphere_box(const surface *base, double lo[3], double hi[3])
+{
+    const sphere *f = (const sphere *)base;
+    for (int k = 0; k < 3; k++) {
+        lo[k] = (double)f->C[k] - (double)f->R;
+        hi[k] = (double)f->C[k] + (double)f->R;
+    }
+}
+
 static const surface_methods sphere_methods = {
-    "sphere", sphere_hit,   sphere_hit_own, sphere_locate, sphere_eval, sphere_occlude, sphere_occlude_own, sphere_extent,
+    "sphere", sphere_hit,   sphere_hit_own, sphere_locate, sphere_eval, sphere_occlude, sphere_occlude_own, sphere_extent, sphere_box,
     1,        sphere_shell, sphere_foot,    sphere_steep,  false,
 };
 

@@ -44,6 +44,9 @@ typedef struct surface_methods {
     /* The range of (u,w) on a part. Ends are infinite where the surface has none. */
     void (*extent)(const surface *f, int part, double u[2], double w[2]);
 
+    /* What all of the surface is in, but for roundings. Ends are infinite where it has none. */
+    void (*box)(const surface *f, double lo[3], double hi[3]);
+
     int parts; /* part is in 0..parts-1; 1 of a mesh, whose triangles differ in nothing that is asked by part alone */
 
     /* For true displacement (displace.c), with a part of the surface taken as if it alone were there. All three are NULL where no

@@ -460,8 +460,19 @@ static void torus_extent(const surface *base, int part, double u[2], double w[2]
     u[1] = w[1] = pi;
 }
 
+/* The circle that the tube is about reaches as far along an axis as that is across its own. */
+static void torus_box(const surface *base, double lo[3], double hi[3])
+{
+    const torus *f = (const torus *)base;
+    for (int k = 0; k < 3; k++) {
+        const double reach = f->M * sqrt(fmax(1 - f->Y[k] * f->Y[k], 0)) + f->m;
+        lo[k] = f->C[k] - reach;
+        hi[k] = f->C[k] + reach;
+    }
+}
+
 static const surface_methods torus_methods = {
-    "torus", torus_hit,   torus_hit_own, torus_locate, torus_eval, torus_occlude, torus_occlude_own, torus_extent,
+    "torus", torus_hit,   torus_hit_own, torus_locate, torus_eval, torus_occlude, torus_occlude_own, torus_extent, torus_box,
     1,       torus_shell, torus_foot,    torus_steep,  false,
 };
 

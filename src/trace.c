@@ -12,6 +12,7 @@
 
 #include <string.h>
 
+#include "crowd.h"
 #include "displace.h"
 #include "filter.h"
 #include "lane.h"
@@ -59,12 +60,50 @@ static void shadow_own(const tracer *k, int id, const light *l, group *g, stats 
     }
 }
 
+/* Put lit[i] = 0 where an opaque object lies across the segment. */
+static void block(const tracer *k, const object *o, int n, const rays *x, real *lit, stats *st)
+{
+    if (!is_rough(k, o))
+        o->shape->is->occlude(o->shape, n, x, lit);
+    else
+        displace_occlude(o->shape, o->bump, n, x, NULL, lit, &st->displaced);
+}
+
+/* The same for some lanes of a group. */
+static void block_some(const tracer *k, const object *o, int n, const int32_t *lane, group *g, stats *st)
+{
+    rays x;
+    real lit[LANES];
+    wave_pick_rays(n, lane, &g->to_light, &x);
+    for (int i = 0; i < n; i++)
+        lit[i] = g->lit[lane[i]];
+    block(k, o, n, &x, lit, st);
+    for (int i = 0; i < n; i++)
+        g->lit[lane[i]] = lit[i];
+}
+
+/* The objects that a group's segments to the light may meet; what is dark already need not be searched. */
+static void meet_lit(const crowd *c, const group *g, meetings *m)
+{
+    real end[LANES];
+    for (int i = 0; i < g->n; i++)
+        end[i] = g->lit[i] > 0 ? R(1) : R(-1);
+    crowd_meet(c, g->n, &g->to_light, end, NULL, m);
+}
+
+/* The next object after `after` that is to be tried. */
+static int32_t next_object(const scene *s, const meetings *m, int32_t after)
+{
+    return s->crowd ? meetings_next(m, after) : after + 1 < s->objects ? after + 1 : -1;
+}
+
 /* Which lanes of object `id` a light of one place shines on. The segments to it are r + s t, 0 < t < 1, from
  *     the smooth hit p1                 for the receiver's own smooth surface, which is left out at t = 0 by its own methods, and
  *     the shifted hit r + s (t_hit+tau) for every other object. */
-static void shadow_one(const tracer *k, int id, const light *l, group *g, stats *st)
+static void shadow_one(const tracer *k, int id, const light *l, group *g, meetings *m, stats *st)
 {
     const scene *sc = k->scene;
+    int32_t lane[LANES];
     for (int i = 0; i < g->n; i++)
         g->lit[i] = 1;
     if (sc->clear)
@@ -72,26 +111,28 @@ static void shadow_one(const tracer *k, int id, const light *l, group *g, stats 
     if (casts(k, &sc->object[id]))
         shadow_own(k, id, l, g, st);
     light_aim(l, g, true);
-    for (int j = 0; j < sc->objects; j++) {
+    if (sc->crowd)
+        meet_lit(sc->crowd, g, m);
+    for (int32_t j = next_object(sc, m, -1); j >= 0; j = next_object(sc, m, j)) {
         const object *o = &sc->object[j];
         if (j == id || !casts(k, o))
             continue;
         if (is_clear(k, o))
             filter_light(k, j, false, g, st);
-        else if (!is_rough(k, o))
-            o->shape->is->occlude(o->shape, g->n, &g->to_light, g->lit);
+        else if (sc->crowd)
+            block_some(k, o, meetings_of(m, j, lane), lane, g, st);
         else
-            displace_occlude(o->shape, o->bump, g->n, &g->to_light, NULL, g->lit, &st->displaced);
+            block(k, o, g->n, &g->to_light, g->lit, st);
     }
     st->shadow_rays += g->n;
 }
 
 /* The share of a light that is seen: of an area, the samples that are. */
-static void shadow(const tracer *k, int id, const light *l, group *g, stats *st)
+static void shadow(const tracer *k, int id, const light *l, group *g, meetings *m, stats *st)
 {
     const int places = l->samples[0] * l->samples[1];
     if (places == 1) {
-        shadow_one(k, id, l, g, st);
+        shadow_one(k, id, l, g, m, st);
         return;
     }
     const bool tinted = k->scene->clear;
@@ -99,7 +140,7 @@ static void shadow(const tracer *k, int id, const light *l, group *g, stats *st)
     vec3s colors = {{0}, {0}, {0}};
     for (int j = 0; j < places; j++) {
         const light one = light_sample(l, j, &share);
-        shadow_one(k, id, &one, g, st);
+        shadow_one(k, id, &one, g, m, st);
         if (tinted)
             light_gather_tint(g, share, &colors);
         else
@@ -154,7 +195,7 @@ void trace_group(const tracer *k, int id, workspace *v)
         o->color->is->eval(o->color, g->n, g->u, g->w, &g->color);
     shade_ambient(g, m);
     for (int l = 0; l < sc->lights; l++) {
-        shadow(k, id, &sc->light[l], g, st);
+        shadow(k, id, &sc->light[l], g, v->meetings, st);
         stats_stage(st, STAGE_SHADOW);
         if (k->layers)
             wave_scatter_visibility(g, sc->clear, v->visibility[l]);
@@ -177,12 +218,43 @@ void trace_hit(const tracer *k, int32_t id, int n, const rays *x, const starts *
         o->shape->is->hit(o->shape, n, x, id, h);
 }
 
+/* The same for some of the rays. */
+static void hit_some(const tracer *k, int32_t id, int n, const int32_t *lane, const rays *x, const starts *from, hits *h, stats *st)
+{
+    rays y;
+    starts begin;
+    hits some;
+    wave_pick_rays(n, lane, x, &y);
+    if (from)
+        wave_pick_starts(n, lane, from, &begin);
+    for (int i = 0; i < n; i++) {
+        some.t[i] = h->t[lane[i]];
+        some.id[i] = h->id[lane[i]];
+        some.part[i] = h->part[lane[i]];
+    }
+    trace_hit(k, id, n, &y, from ? &begin : NULL, &some, st);
+    for (int i = 0; i < n; i++) {
+        h->t[lane[i]] = some.t[i];
+        h->id[lane[i]] = some.id[i];
+        h->part[lane[i]] = some.part[i];
+    }
+}
+
 int32_t trace_nearest(const tracer *k, int n, workspace *v)
 {
     const scene *sc = k->scene;
     wave_start(n, &v->h);
-    for (int32_t id = 0; id < sc->objects; id++)
-        trace_hit(k, id, n, &v->x, v->of ? &v->of->from : NULL, &v->h, &v->stats);
+    const starts *from = v->of ? &v->of->from : NULL;
+    int32_t lane[LANES];
+    if (sc->crowd)
+        crowd_meet(sc->crowd, n, &v->x, v->h.t, from ? from->id : NULL, v->meetings);
+    for (int32_t id = next_object(sc, v->meetings, -1); id >= 0; id = next_object(sc, v->meetings, id)) {
+        const int some = sc->crowd ? meetings_of(v->meetings, id, lane) : n;
+        if (some < n)
+            hit_some(k, id, some, lane, &v->x, from, &v->h, &v->stats);
+        else
+            trace_hit(k, id, n, &v->x, from, &v->h, &v->stats);
+    }
     if (v->of)
         wave_start_own(n, &v->of->from, &v->h, &v->x);
     *(v->of ? &v->stats.secondary_rays : &v->stats.rays) += n;

@@ -34,6 +34,7 @@ typedef struct workspace {
     samples out;
     real (*visibility)[LANES]; /* for each light of the scene */
     stats stats;
+    struct meetings *meetings; /* of a scene with many objects (crowd.h); else NULL; shared by the chain of workspaces */
 
     /* secondary rays (secondary.h) */
     const bounce *of; /* what the rays x are; NULL: the camera's */

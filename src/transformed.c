@@ -238,6 +238,22 @@ static void faces_steep(const surface *base, int part, int n, const rays *x, con
     face->is->steep(face, 0, n, x, p, Pu_max, Pw_max, rate, reach);
 }
 
+/* The image of the box of what is mapped. */
+static void transformed_box(const surface *base, double lo[3], double hi[3])
+{
+    const transformed *f = of(base);
+    double a[3], b[3];
+    f->from->is->box(f->from, a, b);
+    for (int k = 0; k < 3; k++) {
+        lo[k] = hi[k] = (double)f->o[k];
+        for (int j = 0; j < 3; j++) {
+            const double x = (double)f->to[j][k] * a[j], y = (double)f->to[j][k] * b[j];
+            lo[k] += fmin(x, y);
+            hi[k] += fmax(x, y);
+        }
+    }
+}
+
 /* ---- making them ---- */
 
 static bool is(const surface *f, const char *kind) { return strcmp(f->is->kind, kind) == 0; }
@@ -296,6 +312,7 @@ static void choose_methods(transformed *f, double scale)
     f->methods.occlude = transformed_occlude;
     f->methods.occlude_own = f->from->is->occlude_own ? transformed_occlude_own : NULL;
     f->methods.extent = transformed_extent;
+    f->methods.box = transformed_box;
     f->methods.shell = scale > 0 ? similar_shell : NULL;
     f->methods.foot = scale > 0 ? similar_foot : NULL;
     f->methods.steep = scale > 0 ? similar_steep : NULL;

@@ -67,6 +67,30 @@ static void pick3(const group *g, const vec3s *from, vec3s *to)
     pick(g, from->z, to->z);
 }
 
+static void pick_some(int n, const int32_t *lane, const vec3s *from, vec3s *to)
+{
+    for (int i = 0; i < n; i++) {
+        to->x[i] = from->x[lane[i]];
+        to->y[i] = from->y[lane[i]];
+        to->z[i] = from->z[lane[i]];
+    }
+}
+
+void wave_pick_rays(int n, const int32_t *lane, const rays *x, rays *to)
+{
+    pick_some(n, lane, &x->r, &to->r);
+    pick_some(n, lane, &x->s, &to->s);
+}
+
+void wave_pick_starts(int n, const int32_t *lane, const starts *from, starts *to)
+{
+    for (int i = 0; i < n; i++) {
+        to->id[i] = from->id[lane[i]];
+        to->part[i] = from->part[lane[i]];
+    }
+    pick_some(n, lane, &from->at, &to->at);
+}
+
 STAGE static int count(int n, const int32_t *id, int32_t wanted)
 {
     int m = 0;
