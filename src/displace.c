@@ -46,6 +46,10 @@ STAGE static void gaps(search *restrict s, real *restrict slope)
  * from there. */
 static void within_extent(const ground *f, int n, const int32_t *lane, const feet *p, real *u, real *w)
 {
+    if (f->within) {
+        f->within(f, n, lane, p, u, w);
+        return;
+    }
     for (int i = 0; i < n; i++) {
         double U[2], W[2];
         f->extent(f, lane[i], U, W);
@@ -292,7 +296,7 @@ static void part_extent(const ground *g, int32_t lane, double u[2], double w[2])
 long displace_search(const surface *f, const perturb *P, int part, int n, const rays *x, const real *end, const int32_t *on, real *t,
                      int32_t *found)
 {
-    const part_ground k = {{part_shell, part_foot, part_steep, part_extent, f->is->loose, STEPS}, f, part};
+    const part_ground k = {{part_shell, part_foot, part_steep, part_extent, NULL, f->is->loose, STEPS}, f, part};
     int32_t own[LANES];
     for (int i = 0; i < n; i++)
         own[i] = on && on[i] == part;

@@ -191,6 +191,7 @@ static void put_smooth(pov_text *t, const scene *s, const object *o)
         break;
     }
     case SHAPE_SEARCHED: /* pov_sheet.c */
+    case SHAPE_MESH:     /* pov_triangles.c */
         break;
     }
     put_transform(t, o);
@@ -227,6 +228,8 @@ bool pov_write(const scene *s, const pov_options *how, const char *path, pov_rep
                   o->bump ? o->bump->is->kind : "");
         if (o->shape_said.kind == SHAPE_SEARCHED)
             good = pov_sheet(&t, s, o);
+        else if (o->shape_said.kind == SHAPE_MESH)
+            good = pov_triangles(&t, s, o);
         else if (s->displaced && o->bump)
             good = put_displaced(&t, s, k, report);
         else
