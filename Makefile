@@ -50,6 +50,7 @@ UNITS     = $(patsubst tests/%.c,%,$(wildcard tests/test_*.c))
 
 FIGURES   = figure4 figure5 figure6 figure7 figure8-none figure8 terrain-none terrain
 PICTURES  = $(FIGURES:%=out/%.png)
+SHOWN     = wall teapot shell
 GALLERY   = $(patsubst scenes/gallery/%.yaml,%,$(wildcard scenes/gallery/*.yaml))
 
 .PHONY: all render bench readme reference accept test unit-tests program-tests install clean help bootstrap FORCE
@@ -76,8 +77,8 @@ bootstrap:
 
 render: all
 	@CC='$(CC)' scripts/bootstrap python
-	@$(MAKE) --no-print-directory $(PICTURES) out/figures.png out/gallery/index.html
-	@echo 'The pictures are in out/, those of the paper side by side in out/figures.png, the gallery in out/gallery/index.html:'
+	@$(MAKE) --no-print-directory $(PICTURES) out/figures.png out/gallery.png out/gallery/index.html
+	@echo 'The pictures are in out/, those of the paper side by side in out/figures.png, the gallery in out/gallery/index.html and out/gallery.png:'
 	@ls $(PICTURES) $(PICTURES:.png=.exr) out/figures.png $(GALLERY:%=out/gallery/%.png)
 
 # A picture is a scene and a method; its EXR is written along with it.
@@ -111,6 +112,10 @@ out/gallery/%-none.png: scenes/gallery/%.yaml $(BUILD)/kage
 out/gallery/%.png: scenes/gallery/%.yaml $(BUILD)/kage
 	@mkdir -p out/gallery
 	$(BUILD)/kage render $< --aa 3 -o $@
+
+out/gallery.png: $(SHOWN:%=out/gallery/%-none.png) $(SHOWN:%=out/gallery/%.png) scripts/contact_sheet.py
+	scripts/venv python scripts/contact_sheet.py -o $@ --columns 3 --title "Above, bump mapping alone; below, the same scenes by their best method" \
+	    $(foreach s,$(SHOWN),out/gallery/$(s)-none.png="$(s): none") $(foreach s,$(SHOWN),out/gallery/$(s).png="$(s): kage")
 
 out/gallery/index.html: $(GALLERY:%=out/gallery/%-none.png) $(GALLERY:%=out/gallery/%.png) scripts/gallery.py
 	scripts/venv python scripts/gallery.py -o $@ $(GALLERY:%=scenes/gallery/%.yaml)

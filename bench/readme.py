@@ -26,7 +26,7 @@ from bench.programs import TOP
 Data = dict[str, Any]
 
 RESULT = TOP / "bench" / "result.json"
-SHEET = "docs/figures.png"  # from `make render`
+SHEETS = ("figures.png", "gallery.png")  # in docs/, from `make render`, which makes them in out/
 PLOT = "docs/cost-error.svg"
 PLOTTED = "cube"
 README_METHODS = ("none", "0", "1", "2", "2+", "march:4", "exact")
@@ -44,8 +44,8 @@ def picked(data: Data, *keys: str) -> Data:
     return {key: data[key] for key in keys}
 
 
-def kept(report: Data, sheet: str) -> Data:
-    """What the tables and the plot need of a report, and the digest of the sheet's pixels."""
+def kept(report: Data, sheets: Data) -> Data:
+    """What the tables and the plot need of a report, and the digests of the sheets' pixels."""
     costs = {scene: {"methods": {m: picked(c, "ns", "added", "instructions_added") for m, c in found["methods"].items()}}
              for scene, found in report["cost"]["scenes"].items()}
     quality = {scene: {m: picked(q, "mask", "exact") for m, q in methods.items()}
@@ -55,7 +55,7 @@ def kept(report: Data, sheet: str) -> Data:
                  "peers": [picked(peer, "name", "scene", "ns", "build_s", "memory") for peer in report["cost"]["peers"]]},
         "quality": picked(report["quality"], "truth", "parity") | {"scenes": quality},
         "claims": [picked(claim, "id", "who", "sentence", "source", "verdict") for claim in report["claims"]],
-        "sheet": sheet,
+        "sheets": sheets,
     }
 
 
@@ -189,7 +189,7 @@ def files(data: Data) -> dict[str, str]:
 def disagreements(data: Data) -> list[str]:
     found = [name for name, text in files(data).items()
              if not (TOP / name).exists() or (TOP / name).read_text(encoding="utf-8") != text]
-    return found + ([SHEET] if pixels_digest(TOP / SHEET) != data["sheet"] else [])
+    return found + [f"docs/{sheet}" for sheet in SHEETS if pixels_digest(TOP / "docs" / sheet) != data["sheets"][sheet]]
 
 
 def write(path: Path, content: bytes) -> None:
@@ -198,11 +198,13 @@ def write(path: Path, content: bytes) -> None:
     aside.replace(path)
 
 
-def update(report: Data, sheet: Path) -> None:
-    data = kept(report, pixels_digest(sheet))
+def update(report: Data, rendered: Path) -> None:
+    """rendered: the folder of the sheets."""
+    data = kept(report, {sheet: pixels_digest(rendered / sheet) for sheet in SHEETS})
     texts = files(data)
     write(RESULT, (json.dumps(data, indent=1) + "\n").encode())
-    write(TOP / SHEET, sheet.read_bytes())
+    for sheet in SHEETS:
+        write(TOP / "docs" / sheet, (rendered / sheet).read_bytes())
     for name, text in texts.items():
         write(TOP / name, text.encode())
 
@@ -222,7 +224,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             for name in wrong:
                 print(f"readme.py: {name} is not what bench/result.json says: `make readme` writes it", file=sys.stderr)
             return 1 if wrong else 0
-        update(json.loads((TOP / "out" / "bench" / "report.json").read_text()), TOP / "out" / "figures.png")
+        update(json.loads((TOP / "out" / "bench" / "report.json").read_text()), TOP / "out")
     except (ReadmeError, OSError, ValueError) as error:
         print(f"readme.py: {error}", file=sys.stderr)
         return 1

@@ -33,7 +33,8 @@ def test_readme_and_docs_agree_with_the_result(data: readme.Data) -> None:
     (("claims", 0, "verdict"), {"README.md"}),
     (("quality", "parity", "sphere", "mask_differs"), {"README.md"}),
     (("circumstances", "commit"), {"README.md", "docs/design.md"}),
-    (("sheet",), {"docs/figures.png"}),
+    (("sheets", "figures.png"), {"docs/figures.png"}),
+    (("sheets", "gallery.png"), {"docs/gallery.png"}),
 ])
 def test_another_result_disagrees(data: readme.Data, path: tuple[str | int, ...], wrong: set[str]) -> None:
     place = data
@@ -64,14 +65,14 @@ def test_what_was_not_measured_leaves_a_gap(data: readme.Data) -> None:
 
 def test_update_keeps_and_writes(data: readme.Data, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """From a report on, in a project of its own; then all agrees."""
-    for name in (*readme.REGIONS, readme.SHEET):
+    for name in (*readme.REGIONS, *(f"docs/{sheet}" for sheet in readme.SHEETS)):
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).write_bytes((TOP / name).read_bytes())
     (tmp_path / "README.md").write_text((tmp_path / "README.md").read_text().replace("kage, none", "kage, some"))
     monkeypatch.setattr(readme, "TOP", tmp_path)
     monkeypatch.setattr(readme, "RESULT", tmp_path / "result.json")
-    monkeypatch.setattr(readme, "kept", lambda report, sheet: report | {"sheet": sheet})
-    readme.update(data, TOP / readme.SHEET)
+    monkeypatch.setattr(readme, "kept", lambda report, sheets: report | {"sheets": sheets})
+    readme.update(data, TOP / "docs")
     assert json.loads((tmp_path / "result.json").read_text()) == data
     assert readme.disagreements(data) == []
     assert (tmp_path / "README.md").read_text() == (TOP / "README.md").read_text()
