@@ -375,7 +375,7 @@ void displace_shape(const surface *f, const perturb *P, group *g)
 {
     feet p;
     if (f->rough)
-        f->rough->feet(f, g->n, &g->x, g->t, g->part, &p);
+        f->rough->feet(f, P, g->n, &g->x, g->t, g->part, &p);
     else
         group_feet(f, g, &p);
     memcpy(g->u, p.u, sizeof g->u);

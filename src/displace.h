@@ -35,8 +35,8 @@ typedef struct displaced {
     void (*hit)(const surface *f, const perturb *P, int n, const rays *x, const starts *from, int32_t id, hits *h, displace_counts *c);
     void (*occlude)(const surface *f, const perturb *P, int n, const rays *x, bool own, real *lit, displace_counts *c);
 
-    /* The feet of hits, each on the part that was told; this is then made that of the surface. */
-    void (*feet)(const surface *f, int n, const rays *x, const real *t, int32_t *part, feet *p);
+    /* The feet of hits, and the parts that they are on. */
+    void (*feet)(const surface *f, const perturb *P, int n, const rays *x, const real *t, int32_t *part, feet *p);
 } displaced;
 
 /* Once for each object whose true hits are asked for. False: out of memory. */

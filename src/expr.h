@@ -53,6 +53,14 @@ typedef struct expr_bounds {
  * They also hold the partials of expr_eval, unless intermediate results underflow. */
 void expr_range_gradient(const expr *e, double u0, double u1, double w0, double w1, expr_bounds *out);
 
+/* Bounds of the second partials. */
+typedef struct expr_bends {
+    double uu[2], uw[2], ww[2];
+} expr_bends;
+
+/* The same, and bounds of the second partials: Lipschitz bounds of the first ones likewise, so infinite where a slope may jump. */
+void expr_range_bend(const expr *e, double u0, double u1, double w0, double w1, expr_bounds *out, expr_bends *second);
+
 void expr_free(expr *e);
 
 #endif

@@ -6,44 +6,11 @@
  * a jump has an infinite one, unless what decides about the jump does not change in that direction. As everywhere here,
  * 0 times infinity is 0: what does not change, changes nothing.
  */
-#include "expr_interval.h"
+#include "expr_slopes.h"
+
 #include "expr_rules.h"
 
-enum { ALONG_U, ALONG_W, DIRECTIONS };
-
-typedef struct slope {
-    interval along[DIRECTIONS];
-} slope;
-
-/* The largest |partial| of noise(): 2.9262, at the centre of a cell whose four gradients are at their worst; found on a
- * grid of 4001 x 4001, rounded up by more than it can rise between. */
-static const interval steepest_noise = {-2.93, 2.93};
-
-static const interval zero = {0, 0}, one = {1, 1}, minus_one = {-1, -1};
-
-/* A term of the chain rule: exact where a factor is 1 or -1, as in sums. */
-static interval term(interval x, interval y)
-{
-    if (is_point(x, 1) || is_point(x, -1))
-        return x.lo > 0 ? y : negative(y);
-    if (is_point(y, 1) || is_point(y, -1))
-        return y.lo > 0 ? x : negative(x);
-    return multiply(x, y);
-}
-
-static interval plus(interval x, interval y)
-{
-    if (is_point(x, 0) || is_point(y, 0))
-        return is_point(x, 0) ? y : x;
-    return add(x, y);
-}
-
-/* The range of another function of the language: derivatives are made of them. */
-static interval range(enum expr_op op, interval a, interval b)
-{
-    const expr_code c = {.op = (uint8_t)op, .arg = {0, 1}};
-    return expr_value_range(&c, (const interval[]){a, b});
-}
+static const interval minus_one = {-1, -1};
 
 /* A derivative that is positive, from its values at the ends, in either order. Where these underflow it is still not 0,
  * nor as large as the cut of rule_tanh leaves it. */
@@ -52,8 +19,6 @@ static interval positive(double x, double y)
     interval z = widen((interval){least(x, y), most(x, y)}, SOME_ROUNDINGS);
     return (interval){z.lo > 1e-300 ? z.lo : 0, most(z.hi, TINY)};
 }
-
-static interval square(interval a) { return multiply(magnitude(a), magnitude(a)); }
 
 static interval sign(interval a)
 {
@@ -97,13 +62,7 @@ static interval quotient_of_modulo(interval a, interval b)
     return lo == hi && fabs(lo) < KM_TWO52 ? (interval){lo, lo} : everything;
 }
 
-/* f_a and f_b of an operation f(a,b) */
-typedef struct pair {
-    interval a, b;
-} pair;
-
-/* Over all the values of the operands a and b; f is the range of the operation's own. */
-static pair partials_of(const expr_code *p, interval a, interval b, interval f)
+pair expr_partials_range(const expr_code *p, interval a, interval b, interval f)
 {
     const interval m = magnitude(a), z = magnitude(clip(a, -1, 1));
     interval d;
@@ -161,7 +120,7 @@ static pair partials_of(const expr_code *p, interval a, interval b, interval f)
     case OP_FLOOR:
         return (pair){floor(a.lo) == floor(a.hi) ? zero : everything, zero};
     case OP_NOISE:
-        return (pair){steepest_noise, steepest_noise};
+        return (pair){expr_noise_range(a, b).x, expr_noise_range(a, b).y};
     case OP_MIN:
     case OP_MAX:
     case OP_SELECT:
@@ -174,15 +133,14 @@ static pair partials_of(const expr_code *p, interval a, interval b, interval f)
 /* f_i = f_a a_i + f_b b_i */
 static slope chain(const expr_code *p, const interval *value, const slope *s, interval f)
 {
-    const pair d = partials_of(p, value[p->arg[0]], value[p->arg[1]], f);
+    const pair d = expr_partials_range(p, value[p->arg[0]], value[p->arg[1]], f);
     slope z;
     for (int i = 0; i < DIRECTIONS; i++)
         z.along[i] = plus(term(d.a, s[p->arg[0]].along[i]), term(d.b, s[p->arg[1]].along[i]));
     return z;
 }
 
-/* Which operands the result is equal to somewhere: bit k for arg[k]. */
-static int reached(const expr_code *p, const interval *value)
+int expr_reached(const expr_code *p, const interval *value)
 {
     const interval a = value[p->arg[0]], b = value[p->arg[1]];
     switch (p->op) {
@@ -200,7 +158,7 @@ static int reached(const expr_code *p, const interval *value)
 /* The slope is that of one of the operands reached. Between operands that meet, as min's do, nothing jumps. */
 static slope choice(const expr_code *p, const interval *value, const slope *s)
 {
-    const int set = reached(p, value);
+    const int set = expr_reached(p, value);
     const bool by_sign = p->op == OP_SELECT || p->op == OP_SELECT4;
     int first = 0;
     while (first < 3 && !(set >> first & 1))
@@ -221,6 +179,11 @@ static slope choice(const expr_code *p, const interval *value, const slope *s)
     return z;
 }
 
+slope expr_slope_range(const expr_code *p, const interval *value, const slope *s, interval f)
+{
+    return expr_chooses(p) ? choice(p, value, s) : chain(p, value, s, f);
+}
+
 void expr_range_gradient(const expr *e, double u0, double u1, double w0, double w1, expr_bounds *out)
 {
     interval value[EXPR_SLOTS] = {{u0, u1}, {w0, w1}};
@@ -228,10 +191,8 @@ void expr_range_gradient(const expr *e, double u0, double u1, double w0, double 
     for (int i = 0; i < e->count; i++) {
         const expr_code *p = &e->code[i];
         const interval f = expr_value_range(p, value);
-        const bool chosen = p->op == OP_MIN || p->op == OP_MAX || p->op == OP_SELECT || p->op == OP_SELECT4;
-        s[p->z] = chosen ? choice(p, value, s) : chain(p, value, s, f);
+        s[p->z] = expr_slope_range(p, value, s, f);
         value[p->z] = f;
     }
-    const interval v = value[e->result], u = s[e->result].along[ALONG_U], w = s[e->result].along[ALONG_W];
-    *out = (expr_bounds){{v.lo, v.hi}, {u.lo, u.hi}, {w.lo, w.hi}};
+    expr_put_bounds(value[e->result], s[e->result], out);
 }

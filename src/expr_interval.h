@@ -84,6 +84,13 @@ static inline interval reciprocal(interval b)
     return widen(z, ONE_ROUNDING);
 }
 
+/* Bounds of noise() and of its partials. */
+typedef struct noise_bounds {
+    interval f, x, y, xx, xy, yy;
+} noise_bounds;
+
+noise_bounds expr_noise_range(interval a, interval b);
+
 /* Bounds of the value of one operation, from those of its operands in their slots. */
 interval expr_value_range(const expr_code *p, const interval *slot);
 

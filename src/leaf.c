@@ -10,7 +10,6 @@ enum {
 
 #define LARGEST (1 / 20.) /* of the sheet's radius */
 #define SMALLEST (1 / 300.)
-#define FLAT 0.045 /* by how much, in radians or as a share, Qu and Qw may change within a leaf that is larger than that */
 #define AIR 1e-12 /* more than the roundings in e, as a share of the leaf's place and size */
 
 static double length3(const double v[3]) { return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
@@ -22,7 +21,7 @@ leaf leaf_of(const sheet *q, int32_t part, const double u[2], const double w[2])
     sheet_bounds b;
     sheet_jets q0;
     double A[3], B[3], ra[3], rb[3], c[3], far[3];
-    q->is->bound(q, part, u, w, &b);
+    q->is->bound(q, part, u, w, &b, NULL);
     q->is->eval(q, 1, &part, &mu, &mw, 0, &q0);
     for (int k = 0; k < 3; k++) {
         const expr_bounds *z = &b.axis[k];
@@ -33,23 +32,25 @@ leaf leaf_of(const sheet *q, int32_t part, const double u[2], const double w[2])
         ra[k] = known ? 0.5 * hu * (z->u[1] - z->u[0]) : HUGE_VAL;
         rb[k] = known ? 0.5 * hw * (z->w[1] - z->w[0]) : HUGE_VAL;
         const double out = fabs(A[k]) + fabs(B[k]) + ra[k] + rb[k];
-        f.box[0][k] = fmax(z->v[0], c[k] - out);
-        f.box[1][k] = fmin(z->v[1], c[k] + out);
-        far[k] = fmax(z->v[1] - c[k], c[k] - z->v[0]) + fabs(A[k]) + fabs(B[k]);
+        f.box[0][k] = greater(z->v[0], c[k] - out);
+        f.box[1][k] = lesser(z->v[1], c[k] + out);
+        far[k] = greater(z->v[1] - c[k], c[k] - z->v[0]) + fabs(A[k]) + fabs(B[k]);
     }
     f.c = (vec3){c[0], c[1], c[2]};
     f.A = (vec3){A[0], A[1], A[2]};
     f.B = (vec3){B[0], B[1], B[2]};
     f.ea = length3(ra);
     f.eb = length3(rb);
-    f.e = fmin(f.ea + f.eb, length3(far));
+    f.e = lesser(f.ea + f.eb, length3(far));
     f.e += AIR * (vec3_length(f.c) + vec3_length(f.A) + vec3_length(f.B));
     return f;
 }
 
 leaf leaf_half(const sheet *q, const leaf *f, int which)
 {
-    const bool along_u = vec3_length(f->A) + f->ea >= vec3_length(f->B) + f->eb;
+    const double lu = vec3_length(f->A) + f->ea, lw = vec3_length(f->B) + f->eb;
+    const double share_u = (f->u[1] - f->u[0]) / (q->u[1] - q->u[0]), share_w = (f->w[1] - f->w[0]) / (q->w[1] - q->w[0]);
+    const bool known = lu < HUGE_VAL || lw < HUGE_VAL, along_u = known ? lu >= lw : share_u >= share_w;
     double u[2] = {f->u[0], f->u[1]}, w[2] = {f->w[0], f->w[1]};
     double *x = along_u ? u : w;
     const double middle = x[0] + 0.5 * (x[1] - x[0]);
@@ -66,8 +67,8 @@ static void measure(leaves *l)
     double lo[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, hi[3] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}, size[3];
     for (int i = 0; i < l->n; i++)
         for (int k = 0; k < 3; k++) {
-            lo[k] = fmin(lo[k], l->leaf[i].box[0][k]);
-            hi[k] = fmax(hi[k], l->leaf[i].box[1][k]);
+            lo[k] = lesser(lo[k], l->leaf[i].box[0][k]);
+            hi[k] = greater(hi[k], l->leaf[i].box[1][k]);
         }
     for (int k = 0; k < 3; k++)
         size[k] = 0.5 * (hi[k] - lo[k]);
@@ -75,16 +76,16 @@ static void measure(leaves *l)
     l->radius = length3(size);
 }
 
-static bool wants_halving(const leaves *l, const leaf *f)
+static bool wants_halving(const leaves *l, double flat, const leaf *f)
 {
     const double size = leaf_size(f);
     if (l->n < AT_FIRST || !(size <= LARGEST * l->radius))
         return true;
-    return size > SMALLEST * l->radius && (f->ea > FLAT * vec3_length(f->A) || f->eb > FLAT * vec3_length(f->B));
+    return size > SMALLEST * l->radius && (f->ea > flat * vec3_length(f->A) || f->eb > flat * vec3_length(f->B));
 }
 
 /* One halving for each leaf that wants it. False: out of memory; *any: there was one. */
-static bool halve(const sheet *q, leaves *l, bool *any)
+static bool halve(const sheet *q, double flat, leaves *l, bool *any)
 {
     const int n = l->n;
     leaf *more = realloc(l->leaf, sizeof *more * (size_t)(2 * n));
@@ -92,13 +93,22 @@ static bool halve(const sheet *q, leaves *l, bool *any)
     if (!more)
         return false;
     l->leaf = more;
+    int32_t *whose = malloc(sizeof *whose * (size_t)n); /* which leaf is halved */
+    if (!whose)
+        return false;
+    int halved = 0;
     for (int i = 0; i < n; i++)
-        if (wants_halving(l, &more[i])) {
-            const leaf whole = more[i];
-            more[i] = leaf_half(q, &whole, 0);
-            more[l->n++] = leaf_half(q, &whole, 1);
-            *any = true;
-        }
+        if (wants_halving(l, flat, &more[i]))
+            whose[halved++] = i;
+#pragma omp parallel for schedule(static) if (halved > AT_FIRST)
+    for (int k = 0; k < halved; k++) {
+        const leaf whole = more[whose[k]];
+        more[whose[k]] = leaf_half(q, &whole, 0);
+        more[n + k] = leaf_half(q, &whole, 1);
+    }
+    free(whose);
+    l->n = n + halved;
+    *any = halved > 0;
     return true;
 }
 
@@ -111,7 +121,7 @@ static bool has_bounds(const leaves *l)
     return l->radius > 1e-10 * vec3_length(l->centre) && l->radius < HUGE_VAL;
 }
 
-bool leaves_of(const sheet *q, leaves *l)
+bool leaves_of(const sheet *q, double flat, leaves *l)
 {
     *l = (leaves){.leaf = malloc(sizeof *l->leaf * (size_t)q->parts)};
     bool good = l->leaf, any = true;
@@ -119,7 +129,7 @@ bool leaves_of(const sheet *q, leaves *l)
         l->leaf[l->n++] = leaf_of(q, part, q->u, q->w);
     while (good && any && l->n < AT_MOST) {
         measure(l);
-        good = halve(q, l, &any);
+        good = halve(q, flat, l, &any);
     }
     if (good) {
         measure(l);
@@ -151,7 +161,7 @@ leaf_answer leaf_meets(const leaf *f, vec3 r, vec3 s, double lo, double hi, doub
     *a = *b = 0;
     if (!(fabs(det) > 2 * (f->ea * lBs + f->eb * lsA + f->ea * f->eb * sqrt(s2))))
         return LEAF_OPEN;
-    *a = fmin(fmax(across / det, -1), 1);
-    *b = fmin(fmax(down / det, -1), 1);
+    *a = lesser(greater(across / det, -1), 1);
+    *b = lesser(greater(down / det, -1), 1);
     return LEAF_ONCE;
 }

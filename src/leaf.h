@@ -22,7 +22,8 @@ typedef struct leaf {
 /* The leaf over a range. */
 leaf leaf_of(const sheet *q, int32_t part, const double u[2], const double w[2]);
 
-/* Its half, of two: `which` is 0 or 1; across the direction in which it is longer. */
+/* Its half, of two: `which` is 0 or 1; across the direction in which it is longer, or, where that
+ * is not known, in which it has more of the sheet's range. */
 leaf leaf_half(const sheet *q, const leaf *f, int which);
 
 /* How far from its middle it reaches at most. */
@@ -36,8 +37,9 @@ typedef struct leaves {
     double radius;
 } leaves;
 
-/* False: out of memory, or Q has no bounds, when n is 0. leaves_free in either case. */
-bool leaves_of(const sheet *q, leaves *out);
+/* flat: by how much, in radians or as a share, Qu and Qw may change within a leaf that is not very small. False: out of memory, or Q
+ * has no bounds, when n is 0. leaves_free in either case. */
+bool leaves_of(const sheet *q, double flat, leaves *out);
 void leaves_free(leaves *l);
 
 /* A ray against a leaf. The ray is r + s t, lo <= t <= hi. */

@@ -18,6 +18,13 @@ typedef struct perturb_methods {
     /* P at (u,w); order 1: also Pu and Pw; order 2: also Puu, Puw and Pww. A stage: n lanes, no allocation, reentrant. */
     void (*eval)(const perturb *p, int n, const real *u, const real *w, int order, heights *h);
 
+    /* P, Pu and Pw at up to EXPR_BATCH places, in double: the rough surface as it is between any two places, so that a map's slopes are
+     * those of its bilinear cells. */
+    void (*jets)(const perturb *p, int n, const double *u, const double *w, expr_jets *out);
+
+    /* What these can be over a box of (u,w): Lipschitz bounds, as expr_range_gradient's. */
+    void (*bound)(const perturb *p, const double u[2], const double w[2], expr_bounds *out);
+
     void (*free)(perturb *p);
 } perturb_methods;
 

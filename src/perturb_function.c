@@ -1,6 +1,8 @@
 /* P from an expression in u and w, with exact partials by forward-mode differentiation (expr.h). */
 #include "perturb.h"
 
+#include "vec3.h"
+
 #include <stdlib.h>
 
 typedef struct function {
@@ -40,15 +42,44 @@ static void function_eval(const perturb *base, int n, const real *u, const real 
     }
 }
 
+static void function_jets(const perturb *base, int n, const double *u, const double *w, expr_jets *out)
+{
+    const function *p = (const function *)base;
+    const double scale = p->scale;
+    expr_eval(p->f, n, u, w, 1, out);
+    for (int i = 0; i < n; i++) {
+        out->v[i] *= scale;
+        out->u[i] *= scale;
+        out->w[i] *= scale;
+    }
+}
+
+/* scale times a range, 0 for a scale of 0 */
+static void scaled(double scale, double range[2])
+{
+    const double a = scale == 0 ? 0 : scale * range[0], b = scale == 0 ? 0 : scale * range[1];
+    range[0] = lesser(a, b);
+    range[1] = greater(a, b);
+}
+
+static void function_bound(const perturb *base, const double u[2], const double w[2], expr_bounds *out)
+{
+    const function *p = (const function *)base;
+    expr_range_gradient(p->f, u[0], u[1], w[0], w[1], out);
+    scaled(p->scale, out->v);
+    scaled(p->scale, out->u);
+    scaled(p->scale, out->w);
+}
+
 static void function_free(perturb *base)
 {
     expr_free(((function *)base)->f);
     free(base);
 }
 
-static const perturb_methods function_methods = {"function", function_eval, function_free};
+static const perturb_methods function_methods = {"function", function_eval, function_jets, function_bound, function_free};
 
-static double widest(const double range[2], double so_far) { return fmax(so_far, fmax(fabs(range[0]), fabs(range[1]))); }
+static double widest(const double range[2], double so_far) { return greater(so_far, greater(fabs(range[0]), fabs(range[1]))); }
 
 /* Where part i of n of an extent begins, which is where part i - 1 ends. */
 static double part(const double extent[2], int i, int n)
@@ -70,8 +101,8 @@ static void function_bounds(const expr *f, const double u[2], const double w[2],
         for (int i = 0; i < nu; i++) {
             expr_bounds b;
             expr_range_gradient(f, part(u, i, nu), part(u, i + 1, nu), part(w, j, nw), part(w, j + 1, nw), &b);
-            P[0] = fmin(P[0], b.v[0]);
-            P[1] = fmax(P[1], b.v[1]);
+            P[0] = lesser(P[0], b.v[0]);
+            P[1] = greater(P[1], b.v[1]);
             slope[0] = widest(b.u, slope[0]);
             slope[1] = widest(b.w, slope[1]);
         }

@@ -30,6 +30,94 @@ static void map_eval(const perturb *base, int n, const real *u, const real *w, i
         table_three(&m->grid, m->table[PUU_PUW_PWW], n, at, a, b, h->Puu, h->Puw, h->Pww);
 }
 
+/* The cell of a coordinate x among n samples, and where in it. *k, samples a unit, becomes 0 beyond an end. */
+static int cell(double x, int n, int repeat, double *fraction, double *k)
+{
+    *k = repeat || (x >= 0 && x <= n) ? *k : 0;
+    const double y = fmin(fmax(repeat ? x - floor(x / n) * n : x, 0), n);
+    const int i = y < n ? (int)y : n - 1;
+    *fraction = y - i;
+    return i;
+}
+
+static void map_jets(const perturb *base, int n, const double *u, const double *w, expr_jets *out)
+{
+    const map *m = (const map *)base;
+    const table_grid *g = &m->grid;
+    for (int i = 0; i < n; i++) {
+        double a, b, ku = (double)g->ku, kw = (double)g->kw;
+        const int column = cell(u[i] * ku + (double)g->ou, g->columns, g->repeat, &a, &ku);
+        const int row = cell(w[i] * kw + (double)g->ow, g->rows, g->repeat, &b, &kw);
+        const real *p = m->table[P_PU_PW] + ((size_t)row * (size_t)(g->columns + 1) + (size_t)column) * TABLE_VALUES;
+        const real *q = p + (size_t)(g->columns + 1) * TABLE_VALUES;
+        const double p0 = (double)p[0], p1 = (double)p[TABLE_VALUES], q0 = (double)q[0], q1 = (double)q[TABLE_VALUES];
+        const double left = p0 + (q0 - p0) * b, right = p1 + (q1 - p1) * b;
+        out->v[i] = left + (right - left) * a;
+        out->u[i] = (right - left) * ku;
+        out->w[i] = ((q0 - p0) + ((q1 - p1) - (q0 - p0)) * a) * kw;
+    }
+}
+
+/* The cells that a range of (u,w) comes to along one axis: `first` and how many, wrapped as they are looked up; all of them where they
+ * are many, 0 where it may lie beyond an end and P be level there. */
+typedef struct cells {
+    int first, n;
+    bool beyond;
+} cells;
+
+static cells cells_over(const double x[2], double k, double o, int n, int repeat)
+{
+    const double a = fmin(x[0] * k, x[1] * k) + o, b = fmax(x[0] * k, x[1] * k) + o, air = 1e-12 * (fabs(a) + fabs(b) + fabs(o));
+    double lo = floor(a - air), hi = floor(b + air);
+    cells c = {0, n, !repeat && (a - air < 0 || b + air > n)};
+    if (!(hi - lo < n) || !(fabs(lo) < 1e9))
+        return c;
+    if (!repeat) {
+        lo = fmin(fmax(lo, 0), n - 1);
+        hi = fmin(fmax(hi, 0), n - 1);
+    }
+    c.first = (int)(lo - (repeat ? floor(lo / n) * n : 0));
+    c.n = (int)(hi - lo) + 1;
+    return c;
+}
+
+static void widen(double range[2], double x)
+{
+    range[0] = fmin(range[0], x);
+    range[1] = fmax(range[1], x);
+}
+
+/* Over a few cells their samples tell; over many the bounds of the whole are close enough. */
+static void map_bound(const perturb *base, const double u[2], const double w[2], expr_bounds *out)
+{
+    enum { FEW = 1024 };
+    const map *m = (const map *)base;
+    const table_grid *g = &m->grid;
+    const double ku = (double)g->ku, kw = (double)g->kw, Pu = (double)base->Pu_max, Pw = (double)base->Pw_max;
+    const cells c = cells_over(u, ku, (double)g->ou, g->columns, g->repeat), r = cells_over(w, kw, (double)g->ow, g->rows, g->repeat);
+    *out = (expr_bounds){{(double)base->Pmin, (double)base->Pmax}, {-Pu, Pu}, {-Pw, Pw}};
+    if ((double)c.n * r.n > FEW)
+        return;
+    *out = (expr_bounds){{HUGE_VAL, -HUGE_VAL}, {HUGE_VAL, -HUGE_VAL}, {HUGE_VAL, -HUGE_VAL}};
+    for (int j = 0; j < r.n; j++)
+        for (int i = 0; i < c.n; i++) {
+            const size_t row = (size_t)((r.first + j) % g->rows), column = (size_t)((c.first + i) % g->columns);
+            const real *p = m->table[P_PU_PW] + (row * (size_t)(g->columns + 1) + column) * TABLE_VALUES;
+            const real *q = p + (size_t)(g->columns + 1) * TABLE_VALUES;
+            const double p0 = (double)p[0], p1 = (double)p[TABLE_VALUES], q0 = (double)q[0], q1 = (double)q[TABLE_VALUES];
+            widen(out->v, fmin(fmin(p0, p1), fmin(q0, q1)));
+            widen(out->v, fmax(fmax(p0, p1), fmax(q0, q1)));
+            widen(out->u, (p1 - p0) * ku);
+            widen(out->u, (q1 - q0) * ku);
+            widen(out->w, (q0 - p0) * kw);
+            widen(out->w, (q1 - p1) * kw);
+        }
+    if (c.beyond)
+        widen(out->u, 0);
+    if (r.beyond)
+        widen(out->w, 0);
+}
+
 static void map_free(perturb *base)
 {
     map *m = (map *)base;
@@ -38,7 +126,7 @@ static void map_free(perturb *base)
     free(m);
 }
 
-static const perturb_methods map_methods = {"map", map_eval, map_free};
+static const perturb_methods map_methods = {"map", map_eval, map_jets, map_bound, map_free};
 
 /* The tables. ku, kw: samples per u and per w, for the chain rule. */
 static void map_differences(map *m, const image *s, const map_layout *l, double ku, double kw)

@@ -16,25 +16,33 @@
 
 static inline vec3 get(const vec3s *v, int i) { return (vec3){(double)v->x[i], (double)v->y[i], (double)v->z[i]}; }
 
-static void take(const quest *k, int n, int32_t id, hits *h)
+static void take(const quest *k, int n, int32_t id, hits *h, quest_counts *c)
 {
+    c->looks += k->looks;
     for (int i = 0; i < n; i++) {
         const real t = (real)(k->to[i] + k->start[i]);
         if (k->found[i] && t > 0 && t < h->t[i]) {
             h->t[i] = t;
             h->id[i] = id;
+            c->unsure += k->unsure[i];
         }
     }
 }
 
-static void searched_hit(const surface *base, int n, const rays *x, int32_t id, hits *h)
+void searched_hits(const searched *f, int n, const rays *x, int32_t id, hits *h, quest_counts *c)
 {
     quest k;
-    k.f = (const searched *)base;
+    quest_begin(&k, f, false);
     for (int i = 0; i < n; i++)
         quest_add(&k, i, get(&x->r, i), get(&x->s, i), 0, (double)h->t[i]);
     quest_run(&k, n);
-    take(&k, n, id, h);
+    take(&k, n, id, h, c);
+}
+
+static void searched_hit(const surface *base, int n, const rays *x, int32_t id, hits *h)
+{
+    quest_counts c = {0};
+    searched_hits((const searched *)base, n, x, id, h, &c);
 }
 
 static void searched_locate(const surface *base, int n, const rays *x, const real *t, int32_t *part, real *u, real *w)
@@ -129,20 +137,30 @@ static void searched_eval(const surface *base, int n, const int32_t *part, const
 
 /* ---- shadows ---- */
 
-static void put_dark(const quest *k, int n, real *lit)
+static void put_dark(const quest *k, int n, real *lit, quest_counts *c)
 {
+    c->looks += k->looks;
     for (int i = 0; i < n; i++)
-        lit[i] = k->found[i] ? 0 : lit[i];
+        if (k->found[i]) {
+            lit[i] = 0;
+            c->unsure += k->unsure[i];
+        }
+}
+
+void searched_darken(const searched *f, int n, const rays *x, real *lit, quest_counts *c)
+{
+    quest k;
+    quest_begin(&k, f, true);
+    for (int i = 0; i < n; i++) /* what is dark already need not be searched */
+        quest_add(&k, i, get(&x->r, i), get(&x->s, i), 0, lit[i] > 0 ? 1 : -1);
+    quest_run(&k, n);
+    put_dark(&k, n, lit, c);
 }
 
 static void searched_occlude(const surface *base, int n, const rays *x, real *lit)
 {
-    quest k;
-    k.f = (const searched *)base;
-    for (int i = 0; i < n; i++) /* what is dark already need not be searched */
-        quest_add(&k, i, get(&x->r, i), get(&x->s, i), 0, lit[i] > 0 ? 1 : -1);
-    quest_run(&k, n);
-    put_dark(&k, n, lit);
+    quest_counts c = {0};
+    searched_darken((const searched *)base, n, x, lit, &c);
 }
 
 /* Rays that start on the surface itself: each is moved onto it as double has it, Q(u,w). Then its own root is t = 0 but for the error that
@@ -175,15 +193,14 @@ static void depart(const searched *f, int n, const vec3s *at, const vec3s *s, co
     }
 }
 
-static void searched_hit_own(const surface *base, int n, const rays *x, const starts *from, int32_t id, hits *h)
+void searched_hits_own(const searched *f, int n, const rays *x, const starts *from, int32_t id, hits *h, quest_counts *c)
 {
-    const searched *f = (const searched *)base;
     departures d;
     vec3s at = {0}, s = {0};
     int32_t part[LANES] = {0};
     int own = 0;
     quest k;
-    k.f = f;
+    quest_begin(&k, f, false);
     for (int i = 0; i < n; i++)
         if (from->id[i] == id) {
             part[own] = from->part[i];
@@ -199,22 +216,33 @@ static void searched_hit_own(const surface *base, int n, const rays *x, const st
         own += here;
     }
     quest_run(&k, n);
-    take(&k, n, id, h);
+    take(&k, n, id, h, c);
 }
 
-static void searched_occlude_own(const surface *base, int n, const rays *x, const int32_t *part, real *lit)
+static void searched_hit_own(const surface *base, int n, const rays *x, const starts *from, int32_t id, hits *h)
 {
-    const searched *f = (const searched *)base;
+    quest_counts c = {0};
+    searched_hits_own((const searched *)base, n, x, from, id, h, &c);
+}
+
+void searched_darken_own(const searched *f, int n, const rays *x, const int32_t *part, real *lit, quest_counts *c)
+{
     departures d;
     quest k;
-    k.f = f;
+    quest_begin(&k, f, true);
     depart(f, n, &x->r, &x->s, part, &d);
     for (int i = 0; i < n; i++) {
         const vec3 s = vec3_sub(vec3_add(get(&x->r, i), get(&x->s, i)), d.r[i]); /* to the light still */
         quest_add(&k, i, d.r[i], s, d.beyond[i] / vec3_length(s), lit[i] > 0 ? 1 : -1);
     }
     quest_run(&k, n);
-    put_dark(&k, n, lit);
+    put_dark(&k, n, lit, c);
+}
+
+static void searched_occlude_own(const surface *base, int n, const rays *x, const int32_t *part, real *lit)
+{
+    quest_counts c = {0};
+    searched_darken_own((const searched *)base, n, x, part, lit, &c);
 }
 
 static void searched_extent(const surface *base, int part, double u[2], double w[2])
@@ -258,7 +286,7 @@ static void searched_free(surface *base)
 {
     searched *f = (searched *)base;
     bvh_free(f->tree);
-    bvh_free(f->rough);
+    searched_free_rough(f->rough);
     leaves_free(&f->l);
     f->q->is->free(f->q);
     free(f->methods);
@@ -285,7 +313,7 @@ static surface_methods *methods_of(const sheet *q)
     return is;
 }
 
-surface *searched_new(sheet *q)
+searched *searched_make(sheet *q, double flat)
 {
     searched *f = calloc(1, sizeof *f);
     if (!f) {
@@ -296,13 +324,20 @@ surface *searched_new(sheet *q)
     f->base.free = searched_free;
     f->base.rough = &searched_displaced;
     f->base.is = f->methods = methods_of(q);
-    if (f->base.is && leaves_of(q, &f->l))
+    if (f->base.is && leaves_of(q, flat, &f->l))
         f->tree = tree_of(&f->l);
     if (!f->tree) {
         searched_free(&f->base);
         return NULL;
     }
-    return &f->base;
+    return f;
+}
+
+surface *searched_new(sheet *q)
+{
+    const double FLAT = 0.045;
+    searched *f = searched_make(q, FLAT);
+    return f ? &f->base : NULL;
 }
 
 surface *searched_moved(const surface *base, const affine *m)

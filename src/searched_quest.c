@@ -13,17 +13,20 @@
 #include "real.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 enum {
     STEPS = 24,    /* of Newton's iteration */
     DEPTH = 128,   /* of halvings; each takes one place of the stack */
-    HALVINGS = 4096, /* of one leaf for one ray: what has not been told apart then is no hit */
+    HALVINGS = 4096, /* of one leaf for one ray: what has not been told apart then is tried, or no hit */
+    QUEUE = 1024,    /* leaves that wait to be halved */
 };
 
 #define SETTLED 1e-6  /* a step of this share of the range: the next would be of its square */
 #define BESIDE 1e-5   /* by how much of its range a leaf's root may lie beside it: the neighbour finds the same one */
 #define BEYOND 1e-9   /* and at the end of the sheet, where there is no neighbour, or the seam; of the sheet's range */
 #define ROUNDING 1e-14 /* of u and w, likewise: pieces can be so small that it counts */
+#define SHRED (1 / 4096.) /* a piece of this share of the range, of which nothing is proved, is tried */
 #define TINY 1e-10    /* a piece of this share of the sheet's size and place is not halved any more: it is a point */
 
 /* Pairs of a ray and a range that are waiting to be solved, side by side. */
@@ -35,6 +38,7 @@ typedef struct pairs {
     double close_u, close_w; /* steps that are none but for rounding */
     double rx[SHEET_BATCH], ry[SHEET_BATCH], rz[SHEET_BATCH], sx[SHEET_BATCH], sy[SHEET_BATCH], sz[SHEET_BATCH];
     double open[SHEET_BATCH]; /* 1: under way; 0: settled; -1: has left its range for good */
+    bool tried[SHEET_BATCH];  /* that the root is the only one is not proved */
 } pairs;
 
 /* One step of Newton's iteration for each: Qu du + Qw dw - s dt = r + s t - Q, by Cramer's rule. */
@@ -83,10 +87,18 @@ static bool within(double x, double middle, double half, const double sheet_rang
     return out <= BESIDE * half + ROUNDING * all && beyond <= BEYOND * all;
 }
 
+/* A leaf that a ray may meet more than once. */
+typedef struct doubtful {
+    int32_t lane, index;
+    double near; /* t from where on it can be met */
+} doubtful;
+
 typedef struct hunt {
     quest *k;
     pairs p;
     int lane; /* whose ray is in the hierarchy */
+    int waiting;
+    doubtful queue[QUEUE];
 } hunt;
 
 static void solve(hunt *h)
@@ -97,6 +109,7 @@ static void solve(hunt *h)
     for (int step = 0; step < STEPS && any_open(p); step++) {
         q->is->eval(q, p->n, p->part, p->u, p->w, 1, &j);
         newton_step(p, &j);
+        h->k->looks += p->n;
     }
     for (int i = 0; i < p->n; i++) {
         quest *k = h->k;
@@ -105,15 +118,19 @@ static void solve(hunt *h)
         if (p->open[i] == 0 && in && p->t[i] > k->from[lane] && p->t[i] < k->to[lane]) {
             k->to[lane] = p->t[i];
             k->found[lane] = true;
+            k->unsure[lane] = p->tried[i];
+            if (k->any) /* nothing else needs to be met */
+                k->to[lane] = -HUGE_VAL;
         }
     }
     p->n = 0;
 }
 
-static void wait(hunt *h, const leaf *f, double a, double b)
+static void wait(hunt *h, int lane, const leaf *f, double a, double b, bool tried)
 {
     pairs *p = &h->p;
-    const int i = p->n++, lane = h->lane;
+    const int i = p->n++;
+    p->tried[i] = tried;
     const vec3 r = h->k->r[lane], s = h->k->s[lane];
     p->lane[i] = lane;
     p->part[i] = f->part;
@@ -138,18 +155,25 @@ static void take_point(quest *k, int lane, const leaf *f)
     const vec3 s = k->s[lane];
     const double s2 = vec3_dot(s, s), t = vec3_dot(vec3_sub(f->c, k->r[lane]), s) / s2;
     if (t - leaf_size(f) / sqrt(s2) > k->from[lane] && t < k->to[lane]) {
-        k->to[lane] = t;
+        k->to[lane] = k->any ? -HUGE_VAL : t;
         k->found[lane] = true;
+        k->unsure[lane] = false;
     }
 }
 
+/* Nothing is known of a piece that is so small. */
+static bool is_broken(const searched *f, const leaf *piece)
+{
+    return f->broken && piece->ea + piece->eb == HUGE_VAL && piece->u[1] - piece->u[0] < SHRED * (f->q->u[1] - f->q->u[0]) &&
+           piece->w[1] - piece->w[0] < SHRED * (f->q->w[1] - f->q->w[0]);
+}
+
 /* A leaf that the ray may meet more than once: its halves, until each tells. */
-static void descend(hunt *h, const leaf *whole)
+static void descend(hunt *h, int lane, const leaf *whole)
 {
     const searched *f = h->k->f;
     quest *k = h->k;
     const double point = TINY * (f->l.radius + 0.1 * vec3_length(f->l.centre));
-    const int lane = h->lane;
     leaf open[DEPTH];
     int n = 1;
     open[0] = *whole;
@@ -160,13 +184,57 @@ static void descend(hunt *h, const leaf *whole)
             const leaf half = leaf_half(f->q, &one, which);
             const leaf_answer answer = leaf_meets(&half, k->r[lane], k->s[lane], k->from[lane], k->to[lane], &a, &b);
             if (answer == LEAF_ONCE)
-                wait(h, &half, a, b);
+                wait(h, lane, &half, a, b, false);
+            else if (answer == LEAF_OPEN && is_broken(f, &half))
+                wait(h, lane, &half, 0, 0, true);
             else if (answer == LEAF_OPEN && n < DEPTH - 1 && leaf_size(&half) > point)
                 open[n++] = half;
             else if (answer == LEAF_OPEN)
                 take_point(k, lane, &half);
         }
     }
+    while (f->broken && n)
+        wait(h, lane, &open[--n], 0, 0, true);
+}
+
+static int by_lane_and_near(const void *a, const void *b)
+{
+    const doubtful *x = a, *y = b;
+    if (x->lane != y->lane)
+        return x->lane < y->lane ? -1 : 1;
+    return x->near < y->near ? -1 : x->near > y->near;
+}
+
+/* The leaves that wait: of each ray the nearest first, then the next ones as far as no root is nearer. */
+static void halve_all(hunt *h)
+{
+    const quest *k = h->k;
+    const int n = h->waiting;
+    int start[LANES + 1], lanes = 0;
+    solve(h);
+    qsort(h->queue, (size_t)n, sizeof *h->queue, by_lane_and_near);
+    for (int i = 0; i < n; i++)
+        if (i == 0 || h->queue[i].lane != h->queue[i - 1].lane)
+            start[lanes++] = i;
+    start[lanes] = n;
+    for (int round = 0, left = n; left; round++) {
+        left = 0;
+        for (int i = 0; i < lanes; i++) {
+            const doubtful *d = &h->queue[start[i] + round];
+            if (start[i] + round >= start[i + 1] || !(d->near < k->to[d->lane]))
+                continue;
+            descend(h, d->lane, &k->f->l.leaf[d->index]);
+            left++;
+        }
+        solve(h);
+    }
+    h->waiting = 0;
+}
+
+static double near_end(const leaf *f, vec3 r, vec3 s)
+{
+    const double s2 = vec3_dot(s, s), reach = fabs(vec3_dot(f->A, s)) + fabs(vec3_dot(f->B, s)) + f->e * sqrt(s2);
+    return (vec3_dot(vec3_sub(f->c, r), s) - reach) / s2;
 }
 
 static void visit(void *user, int32_t index)
@@ -177,14 +245,23 @@ static void visit(void *user, int32_t index)
     double a, b;
     switch (leaf_meets(f, k->r[h->lane], k->s[h->lane], k->from[h->lane], k->to[h->lane], &a, &b)) {
     case LEAF_ONCE:
-        wait(h, f, a, b);
+        wait(h, h->lane, f, a, b, false);
         break;
     case LEAF_OPEN:
-        descend(h, f);
+        h->queue[h->waiting++] = (doubtful){h->lane, index, near_end(f, k->r[h->lane], k->s[h->lane])};
+        if (h->waiting == QUEUE)
+            halve_all(h);
         break;
     case LEAF_MISSED:
         break;
     }
+}
+
+void quest_begin(quest *k, const searched *f, bool any)
+{
+    k->f = f;
+    k->any = any;
+    k->looks = 0;
 }
 
 void quest_add(quest *k, int i, vec3 r, vec3 s, double from, double to)
@@ -196,7 +273,7 @@ void quest_add(quest *k, int i, vec3 r, vec3 s, double from, double to)
     k->start[i] = start;
     k->from[i] = from - start;
     k->to[i] = to - start;
-    k->found[i] = false;
+    k->found[i] = k->unsure[i] = false;
 }
 
 bool searched_enter(const searched *f, double radius, vec3 r, vec3 s, double *from, double *to, float at[3], float way[3], float *end)
@@ -210,7 +287,7 @@ void quest_run(quest *k, int n)
     const searched *f = k->f;
     hunt h;
     h.k = k;
-    h.p.n = 0;
+    h.p.n = h.waiting = 0;
     h.p.close_u = ROUNDING * (f->q->u[1] - f->q->u[0]);
     h.p.close_w = ROUNDING * (f->q->w[1] - f->q->w[0]);
     for (int i = 0; i < n; i++) {
@@ -220,5 +297,5 @@ void quest_run(quest *k, int n)
         if (searched_enter(f, f->l.radius, k->r[i], k->s[i], &from, &to, r, s, &end))
             bvh_along(f->tree, r, s, end, visit, &h);
     }
-    solve(&h);
+    halve_all(&h);
 }

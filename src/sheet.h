@@ -22,6 +22,11 @@ typedef struct sheet_bounds {
     expr_bounds axis[3];
 } sheet_bounds;
 
+/* The same of Quu, Quw and Qww. */
+typedef struct sheet_bends {
+    expr_bends axis[3];
+} sheet_bends;
+
 typedef struct sheet sheet;
 
 typedef struct sheet_methods {
@@ -31,8 +36,9 @@ typedef struct sheet_methods {
      * beyond the range: what holds there is the same formula. */
     void (*eval)(const sheet *q, int n, const int32_t *part, const double *u, const double *w, int order, sheet_jets *out);
 
-    /* All that Q, Qu and Qw can be over the box. The partials are Lipschitz bounds, as expr_range_gradient's. */
-    void (*bound)(const sheet *q, int part, const double u[2], const double w[2], sheet_bounds *out);
+    /* All that Q, Qu and Qw can be over the box; and, unless it is NULL, in *second what Quu, Quw and Qww can. The partials are
+     * Lipschitz bounds, as expr_range_gradient's. */
+    void (*bound)(const sheet *q, int part, const double u[2], const double w[2], sheet_bounds *out, sheet_bends *second);
 
     void (*free)(sheet *q);
 } sheet_methods;
@@ -49,6 +55,11 @@ sheet *sheet_function(expr *const xyz[3], const double u[2], const double w[2]);
 /* Bicubic Bezier patches, each a part over 0..1 in u and in w, from 16 control points each: point 4 j + i goes with the i-th
  * Bernstein polynomial in u and the j-th in w. Copies them. NULL: out of memory. */
 sheet *sheet_bezier(int patches, const vec3 *point);
+
+/* The rough surface Q + P n/|n| of a sheet, n = Qu x Qw; both must outlive it. It is evaluated to order 1 only, and has no second bounds.
+ * NULL: out of memory. */
+struct perturb;
+sheet *sheet_rough(const sheet *q, const struct perturb *P);
 
 /* The image of a sheet by an affine map. `from` must outlive it. Where the map mirrors, u runs the other way, so that Qu x Qw is the
  * image of that of `from`. NULL: out of memory. */

@@ -83,59 +83,102 @@ static void bezier_eval(const sheet *base, int n, const int32_t *part, const dou
     }
 }
 
-/* The control points of the stretch x0..x1 of a cubic whose own are p[0], p[step], ...: its blossom at x0 and x1. */
-static void stretch(double *p, int step, double x0, double x1)
+/* How the control points of the stretch x0..x1 of a cubic come from its own: m[k] has the share of each in the k-th, the cubic's blossom
+ * with k times x1 and 3 - k times x0. */
+static void stretch(double x0, double x1, double m[4][4])
 {
     const double x[2] = {x0, x1};
-    double c[4], z[4];
-    for (int k = 0; k < 4; k++)
-        c[k] = p[k * step];
-    for (int m = 0; m < 4; m++) { /* m times x1, 3 - m times x0 */
-        double b[4] = {c[0], c[1], c[2], c[3]};
+    for (int k = 0; k < 4; k++) {
+        double b[4] = {1, 0, 0, 0};
         for (int level = 0; level < 3; level++) {
-            const double t = x[level < m];
-            for (int k = 0; k < 3 - level; k++)
-                b[k] = (1 - t) * b[k] + t * b[k + 1];
+            const double t = x[level < k], s = 1 - t;
+            for (int i = level + 1; i > 0; i--)
+                b[i] = s * b[i] + t * b[i - 1];
+            b[0] *= s;
         }
-        z[m] = b[0];
+        memcpy(m[k], b, sizeof b);
     }
-    for (int k = 0; k < 4; k++)
-        p[k * step] = z[k];
 }
 
-static void hold(double range[2], double x, double air)
+/* The piece's control points: of one coordinate, by its stretches along u and along w. */
+static void piece_of(const double *restrict p, double (*restrict a)[4], double (*restrict b)[4], double *restrict z)
 {
-    range[0] = fmin(range[0], x - air);
-    range[1] = fmax(range[1], x + air);
+    double rows[16];
+    for (int j = 0; j < 4; j++)
+        for (int i = 0; i < 4; i++)
+            rows[4 * j + i] = a[i][0] * p[4 * j] + a[i][1] * p[4 * j + 1] + a[i][2] * p[4 * j + 2] + a[i][3] * p[4 * j + 3];
+    for (int j = 0; j < 4; j++)
+        for (int i = 0; i < 4; i++)
+            z[4 * j + i] = b[j][0] * rows[i] + b[j][1] * rows[4 + i] + b[j][2] * rows[8 + i] + b[j][3] * rows[12 + i];
+}
+
+static const double nothing[2] = {HUGE_VAL, -HUGE_VAL};
+
+static void hold(double range[2], double x)
+{
+    range[0] = x < range[0] ? x : range[0];
+    range[1] = x > range[1] ? x : range[1];
+}
+
+static void finish(double range[2], double k, double air)
+{
+    range[0] = k * (range[0] - air);
+    range[1] = k * (range[1] + air);
+}
+
+/* Quu, Quw and Qww in the hulls of second differences, as below. */
+static void bezier_bends(const double p[16], double air, double du, double dw, expr_bends *z)
+{
+    double uu[2] = {nothing[0], nothing[1]}, uw[2] = {nothing[0], nothing[1]}, ww[2] = {nothing[0], nothing[1]};
+    for (int j = 0; j < 4; j++)
+        for (int i = 0; i < 4; i++) {
+            const double *q = p + 4 * j + i;
+            if (i < 2)
+                hold(uu, q[2] - 2 * q[1] + q[0]);
+            if (i < 3 && j < 3)
+                hold(uw, q[5] - q[4] - q[1] + q[0]);
+            if (j < 2)
+                hold(ww, q[8] - 2 * q[4] + q[0]);
+        }
+    finish(uu, 6 / (du * du), 4 * air);
+    finish(uw, 9 / (du * dw), 4 * air);
+    finish(ww, 6 / (dw * dw), 4 * air);
+    *z = (expr_bends){{uu[0], uu[1]}, {uw[0], uw[1]}, {ww[0], ww[1]}};
 }
 
 /* Q is in the hull of the control points of the piece, Qu and Qw in those of their differences. The air is more than what
  * some thirty roundings come to. */
-static void bezier_bound(const sheet *base, int part, const double u[2], const double w[2], sheet_bounds *out)
+static void bezier_bound(const sheet *base, int part, const double u[2], const double w[2], sheet_bounds *out, sheet_bends *second)
 {
     const bezier *q = (const bezier *)base;
+    double a[4][4], b[4][4];
+    stretch(u[0], u[1], a);
+    stretch(w[0], w[1], b);
     for (int k = 0; k < 3; k++) {
         expr_bounds *z = &out->axis[k];
+        const double *all = q->axis[k][part];
         net p;
         double most = 0;
-        memcpy(p, q->axis[k][part], sizeof p);
         for (int i = 0; i < 16; i++)
-            most = fmax(most, fabs(p[i]));
-        for (int j = 0; j < 4; j++)
-            stretch(p + 4 * j, 1, u[0], u[1]);
-        for (int i = 0; i < 4; i++)
-            stretch(p + i, 4, w[0], w[1]);
+            most = fabs(all[i]) > most ? fabs(all[i]) : most;
+        piece_of(all, a, b, p);
         const double air = 1e-14 * most, du = u[1] - u[0], dw = w[1] - w[0];
-        *z = (expr_bounds){{HUGE_VAL, -HUGE_VAL}, {HUGE_VAL, -HUGE_VAL}, {HUGE_VAL, -HUGE_VAL}};
+        double qv[2] = {nothing[0], nothing[1]}, qu[2] = {nothing[0], nothing[1]}, qw[2] = {nothing[0], nothing[1]};
         for (int j = 0; j < 4; j++)
             for (int i = 0; i < 4; i++) {
                 const double here = p[4 * j + i];
-                hold(z->v, here, air);
+                hold(qv, here);
                 if (i < 3)
-                    hold(z->u, 3 * (p[4 * j + i + 1] - here) / du, 6 * air / du);
+                    hold(qu, p[4 * j + i + 1] - here);
                 if (j < 3)
-                    hold(z->w, 3 * (p[4 * j + i + 4] - here) / dw, 6 * air / dw);
+                    hold(qw, p[4 * j + i + 4] - here);
             }
+        finish(qv, 1, air);
+        finish(qu, 3 / du, 2 * air);
+        finish(qw, 3 / dw, 2 * air);
+        *z = (expr_bounds){{qv[0], qv[1]}, {qu[0], qu[1]}, {qw[0], qw[1]}};
+        if (second)
+            bezier_bends(p, air, du, dw, &second->axis[k]);
     }
 }
 

@@ -17,12 +17,15 @@ static void function_eval(const sheet *base, int n, const int32_t *part, const d
         expr_eval(q->axis[k], n, u, w, order, &out->axis[k]);
 }
 
-static void function_bound(const sheet *base, int part, const double u[2], const double w[2], sheet_bounds *out)
+static void function_bound(const sheet *base, int part, const double u[2], const double w[2], sheet_bounds *out, sheet_bends *second)
 {
     const function *q = (const function *)base;
     (void)part;
     for (int k = 0; k < 3; k++)
-        expr_range_gradient(q->axis[k], u[0], u[1], w[0], w[1], &out->axis[k]);
+        if (second)
+            expr_range_bend(q->axis[k], u[0], u[1], w[0], w[1], &out->axis[k], &second->axis[k]);
+        else
+            expr_range_gradient(q->axis[k], u[0], u[1], w[0], w[1], &out->axis[k]);
 }
 
 static void function_free(sheet *base)

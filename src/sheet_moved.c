@@ -57,26 +57,33 @@ static void mix(const double m[3], double o, double *const v[3], double turn, do
         const double a = m[k] * turn * v[k][0], b = m[k] * turn * v[k][1];
         if (m[k] == 0)
             continue;
-        lo += fmin(a, b);
-        hi += fmax(a, b);
-        size += fmax(fabs(a), fabs(b));
+        lo += lesser(a, b);
+        hi += greater(a, b);
+        size += greater(fabs(a), fabs(b));
     }
     const bool known = size < HUGE_VAL;
     to[0] = known ? lo - 1e-15 * size : -HUGE_VAL;
     to[1] = known ? hi + 1e-15 * size : HUGE_VAL;
 }
 
-static void moved_bound(const sheet *base, int part, const double u[2], const double w[2], sheet_bounds *out)
+static void moved_bound(const sheet *base, int part, const double u[2], const double w[2], sheet_bounds *out, sheet_bends *second)
 {
     const moved *q = (const moved *)base;
-    const double a = q->ends + q->turn * u[0], b = q->ends + q->turn * u[1], there[2] = {fmin(a, b), fmax(a, b)};
+    const double a = q->ends + q->turn * u[0], b = q->ends + q->turn * u[1], there[2] = {lesser(a, b), greater(a, b)};
     sheet_bounds f;
-    q->from->is->bound(q->from, part, there, w, &f);
+    sheet_bends g;
+    q->from->is->bound(q->from, part, there, w, &f, second ? &g : NULL);
     expr_bounds *x = &f.axis[0], *y = &f.axis[1], *z = &f.axis[2];
+    expr_bends *a2 = &g.axis[0], *b2 = &g.axis[1], *c2 = &g.axis[2];
     for (int k = 0; k < 3; k++) {
         mix(q->M[k], q->o[k], (double *const[]){x->v, y->v, z->v}, 1, out->axis[k].v);
         mix(q->M[k], 0, (double *const[]){x->u, y->u, z->u}, q->turn, out->axis[k].u);
         mix(q->M[k], 0, (double *const[]){x->w, y->w, z->w}, 1, out->axis[k].w);
+        if (second) {
+            mix(q->M[k], 0, (double *const[]){a2->uu, b2->uu, c2->uu}, 1, second->axis[k].uu);
+            mix(q->M[k], 0, (double *const[]){a2->uw, b2->uw, c2->uw}, q->turn, second->axis[k].uw);
+            mix(q->M[k], 0, (double *const[]){a2->ww, b2->ww, c2->ww}, 1, second->axis[k].ww);
+        }
     }
 }
 

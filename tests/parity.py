@@ -415,6 +415,7 @@ SHEETS_DISPLACED = {
     "waves, mirrored": (f"{TABLE}\n    transform: {MOVES['mirrored']}", "{function: '0.02*sin(9*u + 1)*sin(9*w)'}"),
     "moebius": (SHEETS["moebius"], "{function: '0.02*sin(9*u)*sin(9*w)'}"),
     "saddle": (SHEETS["saddle"], "{function: '0.03*sin(18*u)*sin(18*w)'}"),
+    "teapot": (SHEETS["teapot"], "{function: '0.02*sin(3*pi*u)*sin(3*pi*w)'}"),  # 0 where patches join
 }
 
 # ---- all of them ----

@@ -368,9 +368,13 @@ static bool inside(const double range[2], double x) { return isnan(x) || (range[
 
 static void check_gradient_in(const char *text, const expr *e, const double u[2], const double w[2], int *pairs)
 {
-    expr_bounds b;
+    expr_bounds b, same;
+    expr_bends bend;
     double lo, hi;
     expr_range_gradient(e, u[0], u[1], w[0], w[1], &b);
+    expr_range_bend(e, u[0], u[1], w[0], w[1], &same, &bend);
+    assert_memory_equal(&same, &b, sizeof b);
+    assert_true(bend.uu[0] <= bend.uu[1] && bend.uw[0] <= bend.uw[1] && bend.ww[0] <= bend.ww[1]);
     expr_range(e, u[0], u[1], w[0], w[1], &lo, &hi);
     assert_true(b.v[0] == lo && b.v[1] == hi);
     assert_true(b.u[0] <= b.u[1] && b.w[0] <= b.w[1]); /* so none is NaN */
@@ -386,6 +390,9 @@ static void check_gradient_in(const char *text, const expr *e, const double u[2]
         if (!inside(b.u, jet[1]) || !inside(b.w, jet[2]))
             fail_msg("%s at %.17g %.17g: partials %.17g %.17g, outside %.17g .. %.17g, %.17g .. %.17g", text, x, y, jet[1],
                      jet[2], b.u[0], b.u[1], b.w[0], b.w[1]);
+        if (!inside(bend.uu, jet[3]) || !inside(bend.uw, jet[4]) || !inside(bend.ww, jet[5]))
+            fail_msg("%s at %.17g %.17g: %.17g %.17g %.17g, outside %.17g .. %.17g, %.17g .. %.17g, %.17g .. %.17g", text, x, y, jet[3],
+                     jet[4], jet[5], bend.uu[0], bend.uu[1], bend.uw[0], bend.uw[1], bend.ww[0], bend.ww[1]);
         double bound = rise(steepest(b.u), X - x) + rise(steepest(b.w), Y - y);
         if (!isfinite(far) || !isfinite(bound))
             continue;

@@ -124,13 +124,21 @@ static void check_rows(const sheet *q, struct fy_node *rows, double *worst, int 
         }
         /* and what is bounded holds it, over a box about the place */
         sheet_bounds b;
+        sheet_bends c;
         const double u[2] = {want[0] - 0.01, want[0] + 0.03}, w[2] = {want[1] - 0.02, want[1] + 0.01};
-        q->is->bound(q, 0, u, w, &b);
+        q->is->bound(q, 0, u, w, &b, &c);
         for (int k = 0; k < 9; k++) {
             const expr_bounds *a = &b.axis[k % 3];
             const double *range = k < 3 ? a->v : k < 6 ? a->u : a->w;
             assert_true(range[0] <= want[2 + k] && want[2 + k] <= range[1]);
             assert_true(range[1] - range[0] < 3);
+        }
+        for (int k = 0; k < 9; k++) {
+            const expr_bends *a = &c.axis[k % 3];
+            const double *range = k < 3 ? a->uu : k < 6 ? a->uw : a->ww;
+            const double zero = 1e-48; /* what 50 digits leave of 0 */
+            assert_true(range[0] <= want[11 + k] + zero && want[11 + k] <= range[1] + zero);
+            assert_true(range[1] - range[0] < 20);
         }
         ++*seen;
     }
@@ -515,6 +523,73 @@ static perturb *bumps(double A, const double u[2], const double w[2])
     return perturb_function(expr_parse("sin(2*u+w) + cos(3*w-u)/2 + 0.3", &wrong), A, u, w);
 }
 
+/* What it says of a rough surface over a box holds at all its places, and is close where n does not turn at once; its partials are how it
+ * changes. */
+static void check_rough(const sheet *q, const perturb *P, int *boxes, int *close)
+{
+    enum { STEP = 3 }; /* a place, and one a little farther along u and along w */
+    sheet *x = sheet_rough(q, P);
+    assert_non_null(x);
+    for (int k = 0; k < 300; k++) {
+        const double size = k % 3 ? 0.003 : 0.03, h = 1e-6, ru = size * (q->u[1] - q->u[0]), rw = size * (q->w[1] - q->w[0]);
+        const double u0 = random_in(q->u[0], q->u[1] - ru), w0 = random_in(q->w[0], q->w[1] - rw), u[2] = {u0, u0 + ru}, w[2] = {w0, w0 + rw};
+        const int32_t part = (int32_t)random_in(0, q->parts - 1e-9), parts[STEP] = {part, part, part};
+        sheet_bounds b;
+        x->is->bound(x, part, u, w, &b, NULL);
+        *boxes += 1;
+        *close += b.axis[0].u[1] - b.axis[0].u[0] < HUGE_VAL;
+        for (int i = 0; i < 20; i++) {
+            const double a = random_in(u[0], u[1]), c = random_in(w[0], w[1]), U[STEP] = {a, a + h * ru, a}, W[STEP] = {c, c, c + h * rw};
+            sheet_jets j;
+            x->is->eval(x, STEP, parts, U, W, 1, &j);
+            for (int axis = 0; axis < 3; axis++) {
+                const expr_jets *z = &j.axis[axis];
+                const expr_bounds *in = &b.axis[axis];
+                assert_true(in->v[0] <= z->v[0] && z->v[0] <= in->v[1]);
+                assert_true(in->u[0] <= z->u[0] && z->u[0] <= in->u[1] && in->w[0] <= z->w[0] && z->w[0] <= in->w[1]);
+                /* the step is of second order in h, and its roundings count by 1/h; at poles partials are steep */
+                const double du = (z->v[1] - z->v[0]) / (h * ru), dw = (z->v[2] - z->v[0]) / (h * rw);
+                const double most = 1 + fabs(z->u[0]) + fabs(z->w[0]), off = 1e-3 * most + 1e-14 / (h * fmin(ru, rw));
+                assert_true(in->u[1] - in->u[0] > 1 || (fabs(du - z->u[0]) < off && fabs(dw - z->w[0]) < off));
+            }
+        }
+    }
+    x->is->free(x);
+}
+
+static void rough_bounds(void **state)
+{
+    (void)state;
+    static float samples[12] = {0, 0.3f, 0.1f, 0.5f, 0.2f, 0.7f, 0.4f, 0.1f, 0.9f, 0.2f, 0.6f, 0.3f};
+    const image map = {4, 3, samples};
+    sheet *q[] = {
+        function("(1.2 + w*cos(u/2))*cos(u)", "w*sin(u/2)", "(1.2 + w*cos(u/2))*sin(u)", 0, 2 * pi, -0.4, 0.4),
+        function("u", "0.3*abs(u - 0.1) + 0.2*sin(3*w)", "w", -1, 1, -1.1, 1.1),
+        function("sin(w)*cos(u)", "cos(w)", "sin(w)*sin(u)", -pi, pi, 0, pi),
+    };
+    for (int k = 0; k < 3; k++) {
+        const affine mirror = {{-1, 0.2, 0}, {0, 1.5, 0}, {0.3, 0, 1}, {1, 2, 3}};
+        sheet *moved = sheet_moved(q[k], &mirror);
+        expr_error wrong;
+        perturb *P[] = {
+            bumps(0.04, q[k]->u, q[k]->w),
+            perturb_function(expr_parse("noise(7*u,5*w)", &wrong), 0.05, q[k]->u, q[k]->w),
+            perturb_map(&map, &(map_layout){{1.3, 0.7}, {0.1, 0}, MAP_REPEAT, false, 0.05, 0.2}),
+            perturb_map(&map, &(map_layout){{1.3, 0.7}, {0.1, 0}, MAP_CLAMP, true, 0.05, 0.2}),
+        };
+        int boxes = 0, close = 0;
+        for (int i = 0; i < 4; i++) {
+            check_rough(q[k], P[i], &boxes, &close);
+            check_rough(moved, P[i], &boxes, &close);
+            perturb_free(P[i]);
+        }
+        print_message("%d boxes, %d with bounds of slopes\n", boxes, close);
+        assert_true(close > 0.85 * boxes);
+        moved->is->free(moved);
+        q[k]->is->free(q[k]);
+    }
+}
+
 /* The displaced torus is that which has closed forms for its feet; so are its shadows. */
 static void displaced_as_closed_forms(void **state)
 {
@@ -635,6 +710,7 @@ int main(void)
         cmocka_unit_test(own_shadows),     cmocka_unit_test(brute_force),             cmocka_unit_test(no_cracks),
         cmocka_unit_test(degenerate_edges), cmocka_unit_test(odd_rays),               cmocka_unit_test(each_ray_by_itself),
         cmocka_unit_test(refused),         cmocka_unit_test(displaced_as_closed_forms),
+        cmocka_unit_test(rough_bounds),
 #ifdef KAGE_DOUBLE
         cmocka_unit_test(error_slopes),
 #endif
