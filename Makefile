@@ -15,7 +15,7 @@ BENCH    ?= normal
 PREFIX   ?= /usr/local
 Q         = $(if $(V),,@)
 
-PKGS      = libpng libfyaml OpenEXR
+PKGS      = libpng libfyaml OpenEXR assimp
 WARNINGS  = -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wdouble-promotion -Wmissing-prototypes \
             -Wstrict-prototypes -Wwrite-strings -Wundef
 # No -ffast-math: these three keep sums as written (the same bytes on every processor), while loops vectorise.
@@ -38,7 +38,7 @@ PKG_CFLAGS := $(patsubst -I%,-isystem %,$(shell pkg-config --cflags $(PKGS) 2>/d
 # Embree 4 or 3, whichever has its headers here: it need not have a pkg-config file.
 EMBREE     := $(firstword $(foreach v,4 3,$(shell printf '\043include <embree$(v)/rtcore.h>\n' | $(CC) -fsyntax-only -x c - 2>/dev/null && echo $(v))))
 DEFINES    += -DKAGE_EMBREE=$(or $(EMBREE),0)
-PKG_LIBS   := $(shell pkg-config --libs-only-L OpenEXR 2>/dev/null) -lOpenEXRCore $(shell pkg-config --libs libpng libfyaml 2>/dev/null)
+PKG_LIBS   := $(shell pkg-config --libs-only-L OpenEXR 2>/dev/null) -lOpenEXRCore $(shell pkg-config --libs libpng libfyaml assimp 2>/dev/null)
 override CFLAGS  += $(STANDARD) $(OPTIMISE) -fopenmp $(WARNINGS) $(DEFINES) $(SANITIZER) $(PKG_CFLAGS) -MMD -MP
 override LDFLAGS += -fopenmp $(SANITIZER)
 LIBS       = $(PKG_LIBS) -lembree$(or $(EMBREE),3) -lm

@@ -38,8 +38,17 @@ typedef void bvh_visit(void *user, int32_t box);
 bvh *bvh_new(int n, const bvh_box *box);
 void bvh_free(bvh *b);
 
+/* The same for many boxes: tells now and then which share of the work is done. */
+typedef void bvh_watch(void *user, double share);
+bvh *bvh_new_watched(int n, const bvh_box *box, bvh_watch *watch, void *user);
+
 /* The boxes that r + s t, 0 <= t <= end, passes. Reentrant. */
 void bvh_along(const bvh *b, const float r[3], const float s[3], float end, bvh_visit *visit, void *user);
+
+/* The same from near to far, more or less, and no farther than is told: `visit` returns the end from now on, which is `end` or less; below
+ * 0 there is no need to go on. What lies beyond may still be visited. */
+typedef float bvh_shorten(void *user, int32_t box, float end);
+void bvh_toward(const bvh *b, const float r[3], const float s[3], float end, bvh_shorten *visit, void *user);
 
 /* The boxes that are within `radius` of p. */
 void bvh_around(const bvh *b, const float p[3], float radius, bvh_visit *visit, void *user);

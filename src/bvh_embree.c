@@ -25,6 +25,7 @@ typedef struct walk {
     struct RTCIntersectContext context;
 #endif
     bvh_visit *visit;
+    bvh_shorten *shorten;
     void *user;
 } walk;
 
@@ -44,6 +45,15 @@ static void met(const struct RTCOccludedFunctionNArguments *a)
         k->visit(k->user, (int32_t)a->primID);
 }
 
+/* On a walk that ends sooner: no hit is told either, but where the ray ends now. */
+static void met_toward(const struct RTCIntersectFunctionNArguments *a)
+{
+    const walk *k = (const walk *)(const void *)a->context;
+    struct RTCRay *x = &((struct RTCRayHit *)(void *)a->rayhit)->ray;
+    if (a->valid[0])
+        x->tfar = k->shorten(k->user, (int32_t)a->primID, x->tfar);
+}
+
 static bool near_one(struct RTCPointQueryFunctionArguments *a)
 {
     const walk *k = a->userPtr;
@@ -51,8 +61,24 @@ static bool near_one(struct RTCPointQueryFunctionArguments *a)
     return false; /* the radius stays */
 }
 
-bvh *bvh_new(int n, const bvh_box *box)
+/* What Embree calls while it builds. */
+typedef struct onlooker {
+    bvh_watch *watch;
+    void *user;
+} onlooker;
+
+static bool look(void *user, double share)
 {
+    const onlooker *k = user;
+    k->watch(k->user, share);
+    return true;
+}
+
+bvh *bvh_new(int n, const bvh_box *box) { return bvh_new_watched(n, box, NULL, NULL); }
+
+bvh *bvh_new_watched(int n, const bvh_box *box, bvh_watch *watch, void *user)
+{
+    onlooker k = {watch, user};
     bvh *b = calloc(1, sizeof *b);
     if (!b)
         return NULL;
@@ -70,11 +96,15 @@ bvh *bvh_new(int n, const bvh_box *box)
     rtcSetGeometryUserData(g, b);
     rtcSetGeometryBoundsFunction(g, bounds, NULL);
     rtcSetGeometryOccludedFunction(g, met);
+    rtcSetGeometryIntersectFunction(g, met_toward);
     rtcCommitGeometry(g);
     rtcAttachGeometry(b->scene, g);
     rtcReleaseGeometry(g);
     rtcSetSceneFlags(b->scene, RTC_SCENE_FLAG_ROBUST);
+    if (watch)
+        rtcSetSceneProgressMonitorFunction(b->scene, look, &k);
     rtcCommitScene(b->scene);
+    rtcSetSceneProgressMonitorFunction(b->scene, NULL, NULL);
     if (rtcGetDeviceError(b->device) != RTC_ERROR_NONE) {
         bvh_free(b);
         return NULL;
@@ -109,6 +139,25 @@ void bvh_along(const bvh *b, const float r[3], const float s[3], float end, bvh_
 #else
     rtcInitIntersectContext(&k.context);
     rtcOccluded1(b->scene, &k.context, &x);
+#endif
+}
+
+void bvh_toward(const bvh *b, const float r[3], const float s[3], float end, bvh_shorten *visit, void *user)
+{
+    walk k = {.shorten = visit, .user = user};
+    struct RTCRayHit x = {.ray = {.org_x = r[0], .org_y = r[1], .org_z = r[2], .dir_x = s[0], .dir_y = s[1], .dir_z = s[2]}};
+    x.ray.tfar = end;
+    x.ray.mask = ~0u;
+    x.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+#if KAGE_EMBREE == 4
+    struct RTCIntersectArguments how;
+    rtcInitIntersectArguments(&how);
+    rtcInitRayQueryContext(&k.context);
+    how.context = &k.context;
+    rtcIntersect1(b->scene, &x, &how);
+#else
+    rtcInitIntersectContext(&k.context);
+    rtcIntersect1(b->scene, &k.context, &x);
 #endif
 }
 

@@ -33,7 +33,7 @@ int command_check(const arguments *a);
 int command_pixel(const arguments *a);
 int command_pov(const arguments *a);
 
-/* The scene of a command line, or NULL with the errors told. */
+/* The scene of a command line, or NULL with the errors told. What was left out of models is told, too, unless it is to be quiet. */
 scene *command_scene(const arguments *a);
 
 /* A path's last name: what pictures and exports tell of it, so that they do not depend on the folder. */
@@ -50,8 +50,11 @@ typedef struct progress {
     bool on;
     double start, shown;
     long pixels;
-    const char *name;
+    const char *name, *what; /* what: is done with a file */
 } progress;
+
+/* The same for a scene's files, which have no pixels: what is done with the file, and its share. */
+void progress_load(void *p, const char *what, double share);
 
 void progress_start(progress *p, bool quiet, const char *name, long pixels);
 void progress_show(void *p, long done, long all);

@@ -94,6 +94,26 @@ static int print_bump(const object *o, const seen *x)
     return warnings;
 }
 
+static void print_some(int n, const char *what)
+{
+    if (n)
+        printf("              %d %s\n", n, what);
+}
+
+static int print_mesh(const shape_spec *f)
+{
+    const mesh_notes *n = &f->found;
+    printf("    model     %s: %d triangles, %s\n", f->file, f->triangles,
+           n->bare == 0 ? "texture coordinates on all" : n->bare == f->triangles ? "no texture coordinates" : "texture coordinates on some");
+    print_some(n->turned, "turned round, as all of their normals are on the other side");
+    print_some(n->bent, "corners' normals turned away from their triangle, replaced by its own");
+    print_some(n->folded, "with the texture mirrored: u beyond its range");
+    print_some(n->spread, "with no area on the texture: spread over 1/4096 of it");
+    if (n->flat)
+        printf("    warning: %d triangles without an area are left out\n", n->flat);
+    return n->flat > 0;
+}
+
 static void print_scene(const scene *s, const seen *all)
 {
     char name[METHOD_NAME_SIZE];
@@ -121,6 +141,8 @@ static void print_scene(const scene *s, const seen *all)
                o->copy_of ? o->copy_of : "", o->moved ? ", transformed" : "", m->name, o->color ? ", color by " : "",
                o->color ? o->color->is->kind : "", o->bump ? ", bump by " : "", o->bump ? o->bump->is->kind : "",
                material_mirrors(m) ? ", mirrors" : "", material_clear(m) ? ", transparent" : "");
+        if (o->shape_said.kind == SHAPE_MESH && !o->copy_of)
+            warnings += print_mesh(&o->shape_said);
         if (o->bump)
             warnings += print_bump(o, &all[i]);
     }

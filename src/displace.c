@@ -46,6 +46,10 @@ STAGE static void gaps(search *restrict s, real *restrict slope)
  * from there. */
 static void within_extent(const ground *f, int n, const int32_t *lane, const feet *p, real *u, real *w)
 {
+    if (f->within) {
+        f->within(f, n, lane, p, u, w);
+        return;
+    }
     for (int i = 0; i < n; i++) {
         double U[2], W[2];
         f->extent(f, lane[i], U, W);
@@ -163,7 +167,8 @@ static void begin(const ground *f, const perturb *P, int n, const rays *x, const
         s->tolerance[k] = 8 * ROUNDING * size;
         s->shortest[k] = real_max((t1[i] - t0[i]) / (real)f->steps, s->tolerance[k] / real_sqrt(bs_dot(d, d)));
         s->side[k] = 0;
-        s->own[k] = own && own[i];
+        /* one whose stretch begins farther on comes from what the shell leaves out */
+        s->own[k] = own && own[i] && t0[i] <= s->shortest[k];
         s->left[k] = !s->own[k];
         s->open[k] = 1;
     }
@@ -176,6 +181,14 @@ static real side_of(const search *s, int i, real slope)
     if (real_abs(s->gap[i]) > s->tolerance[i] && !s->own[i])
         return s->gap[i] > 0 ? R(1) : R(-1);
     return (slope > 0) == (s->own[i] != 0) ? R(1) : R(-1);
+}
+
+/* Where a ray starts on the surface, the gap is what rounding has made of 0: of sums, too, that are not known here, as of a camera far
+ * away. */
+static real tolerance_of(const search *s, int i)
+{
+    const real off = s->own[i] ? 2 * real_abs(s->gap[i]) : 0;
+    return real_max(s->tolerance[i], real_min(off, 8 * s->tolerance[i]));
 }
 
 long displace_search_over(const ground *f, const perturb *P, int n, const rays *x, const real *end, const int32_t *own, real *t,
@@ -192,11 +205,19 @@ long displace_search_over(const ground *f, const perturb *P, int n, const rays *
         for (int i = 0; i < s.n; i++) {
             if (!s.open[i])
                 continue;
+            if (s.side[i] == 0) {
+                s.side[i] = side_of(&s, i, slope[i]);
+                s.tolerance[i] = tolerance_of(&s, i);
+            }
             /* On its way from the surface itself a ray is on its side until it is clearly on the other. */
             real least = s.own[i] ? s.tolerance[i] : 0;
-            if (s.side[i] == 0)
-                s.side[i] = side_of(&s, i, slope[i]);
             real above = s.side[i] * s.gap[i];
+            /* A map's partials are not the slopes of its bilinear surface, so a ray can leave to the other side than they tell: it is
+             * there, and does not turn back. One that has come back to its start turns to it. */
+            if (!s.left[i] && above <= -least && s.side[i] * slope[i] > 0) {
+                s.side[i] = -s.side[i];
+                above = -above;
+            }
             s.left[i] |= above > s.tolerance[i];
             /* At the end of the shell, P = Pmin below it, rounding must not let the ray slip through. */
             bool last = s.t[i] >= s.end[i], touches = last && above <= s.tolerance[i] && s.side[i] * slope[i] < 0;
@@ -217,8 +238,10 @@ long displace_search_over(const ground *f, const perturb *P, int n, const rays *
                 s.open[i] = 0;
                 continue;
             }
-            real safe = real_min(above / s.rate[i], s.reach[i]);
-            s.t[i] = real_min(s.t[i] + real_max(safe, s.shortest[i]), s.end[i]);
+            /* from its start on the surface at first as far as the tolerance allows, then as far again */
+            real safe = real_min(above / s.rate[i], s.reach[i]), away = real_max(s.tolerance[i] / s.rate[i], s.t[i]);
+            safe = real_max(safe, s.left[i] ? s.shortest[i] : real_min(away, s.shortest[i]));
+            s.t[i] = real_min(s.t[i] + safe, s.end[i]);
         }
         if (step % COMPACT == COMPACT - 1)
             compact(&s);
@@ -273,7 +296,7 @@ static void part_extent(const ground *g, int32_t lane, double u[2], double w[2])
 long displace_search(const surface *f, const perturb *P, int part, int n, const rays *x, const real *end, const int32_t *on, real *t,
                      int32_t *found)
 {
-    const part_ground k = {{part_shell, part_foot, part_steep, part_extent, f->is->loose, STEPS}, f, part};
+    const part_ground k = {{part_shell, part_foot, part_steep, part_extent, NULL, f->is->loose, STEPS}, f, part};
     int32_t own[LANES];
     for (int i = 0; i < n; i++)
         own[i] = on && on[i] == part;
@@ -291,29 +314,6 @@ static void keep_nearer(int n, int part, const real *t, const int32_t *found, in
         }
 }
 
-/* The stretch in the shell that a ray from the surface is on ends at the shell's inner side, where it has one (a sphere); beyond that, on
- * the far side, the ray comes to the surface again. */
-static void search_far_side(const surface *f, const perturb *P, int part, int n, const rays *x, const int32_t *on, int32_t id, hits *h,
-                            displace_counts *c)
-{
-    real t0[LANES], t1[LANES], t[LANES], end[LANES];
-    int32_t found[LANES];
-    rays y;
-    f->is->shell(f, part, n, x, h->t, P->Pmin, P->Pmax, t0, t1);
-    for (int i = 0; i < n; i++) {
-        bool open = on[i] == part && h->id[i] != id && t0[i] <= t1[i] && t1[i] < h->t[i];
-        t0[i] = t1[i] + R(1e-3) * (t1[i] - t0[i]);
-        end[i] = open ? h->t[i] - t0[i] : R(-1);
-        t0[i] = open ? t0[i] : 0;
-        lane_set(&y.r, i, lane_at(x, i, t0[i]));
-        lane_set(&y.s, i, lane_get(&x->s, i));
-    }
-    c->heights += displace_search(f, P, part, n, &y, end, NULL, t, found);
-    for (int i = 0; i < n; i++)
-        t[i] += t0[i];
-    keep_nearer(n, part, t, found, id, h, c);
-}
-
 void displace_hit(const surface *f, const perturb *P, int n, const rays *x, const starts *from, int32_t id, hits *h, displace_counts *c)
 {
     real t[LANES];
@@ -327,8 +327,6 @@ void displace_hit(const surface *f, const perturb *P, int n, const rays *x, cons
     for (int part = 0; part < f->is->parts; part++) {
         c->heights += displace_search(f, P, part, n, x, h->t, from ? on : NULL, t, found);
         keep_nearer(n, part, t, found, id, h, c);
-        if (from)
-            search_far_side(f, P, part, n, x, on, id, h, c);
     }
 }
 

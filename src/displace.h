@@ -51,6 +51,8 @@ struct ground {
     void (*steep)(const ground *g, int n, const int32_t *lane, const rays *x, const feet *p, real Pu_max, real Pw_max, real *rate,
                   real *reach);
     void (*extent)(const ground *g, int32_t lane, double u[2], double w[2]);
+    /* Of pieces that are no rectangle in (u,w), in place of `extent`: (u,w) of the nearest place of the piece, the foot's own where it is one. */
+    void (*within)(const ground *g, int n, const int32_t *lane, const feet *p, real *u, real *w);
     bool loose;
     int steps; /* of a search at most: where the bounds are no help it goes on by this share of the shell */
 };

@@ -84,6 +84,7 @@ void filter_light(const tracer *k, int id, bool own, group *g, stats *st)
             a.h.part[i] = 0;
         }
         trace_hit(k, id, a.n, &a.x, &a.from, &a.h, st);
+        memcpy(a.part, a.h.part, sizeof a.part);
         o->shape->is->locate(o->shape, a.n, &a.x, a.h.t, a.part, a.u, a.w);
         if (o->color)
             o->color->is->eval(o->color, a.n, a.u, a.w, &a.color);

@@ -65,12 +65,28 @@ int command_fail(errors *e, int status)
     return status;
 }
 
+/* A model is shown without its triangles that have no area; that is nothing to see, but may be a sign. */
+static void tell_flat(const object *o)
+{
+    const shape_spec *f = &o->shape_said;
+    if (f->kind == SHAPE_MESH && !o->copy_of && f->found.flat)
+        fprintf(stderr, "kage: object %s: %d of the %d triangles in %s have no area; they are left out\n", o->name, f->found.flat,
+                f->triangles + f->found.flat, f->file);
+}
+
 scene *command_scene(const arguments *a)
 {
     errors e = {0};
-    scene *s = scene_read(a->operand[0], a->sets, a->set, &e);
+    progress p;
+    progress_start(&p, a->quiet, base_name(a->operand[0]), 0);
+    const watch w = {progress_load, &p};
+    scene *s = scene_read(a->operand[0], a->sets, a->set, &w, &e);
+    progress_end(&p);
     if (!s)
         command_fail(&e, EXIT_INPUT);
+    const bool tell = !a->quiet && strcmp(a->command, "check") != 0; /* which tells it itself */
+    for (int k = 0; s && tell && k < s->objects; k++)
+        tell_flat(&s->object[k]);
     return s;
 }
 

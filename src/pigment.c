@@ -22,7 +22,7 @@ STAGE static void checker_eval(const pigment *base, int n, const real *restrict 
     }
 }
 
-static const pigment_methods checker_methods = {"checker", checker_eval};
+static const pigment_methods checker_methods = {"checker", checker_eval, NULL};
 
 static void store(real to[3], vec3 v)
 {
@@ -110,7 +110,7 @@ static void nearest_eval(const pigment *base, int n, const real *u, const real *
     table_three(&p->grid, p->texels->v, n, at, a, b, color->x, color->y, color->z);
 }
 
-static const pigment_methods bilinear_methods = {"image", bilinear_eval}, nearest_methods = {"image", nearest_eval};
+static const pigment_methods bilinear_methods = {"image", bilinear_eval, NULL}, nearest_methods = {"image", nearest_eval, NULL};
 
 pigment *pigment_image(const texels *t, const map_layout *l, bool nearest)
 {
@@ -127,4 +127,10 @@ pigment *pigment_image(const texels *t, const map_layout *l, bool nearest)
     return &p->base;
 }
 
-void pigment_free(pigment *p) { free(p); }
+void pigment_free(pigment *p)
+{
+    if (p && p->is->free)
+        p->is->free(p);
+    else
+        free(p);
+}

@@ -13,6 +13,8 @@ typedef struct pigment_methods {
 
     /* The linear colour at (u,w). A stage: n lanes, no allocation, reentrant. */
     void (*eval)(const pigment *p, int n, const real *u, const real *w, vec3s *color);
+
+    void (*free)(pigment *p); /* NULL: it owns nothing but itself */
 } pigment_methods;
 
 struct pigment {

@@ -50,19 +50,29 @@ static double of_zone(const expr *e, double scale, double r, double w0, double w
     return worst;
 }
 
-static bool is_clear(const scene *s, const object *o) { return material_clear(&s->material[o->material]); }
+/* Rays also come to where angles turn without bound: in glass, through a torus' hole, from an eye within. So a round one's function is
+ * level from this share of the way on that leads from the nearest rough place to there. */
+#define LEVEL 0.25
 
-/* Rays go through transparent round surfaces, and near their middle the gradient has no bound. So there the function is not let below
- * the lowest value that it has where the surface may be. */
-static double depth(const object *o) { return (double)o->bump->Pmax - (double)o->bump->Pmin; }
+/* How far from such a place the rough surface stays: a sphere's centre, a cylinder's axis or a torus' tube; a torus' own axis. */
+static double least_within(const object *o)
+{
+    const shape_spec f = pov_sized(o);
+    return f.radius[f.kind == SHAPE_TORUS] + (double)o->bump->Pmin;
+}
+
+static double least_hole(const object *o)
+{
+    const shape_spec f = pov_sized(o);
+    return f.radius[0] - f.radius[1] - (double)o->bump->Pmax;
+}
 
 /* u turns about the poles ever faster, and the gradient is infinite there unless P does not depend on u. Zones that narrow
  * towards the poles bound it up to a cap of CAP radians, which is left out: a thousandth of the radius is less than a pixel. */
-static double of_sphere(const object *o, bool clear)
+static double of_sphere(const object *o)
 {
     const double CAP = 1e-3, GROWTH = 1.05, WIDEST = 0.05, half = 3.14159265358979323846 / 2;
-    const double deepest = clear ? depth(o) : 0, r = pov_sized(o).radius[0] + (double)o->bump->Pmin - deepest;
-    const double scale = fabs(o->bump_said.scale);
+    const double r = (1 - LEVEL) * least_within(o), scale = fabs(o->bump_said.scale);
     double worst = 0;
     expr_error wrong;
     expr *e = r > 0 ? expr_parse(o->bump_said.function, &wrong) : NULL;
@@ -77,51 +87,49 @@ static double of_sphere(const object *o, bool clear)
     return worst;
 }
 
-/* By how much P can change with an angle, against the length of a way that ends at a distance r from where the angle turns: within
- * half of r, where it turns ever faster, by its whole range on a way of r/2 and more. */
-static double turning(const object *o, double slope, double r)
-{
-    double range = (double)o->bump->Pmax - (double)o->bump->Pmin;
-    return r > 0 ? 2 * fmax(slope, range) / r : HUGE_VAL;
-}
+/* How fast P can change with an angle about a place to which the rough surface keeps a distance r. */
+static double turning(double slope, double r) { return r > 0 ? slope / ((1 - LEVEL) * r) : HUGE_VAL; }
 
+/* The directions of height, u and w are at right angles. */
 static double of_cylinder(const object *o)
 {
-    const shape_spec f = pov_sized(o);
-    return 1 + (double)o->bump->Pw_max / pov_scale(o) + turning(o, (double)o->bump->Pu_max, f.radius[0] + (double)o->bump->Pmin);
+    double u = turning((double)o->bump->Pu_max, least_within(o)), w = (double)o->bump->Pw_max / pov_scale(o);
+    return sqrt(1 + u * u + w * w);
 }
 
 static double of_torus(const object *o)
 {
-    const shape_spec f = pov_sized(o);
-    double major = f.radius[0], minor = f.radius[1];
-    return 1 + turning(o, (double)o->bump->Pu_max, major - minor - (double)o->bump->Pmax) +
-           turning(o, (double)o->bump->Pw_max, minor + (double)o->bump->Pmin);
+    double u = turning((double)o->bump->Pu_max, least_hole(o)), w = turning((double)o->bump->Pw_max, least_within(o));
+    return sqrt(1 + u * u + w * w);
 }
 
-static double of_part(const scene *s, const object *o, int part)
+static double of_part(const object *o, int part)
 {
     const shape_spec *f = &o->shape_said;
     if (pov_is_flat(f, part))
         return of_flat(o, part);
     if (f->kind == SHAPE_SPHERE)
-        return of_sphere(o, is_clear(s, o));
+        return of_sphere(o);
     if (f->kind == SHAPE_TORUS)
         return of_torus(o);
     return f->radius[0] == f->radius[1] ? of_cylinder(o) : HUGE_VAL; /* a displaced cone ends on cones, which no container does */
 }
 
-double pov_isosurface_gradient(const scene *s, const object *o, int part)
+double pov_isosurface_gradient(const object *o, int part)
 {
     if (!o->bump_said.function)
         return HUGE_VAL;
-    double g = of_part(s, o, part);
+    double g = of_part(o, part);
     return g < STEEPEST ? g * (1 + 1e-6) : HUGE_VAL;
 }
 
 /* ---- writing ---- */
 
-static double accuracy(const scene *s) { return 1e-7 * vec3_length(vec3_sub(s->view.at, s->camera.from)); }
+/* Mirrors and glass multiply what a hit is off. */
+static double accuracy(const scene *s, const object *o)
+{
+    return (material_sends(&s->material[o->material]) ? 2e-9 : 1e-7) * vec3_length(vec3_sub(s->view.at, s->camera.from));
+}
 
 static void put_over(pov_text *t, const char *x, double length)
 {
@@ -149,8 +157,8 @@ static void put_flat(pov_text *t, const scene *s, const object *o, int part, con
     put_over(t, "z", lw);
     pov_print(t, ") }\n  contained_by { box { <%g, %g, %g>, <%g, %g, %g> } }\n", u[0] * lu, y[0], w[0] * lw, u[1] * lu, y[1],
               w[1] * lw);
-    pov_print(t, "  open\n  accuracy %g\n  max_gradient %g // a bound: none is steeper\n", accuracy(s),
-              pov_isosurface_gradient(s, o, part));
+    pov_print(t, "  open\n  accuracy %g\n  max_gradient %g // a bound: none is steeper\n", accuracy(s, o),
+              pov_isosurface_gradient(o, part));
     pov_matrix(t, p.x, p.y, p.z, p.O);
     pov_print(t, " // x along u, y the height, z along w, origin\n");
     if (rim >= 0)
@@ -168,15 +176,16 @@ static void put_motion(pov_text *t, const object *o)
 }
 
 /* A round one's function begins, and ends. */
-static void begin_function(pov_text *t, const scene *s, const object *o)
+static void begin_function(pov_text *t, const object *o)
 {
-    pov_print(t, "isosurface {\n  function {\n    %s", is_clear(s, o) ? "max(" : "");
+    pov_print(t, "isosurface {\n  function {\n    %smax(", o->shape_said.kind == SHAPE_TORUS ? "min(" : "");
 }
 
-static void end_function(pov_text *t, const scene *s, const object *o)
+static void end_function(pov_text *t, const object *o)
 {
-    if (is_clear(s, o))
-        pov_print(t, ", -%s)", pov_exact(depth(o)).text);
+    pov_print(t, ", -%s)", pov_exact(LEVEL * least_within(o)).text);
+    if (o->shape_said.kind == SHAPE_TORUS)
+        pov_print(t, ", %s)", pov_exact(LEVEL * least_hole(o)).text);
     pov_print(t, "\n  }\n");
 }
 
@@ -185,12 +194,12 @@ static void put_sphere(pov_text *t, const scene *s, const object *o, const char 
     const shape_spec f = pov_sized(o);
     double y[2], radius = f.radius[0];
     pov_levels(o, y);
-    begin_function(t, s, o);
+    begin_function(t, o);
     pov_print(t, "sqrt(x*x + y*y + z*z) - %s\n    - %s(%s, atan2(sqrt(x*x + z*z), y))", pov_exact(radius).text, name, pov_around(o));
-    end_function(t, s, o);
-    pov_print(t, "  contained_by { sphere { 0, %g } }\n  accuracy %g\n", radius + y[1], accuracy(s));
+    end_function(t, o);
+    pov_print(t, "  contained_by { sphere { 0, %g } }\n  accuracy %g\n", radius + y[1], accuracy(s, o));
     pov_print(t, "  max_gradient %g // a bound but for 0.001 radians around the poles\n  translate %v\n",
-              pov_isosurface_gradient(s, o, 0), f.a);
+              pov_isosurface_gradient(o, 0), f.a);
     put_motion(t, o);
 }
 
@@ -202,16 +211,16 @@ static void put_side(pov_text *t, const scene *s, const object *o, const char *n
     const frame a = frame_about(axis);
     double y[2], radius = f.radius[0], length = vec3_length(axis);
     pov_levels(o, y);
-    begin_function(t, s, o);
+    begin_function(t, o);
     pov_print(t, "sqrt(x*x + z*z) - %s\n    - %s(%s, ", pov_exact(radius).text, name, pov_around(o));
     pov_print(t, pov_scale(o) == 1 ? "%s - y" : "(%s - y)", pov_exact(length).text);
     put_over(t, "", pov_scale(o));
     pov_print(t, ")");
-    end_function(t, s, o);
+    end_function(t, o);
     pov_print(t, "  contained_by { box { <%g, 0, %g>, <%g, %g, %g> } }\n", -radius - y[1], -radius - y[1], radius + y[1], length,
               radius + y[1]);
-    pov_print(t, "  open\n  accuracy %g\n  max_gradient %g // a bound: none is steeper\n", accuracy(s),
-              pov_isosurface_gradient(s, o, 0));
+    pov_print(t, "  open\n  accuracy %g\n  max_gradient %g // a bound: none is steeper\n", accuracy(s, o),
+              pov_isosurface_gradient(o, 0));
     pov_matrix(t, a.x, a.y, a.z, f.a);
     pov_print(t, " // y is the axis\n");
     put_motion(t, o);
@@ -225,12 +234,12 @@ static void put_torus(pov_text *t, const scene *s, const object *o, const char *
     pov_levels(o, y);
     const double wide = f.radius[0] + f.radius[1] + y[1], high = f.radius[1] + y[1];
     const pov_digits major = pov_exact(f.radius[0]);
-    begin_function(t, s, o);
+    begin_function(t, o);
     pov_print(t, "sqrt(pow(sqrt(x*x + z*z) - %s, 2) + y*y) - %s\n", major.text, pov_exact(f.radius[1]).text);
     pov_print(t, "    - %s(%s, atan2(-y, sqrt(x*x + z*z) - %s))", name, pov_around(o), major.text);
-    end_function(t, s, o);
+    end_function(t, o);
     pov_print(t, "  contained_by { box { <%g, %g, %g>, <%g, %g, %g> } }\n", -wide, -high, -wide, wide, high, wide);
-    pov_print(t, "  accuracy %g\n  max_gradient %g // a bound: none is steeper\n", accuracy(s), pov_isosurface_gradient(s, o, 0));
+    pov_print(t, "  accuracy %g\n  max_gradient %g // a bound: none is steeper\n", accuracy(s, o), pov_isosurface_gradient(o, 0));
     pov_matrix(t, a.x, a.y, a.z, f.a);
     pov_print(t, " // y is the axis\n");
     put_motion(t, o);

@@ -59,7 +59,7 @@ bool pov_function(pov_text *t, const object *o, const char *name);
 
 /* The displaced object as isosurfaces that call the function `name`. pov_isosurface_gradient: the bound of its gradient, infinite
  * where none is known or none serves. */
-double pov_isosurface_gradient(const scene *s, const object *o, int part);
+double pov_isosurface_gradient(const object *o, int part);
 void pov_isosurface(pov_text *t, const scene *s, const object *o, const char *name);
 
 /* The displaced object as one mesh. False: out of memory. */
@@ -67,6 +67,9 @@ bool pov_mesh(pov_text *t, const scene *s, const object *o, pov_report *report);
 
 /* An object without a shape of POV-Ray's, smooth or displaced as the scene says, as one mesh. False: out of memory. */
 bool pov_sheet(pov_text *t, const scene *s, const object *o);
+
+/* A mesh from a file likewise. */
+bool pov_triangles(pov_text *t, const scene *s, const object *o);
 
 /* A transformation that puts x, y, z and 0 where these are; without a new line. */
 void pov_matrix(pov_text *t, vec3 x, vec3 y, vec3 z, vec3 origin);

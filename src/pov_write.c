@@ -191,6 +191,7 @@ static void put_smooth(pov_text *t, const scene *s, const object *o)
         break;
     }
     case SHAPE_SEARCHED: /* pov_sheet.c */
+    case SHAPE_MESH:     /* pov_triangles.c */
         break;
     }
     put_transform(t, o);
@@ -202,7 +203,7 @@ static bool put_displaced(pov_text *t, const scene *s, int k, pov_report *report
     pov_identifier P = pov_identify("P", o->name, k);
     double gradient = 0;
     for (int part = 0; part < o->shape->is->parts; part++)
-        gradient = fmax(gradient, pov_isosurface_gradient(s, o, part));
+        gradient = fmax(gradient, pov_isosurface_gradient(o, part));
     if (gradient < HUGE_VAL && pov_function(t, o, P.text)) {
         pov_isosurface(t, s, o, P.text);
         return true;
@@ -227,6 +228,8 @@ bool pov_write(const scene *s, const pov_options *how, const char *path, pov_rep
                   o->bump ? o->bump->is->kind : "");
         if (o->shape_said.kind == SHAPE_SEARCHED)
             good = pov_sheet(&t, s, o);
+        else if (o->shape_said.kind == SHAPE_MESH)
+            good = pov_triangles(&t, s, o);
         else if (s->displaced && o->bump)
             good = put_displaced(&t, s, k, report);
         else

@@ -4,10 +4,12 @@
 
 #include "errors.h"
 #include "light.h"
+#include "mesh_data.h"
 #include "method.h"
 #include "perturb.h"
 #include "pigment.h"
 #include "surface.h"
+#include "watch.h"
 
 /* The ray of a pixel, with x and y in -1..1 over the image:
  *     a pinhole      from + t (forward + x right + y up), so that s is no unit vector
@@ -78,6 +80,7 @@ typedef enum shape_kind {
     SHAPE_CONE,
     SHAPE_TORUS,
     SHAPE_SEARCHED, /* parametric, patches */
+    SHAPE_MESH,
 } shape_kind;
 
 typedef struct shape_spec {
@@ -86,12 +89,15 @@ typedef struct shape_spec {
                      the normal or axis; cylinder, cone: a and u are the ends */
     double radius[2]; /* cylinder, cone: at a, at u; torus: major, minor */
     bool open;
+    char *file; /* mesh: as the file said it, */
+    int triangles; /* and what is in it */
+    mesh_notes found;
 } shape_spec;
 
 /* Whether light that goes through it goes into it. An endless plane has an inside, the side away from n. */
 static inline bool shape_has_inside(const shape_spec *f)
 {
-    return f->kind != SHAPE_RECTANGLE && f->kind != SHAPE_DISC && f->kind != SHAPE_SEARCHED && !f->open;
+    return f->kind != SHAPE_RECTANGLE && f->kind != SHAPE_DISC && f->kind != SHAPE_SEARCHED && f->kind != SHAPE_MESH && !f->open;
 }
 
 /* A bump likewise: a function's text and scale, or where a map's samples lie (how many: map_note). */
@@ -150,8 +156,8 @@ static inline bool scene_wants_truth(const scene *s) { return s->displaced || s-
 enum { SCENE_MAX_SIDE = 32768, SCENE_MAX_ITEMS = 4096, SCENE_MAX_AA = 16, SCENE_MAX_DEPTH = 32 };
 
 /* Read the scene in the file at `path`, with `sets` changes of the form PATH=VALUE made to it first. NULL, and every
- * error that can be told at once in *e, as `file:line:col: ...`, the line and a caret. */
-scene *scene_read(const char *path, int sets, char *const *set, errors *e);
+ * error that can be told at once in *e, as `file:line:col: ...`, the line and a caret. w: sees how large files come in; may be NULL. */
+scene *scene_read(const char *path, int sets, char *const *set, const watch *w, errors *e);
 
 void scene_free(scene *s);
 

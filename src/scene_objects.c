@@ -147,8 +147,9 @@ static perturb *read_function(reader *r, node *at, const surface *f, bump_spec *
     return p;
 }
 
-static perturb *read_bump(reader *r, node *at, const surface *f, map_note *note, bump_spec *said)
+static perturb *read_bump(reader *r, node *at, object *o)
 {
+    const surface *f = o->own;
     double u[2], w[2];
     if (!yaml_map(r->y, at, "bump", NULL))
         return NULL;
@@ -157,8 +158,10 @@ static perturb *read_bump(reader *r, node *at, const surface *f, map_note *note,
         yaml_error(r->y, at, "a bump with %s, expected either 'map' or 'function'", map ? "both map and function" : "neither map nor function");
         return NULL;
     }
-    f->is->extent(f, 0, u, w);
-    return map ? read_map(r, at, u, w, note, said) : read_function(r, at, f, said);
+    if (!reader_textured(r, at, o))
+        return NULL;
+    reader_extent(f, &o->shape_said, u, w);
+    return reader_fold_bump(r, o, map ? read_map(r, at, u, w, &o->map, &o->bump_said) : read_function(r, at, f, &o->bump_said));
 }
 
 /* ---- objects ---- */
@@ -275,7 +278,7 @@ static void read_object(reader *r, const queue *q, int i)
             o->shares_bump = false;
             o->map = (map_note){0};
             o->bump_said = (bump_spec){0};
-            o->bump = read_bump(r, bump, o->own, &o->map, &o->bump_said);
+            o->bump = read_bump(r, bump, o);
         }
         if (bump && o->bump && scene_wants_truth(s) && !displace_possible(o->bump))
             yaml_error(r->y, bump, "no bounds of P or of its slope are known, expected them for %s: a function that is bounded, "

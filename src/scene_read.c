@@ -204,9 +204,9 @@ static void note_crowd(reader *r, int before)
         errors_add(r->e, "out of memory");
 }
 
-scene *scene_read(const char *path, int sets, char *const *set, errors *e)
+scene *scene_read(const char *path, int sets, char *const *set, const watch *w, errors *e)
 {
-    reader r = {.e = e, .s = calloc(1, sizeof *r.s)};
+    reader r = {.e = e, .watch = w, .s = calloc(1, sizeof *r.s)};
     int before = e->count;
     r.y = r.s ? yaml_open(path, sets, set, "image render", e) : NULL;
     if (r.y) {
@@ -251,8 +251,10 @@ void scene_free(scene *s)
         if (o->shape != o->own)
             surface_free(o->shape);
         surface_free(o->centred);
-        if (!o->copy_of)
+        if (!o->copy_of) {
             surface_free(o->own);
+            free(o->shape_said.file);
+        }
         pigment_free(o->color);
         if (o->shares_bump)
             continue;

@@ -13,6 +13,7 @@ typedef struct reader {
     yaml *y;
     scene *s;
     errors *e;
+    const watch *watch; /* NULL: nobody */
 } reader;
 
 /* An owned copy of a text; NULL of NULL. */
@@ -47,7 +48,7 @@ void reader_materials(reader *r);
 void reader_pigment(reader *r, node *at, object *o);
 
 /* The surface of an object, by the one key of READER_SHAPES that it has. NULL: an error is told. (scene_surfaces.c) */
-#define READER_SHAPES "plane rectangle disc box sphere cylinder cone torus parametric patches"
+#define READER_SHAPES "plane rectangle disc box sphere cylinder cone torus parametric patches mesh"
 surface *reader_surface(reader *r, node *at, shape_spec *said);
 bool reader_no_shape(reader *r, node *at); /* it has none; otherwise an error is told */
 
@@ -60,6 +61,19 @@ bool reader_place(reader *r, node *at, object *o);
 /* The surfaces that are found by search. (scene_sheets.c) */
 surface *reader_parametric(reader *r, node *at, shape_spec *said);
 surface *reader_patches(reader *r, node *at, shape_spec *said);
+
+/* Triangles from a file. (scene_mesh.c) */
+surface *reader_mesh(reader *r, node *at, shape_spec *said);
+
+/* Where a map or an image lies that says no size: the surface's extent, but of a mesh the square that its texture coordinates are meant for. */
+void reader_extent(const surface *f, const shape_spec *said, double u[2], double w[2]);
+
+/* Whether what lies on (u,w), at the node, has (u,w) to lie on. False: an error is told. */
+bool reader_textured(reader *r, node *at, const object *o);
+
+/* A bump, or a colour, for a mesh some of whose texture is mirrored: it is folded (fold.h). */
+perturb *reader_fold_bump(reader *r, const object *o, perturb *p);
+pigment *reader_fold_color(reader *r, const object *o, pigment *c);
 
 /* The objects with their surfaces and bumps; after the materials, whose names they give. (scene_objects.c) */
 void reader_objects(reader *r);

@@ -142,7 +142,7 @@ static const struct {
 } shapes[] = {
     {"plane", read_plane},   {"rectangle", read_rectangle}, {"disc", read_disc}, {"box", read_box},
     {"sphere", read_sphere}, {"cylinder", read_cylinder},   {"cone", read_cone}, {"torus", read_torus},
-    {"parametric", reader_parametric}, {"patches", reader_patches},
+    {"parametric", reader_parametric}, {"patches", reader_patches}, {"mesh", reader_mesh},
 };
 enum { SHAPES = sizeof shapes / sizeof *shapes };
 

@@ -1,5 +1,6 @@
 /* The scene reader's transforms, as POV-Ray has them: one step after the other, about the scene's origin and axes. */
 #include "kmath.h"
+#include "mesh.h"
 #include "scene_reader.h"
 
 #define STRETCH 1e4 /* one way more than another: float has 7 digits, and needs some for itself */
@@ -164,15 +165,29 @@ static surface *centred(const shape_spec *f, vec3 *middle)
     case SHAPE_TORUS:
         return torus_new(here, f->u, f->radius[0], f->radius[1]);
     case SHAPE_SEARCHED: /* in double anyway */
+    case SHAPE_MESH:
         break;
     }
     return NULL;
 }
 
-/* Its true displacement needs a sheet of its own. */
-static bool wants_leaves(const reader *r, const object *o)
+/* An image with all that the original has, where true displacement needs that. */
+static surface *image_of(const reader *r, const object *o, const surface *from, const affine *m)
 {
-    return o->shape_said.kind == SHAPE_SEARCHED && o->bump && scene_wants_truth(r->s);
+    const bool truth = o->bump && scene_wants_truth(r->s);
+    if (truth && o->shape_said.kind == SHAPE_SEARCHED)
+        return searched_moved(from, m);
+    if (truth && o->shape_said.kind == SHAPE_MESH)
+        return mesh_moved(from, m);
+    return surface_transformed(from, m);
+}
+
+/* A mesh has no edges of its own: its size is that of the sphere around it. */
+static bool is_mesh_sized(const surface *f, const affine *m, double *wrong)
+{
+    const double longest = fmax(vec3_length(m->x), fmax(vec3_length(m->y), vec3_length(m->z)));
+    *wrong = longest * ((const mesh *)f)->space.radius;
+    return *wrong >= SMALL / 4 && *wrong <= BIG * 4;
 }
 
 bool reader_place(reader *r, node *at, object *o)
@@ -183,19 +198,20 @@ bool reader_place(reader *r, node *at, object *o)
     affine whole = affine_identity();
     double wrong = 0;
     const surface *from = o->own;
-    if (o->shape_said.kind != SHAPE_SEARCHED)
+    const bool is_mesh = o->shape_said.kind == SHAPE_MESH;
+    if (o->shape_said.kind != SHAPE_SEARCHED && !is_mesh)
         from = o->centred = centred(&o->shape_said, &whole.o);
-    const vec3 to = affine_point(m, whole.o);
+    const vec3 to = affine_point(m, is_mesh ? ((const mesh *)from)->space.centre : whole.o);
     const double far = fmax(fabs(to.x), fmax(fabs(to.y), fabs(to.z)));
     if (!(far <= BIG))
         return yaml_error(r->y, at, "it goes %.4g scene units away, expected 1000000 at most", far);
     if (!(there * here <= STRETCH * STRETCH))
         return yaml_error(r->y, at, "one way is stretched more than %g times as much as another, expected less", STRETCH);
     whole = affine_then(&whole, m);
-    surface *f = !from ? NULL : wants_leaves(r, o) ? searched_moved(from, &whole) : surface_transformed(from, &whole);
+    surface *f = from ? image_of(r, o, from, &whole) : NULL;
     if (!f)
         return errors_add(r->e, "out of memory");
     o->shape = f;
-    return is_sized(f, &wrong) ||
+    return (is_mesh ? is_mesh_sized(from, m, &wrong) : is_sized(f, &wrong)) ||
            yaml_error(r->y, at, "an edge or a radius of %.4g scene units comes from this, expected 1e-6 to 1e6", wrong);
 }

@@ -92,6 +92,14 @@ static double cross(const scene *sc, int id, bool out, media *in, int i)
     return own / (n ? sc->material[sc->object[in->id[n - 1][i]].material].ior : 1);
 }
 
+static bool is_in(const media *m, int i, int id)
+{
+    bool in = false;
+    for (int k = 0; k < m->n[i]; k++)
+        in |= m->id[k][i] == id;
+    return in;
+}
+
 static void copy_media(const media *from, int j, media *to, int i)
 {
     to->n[i] = from ? from->n[j] : 0;
@@ -152,7 +160,8 @@ static void send_clear(const tracer *k, int id, workspace *v, ways *y)
     media in;
     for (int i = 0; i < g->n; i++) {
         copy_media(before, group_place(g, i), &in, i);
-        bool out = bs_dot(lane_get(&g->x.s, i), lane_get(&g->n_smooth, i)) > 0;
+        /* what has been entered is left, as in POV-Ray, also through a gap between rough parts; the eye may be in what it has not entered */
+        bool out = is_in(&in, i, id) || bs_dot(lane_get(&g->x.s, i), lane_get(&g->n_smooth, i)) > 0;
         y->ratio[i] = (real)cross(sc, id, out, &in, i);
     }
     bend(g, y);

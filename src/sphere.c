@@ -131,7 +131,8 @@ STAGE static void sphere_occlude_own(const surface *base, int n, const rays *x, 
 
 /* ---- for true displacement ---- */
 
-/* The outer sphere's stretch, up to where the inner one is met. */
+/* The outer sphere's stretch. From within the inner one it begins at that one's far side; all others go through it, as a ray that is below
+ * the rough surface already meets it on the far side only. */
 STAGE static void sphere_shell(const surface *base, int part, int n, const rays *x, const real *restrict end, real Pmin,
                                real Pmax, real *restrict t0, real *restrict t1)
 {
@@ -143,11 +144,7 @@ STAGE static void sphere_shell(const surface *base, int part, int n, const rays 
         real a, b, c, d, rx = x->r.x[i], ry = x->r.y[i], rz = x->r.z[i], sx = x->s.x[i], sy = x->s.y[i], sz = x->s.z[i];
         int in = sphere_roots(&outer, rx, ry, rz, sx, sy, sz, &a, &b);
         int core = sphere_roots(&inner, rx, ry, rz, sx, sy, sz, &c, &d);
-        real from = real_max(a, 0);
-        /* from outside the core up to it; from within it, the shell begins at its far side */
-        real to = (core & (c > from)) ? c : b;
-        from = (core & (c <= from) & (d > from)) ? d : from;
-        to = real_min(to, end[i]);
+        real from = (core & (c <= 0) & (d > 0)) ? d : real_max(a, 0), to = real_min(b, end[i]);
         t0[i] = in ? from : R(1);
         t1[i] = in ? to : R(-1);
     }

@@ -27,7 +27,8 @@ typedef struct surface_methods {
      * from->part, and this start does not count. */
     void (*hit_own)(const surface *f, int n, const rays *x, const starts *from, int32_t id, hits *h);
 
-    /* Where on the surface the hits r + s t are: the part (the face of a box, 0 elsewhere), u and w. */
+    /* Where on the surface the hits r + s t are: the part (the face of a box, 0 elsewhere), u and w. part[i] holds what `hit` told: a mesh's
+     * triangle, which stays. */
     void (*locate)(const surface *f, int n, const rays *x, const real *t, int32_t *part, real *u, real *w);
 
     /* Q and its partials at (u,w): the first always, Quu, Quw and Qww where order is 2. */
@@ -46,7 +47,7 @@ typedef struct surface_methods {
     /* What all of the surface is in, but for roundings. Ends are infinite where it has none. */
     void (*box)(const surface *f, double lo[3], double hi[3]);
 
-    int parts; /* part is in 0..parts-1 */
+    int parts; /* part is in 0..parts-1; 1 of a mesh, whose triangles differ in nothing that is asked by part alone */
 
     /* For true displacement (displace.c), with a part of the surface taken as if it alone were there. All three are NULL where no
      * foot is known (surface_transformed). */

@@ -415,7 +415,22 @@ SHEETS_DISPLACED = {
     "waves, mirrored": (f"{TABLE}\n    transform: {MOVES['mirrored']}", "{function: '0.02*sin(9*u + 1)*sin(9*w)'}"),
     "moebius": (SHEETS["moebius"], "{function: '0.02*sin(9*u)*sin(9*w)'}"),
     "saddle": (SHEETS["saddle"], "{function: '0.03*sin(18*u)*sin(18*w)'}"),
-    "teapot": (SHEETS["teapot"], "{function: '0.02*sin(3*pi*u)*sin(3*pi*w)'}"),  # 0 where patches join
+    "teapot": (f"patches: {{file: {POT}}}\n    transform: [{{scale: 0.4}}]", "{function: '0.02*sin(3*pi*u)*sin(3*pi*w)'}"),  # 0 where they join
+}
+
+ROUGH = ("plane", "skewed rectangle", "box", "sphere", "rectangle, map")
+#: P is 0 at the edges, so that nothing is open between the parts.
+CLOSED = {
+    "closed box": (CUBE, "{function: '0.64*sin(12*u)*sin(10*w)*u*(1-u)*w*(1-w)'}", "isosurface"),
+    "closed cylinder": ("cylinder: {from: [0.1, 0.1, 0], to: [0.1, 1.6, 0], radius: 0.8}",
+                        "{function: '0.07*sin(8*u)*sin(7*w)*w*(1.5-w)*(0.64-u^2-w^2)/(0.64+u^2+w^2)'}", "isosurface"),
+}
+#: Bumps that are large for what they lie on: rays come near to an axis or a middle, where a function of angles is as steep as can be.
+TURNING = {
+    "cylinder, high": ("cylinder: {from: [-1, 0.6, 0], to: [1, 0.6, 0], radius: 0.3, open: true}", "{function: '0.2*sin(2*u)'}"),
+    "torus, high": ("torus: {center: [0, 0.7, 0], axis: [0.2, 1, -0.3], major: 0.6, minor: 0.3}", "{function: '0.1*sin(3*u)*cos(2*w)'}"),
+    "sphere, high": ("sphere: {center: [0, 1, 0], radius: 0.5}", "{function: '0.2*sin(3*u)*sin(w)^4'}"),
+    "sphere, level": ("sphere: {center: [0, 1, 0], radius: 0.5}", "{function: '0.05'}"),
 }
 
 # ---- all of them ----
@@ -497,6 +512,11 @@ def displaced(name: str, camera: str = CAMERA, lights: str = LIGHTS) -> str:
             + f"  rough:\n    {shape}\n    material: clay\n    bump: {bump}\n" + ABOVE % "shiny")
 
 
+def rough_second(shape: str, bump: str, material: str, more: str = "") -> str:
+    return (SECOND_HEAD.format(camera=CAMERA, lights=LIGHTS, depth=5) + f"  rough:\n    {shape}\n    material: {material}\n    bump: {bump}\n" + more
+            + "  ground: {plane: {origin: [0, -1, 0], u: [0, 0, 1], w: [1, 0, 0]}, material: tiles}\n")
+
+
 def displaced_ones() -> Iterator[Scene]:
     for name, (shape, _, made) in DISPLACED.items():
         row = "moved, copied" if "transform" in shape else surface_in(shape)
@@ -516,14 +536,14 @@ def displaced_ones() -> Iterator[Scene]:
         for camera in ("{from: [0, 2, -3], at: [0.5, 0, 0], up: [0.3, 1, 0], width: 3}", "{from: [0, 9, -1], at: [0.5, 0, 0], width: 6}"):
             yield Scene("cameras", "own shadows", f"{name}, orthographic {camera[-2]}", displaced(name, camera), (100, 75),
                         ("--surface", "displaced"), 0.995)
-    for material in ("mirror", "glass"):
-        for name in ("plane", "skewed rectangle", "box", "sphere", "rectangle, map"):
-            shape, bump, _ = DISPLACED[name]
-            text = (SECOND_HEAD.format(camera=CAMERA, lights=LIGHTS, depth=5)
-                    + f"  rough:\n    {shape}\n    material: {material}\n    bump: {bump}\n" + ABOVE % "red"
-                    + "  ground: {plane: {origin: [0, -1, 0], u: [0, 0, 1], w: [1, 0, 0]}, material: tiles}\n")
-            yield Scene(surface_in(shape), "own shadows", f"{material} {name}", text, (100, 75), ("--surface", "displaced"),
-                        0.998 if material == "mirror" else 0.995)
+    for material, names, least in (("mirror", ROUGH, 0.998), ("glass", ROUGH, 0.995), ("clear", ("torus", "standing torus, thin", *CLOSED), 0.998)):
+        for name in names:
+            shape, bump, _ = {**DISPLACED, **CLOSED}[name]
+            yield Scene(surface_in(shape), "own shadows", f"{material} {name}", rough_second(shape, bump, material, ABOVE % "red"), (100, 75),
+                        ("--surface", "displaced"), least)
+    for name, (shape, bump) in TURNING.items():
+        yield Scene(surface_in(shape), "own shadows", f"glass, {name}", rough_second(shape, bump, "glass"), (100, 75), ("--surface", "displaced"),
+                    0.998, shape="isosurface")
 
 
 SCENES = (*smooth_ones(), *colored_ones(), *secondary_ones(), *displaced_ones())

@@ -412,6 +412,176 @@ static void own_shadows(void **state)
     }
 }
 
+/* ---- rays that leave a rough surface ---- */
+
+/* Where a ray is clearly off the surface that it has left, and the gap's least change from there back to it, in scene units: float's
+ * hit is within 5e-6 of the surface. */
+#define CLEAR 2e-4L
+
+/* As first_crossing, for a ray that starts on `own`'s rough surface: from where it has clearly left that. *doubt, too: it turns back or
+ * goes through to the other side before, or begins near an edge. */
+static wide next_crossing(int kind, int bump, int own, const wide r[3], const wide s[3], wide end, int *doubt)
+{
+    enum { FINE = 1500 };
+    const wide NEAR = 0.012L;
+    wide best = -1, touch = end;
+    for (int part = 0; part < parts[kind]; part++) {
+        int in, was_in = 0, left = part != own;
+        wide before = 0, last = 0;
+        const wide way_off = gap_on_ray(kind, bump, part, r, s, 1e-6L, &in) - gap_on_ray(kind, bump, part, r, s, -1e-6L, &in);
+        if (!left && !in)
+            touch = 0;
+        for (int k = 0; k <= FINE; k++) {
+            wide t = end * k / FINE * k / FINE, a = end * (k - 1) / FINE * (k - 1) / FINE, g = gap_on_ray(kind, bump, part, r, s, t, &in);
+            if (!left) {
+                left = fabsl(g) > CLEAR;
+                if (left && (!in || (g > 0) != (way_off > 0)))
+                    touch = 0;
+            } else if (in && was_in && (g > 0) != (before > 0)) {
+                for (int m = 0; m < 80; m++) {
+                    wide c = (a + t) / 2;
+                    int x;
+                    if ((gap_on_ray(kind, bump, part, r, s, c, &x) > 0) == (before > 0))
+                        a = c;
+                    else
+                        t = c;
+                }
+                if (best < 0 || a < best)
+                    best = a;
+                break;
+            } else {
+                if (in != was_in && k > 0 && fabsl(g) < 0.01L)
+                    touch = t < touch ? t : touch;
+                if (in && was_in && fabsl(before) < NEAR && fabsl(before) < fabsl(last) && fabsl(g) > fabsl(before))
+                    touch = t < touch ? t : touch;
+            }
+            last = before;
+            before = g;
+            was_in = in && left;
+        }
+    }
+    *doubt = touch < end && (best < 0 || touch < best);
+    return best;
+}
+
+/* From hits to all sides: away from what was met, as mirrored rays go, and into it, as refracted ones do. Each meets what bisection
+ * does, and not the place that it has left. */
+static void leaving(void **state)
+{
+    (void)state;
+    int faults = 0;
+    for (int kind = 0; kind < SURFACES; kind++)
+        for (int bump = 0; bump < BUMPS; bump++) {
+            surface *f = make_surface(kind);
+            perturb *P = make_bump(kind, bump, f);
+            static rays x, y;
+            static hits h, again;
+            static starts from;
+            displace_counts counts = {0};
+            int met = 0, passed = 0, doubts = 0, wrong = 0, n = 0;
+            wide r[LANES][3], s[LANES][3];
+            real lit[LANES];
+            for (int i = 0; i < LANES; i++) {
+                random_ray(&x, i, r[i], s[i]);
+                h.t[i] = R(3);
+                h.id[i] = -1;
+            }
+            displace_hit(f, P, LANES, &x, NULL, 5, &h, &counts);
+            for (int i = 0; i < LANES; i++)
+                if (h.id[i] == 5) {
+                    double c = random_in(-1, 1), a = random_in(0, 6.283), l = sqrt(1 - c * c);
+                    bs_vec3 X = lane_at(&x, i, h.t[i]), d = {(real)(4 * l * cos(a)), (real)(4 * c), (real)(4 * l * sin(a))};
+                    lane_set(&y.r, n, X);
+                    lane_set(&y.s, n, d);
+                    lane_set(&from.at, n, X);
+                    from.part[n] = h.part[i];
+                    from.id[n] = 5;
+                    again.id[n] = -1;
+                    lit[n] = 1;
+                    again.t[n++] = 1;
+                }
+            displace_hit(f, P, n, &y, &from, 5, &again, &counts);
+            displace_occlude(f, P, n, &y, from.part, lit, &counts);
+            for (int i = 0; i < n; i++) {
+                bs_vec3 X = lane_get(&y.r, i), D = lane_get(&y.s, i);
+                const wide o[3] = {(wide)X.x, (wide)X.y, (wide)X.z}, d[3] = {(wide)D.x, (wide)D.y, (wide)D.z};
+                int doubt, x1;
+                wide t = next_crossing(kind, bump, from.part[i], o, d, 1, &doubt);
+                if (doubt) {
+                    doubts++;
+                    continue;
+                }
+                met += t >= 0;
+                passed += t < 0;
+                const int part = again.id[i] < 0 ? 0 : again.part[i];
+                double off = again.id[i] < 0 || t < 0 ? ((again.id[i] < 0) == (t < 0) ? 0 : 1) : 4 * fabs((double)((wide)again.t[i] - t));
+                wide rate = fabsl(gap_on_ray(kind, bump, part, o, d, t + 1e-6L, &x1) -
+                                  gap_on_ray(kind, bump, part, o, d, t - 1e-6L, &x1)) / 8e-6L;
+                if (!(off * fmin(1, (double)rate * 4) <= AGREE) || (lit[i] > 0) != (t < 0)) {
+                    wrong++;
+                    print_message("%s, %s: ray %d from part %d: t %.9g, bisection %.9g\n", names[kind], bump ? "map" : "function", i,
+                                from.part[i], again.id[i] < 0 ? -1. : (double)again.t[i], (double)t);
+                }
+            }
+            print_message("%s, %s: %d hits, %d misses, %d left out, %d wrong, %ld uncertain\n", names[kind], bump ? "map" : "function", met,
+                          passed, doubts, wrong, counts.uncertain);
+            assert_true(met + passed > 50 && doubts <= LANES / 8);
+            faults += wrong;
+            perturb_free(P);
+            surface_free(f);
+        }
+    assert_int_equal(faults, 0);
+}
+
+/* Rays that begin anywhere in and about a surface, as where the eye or another thing is in it: in the shell between the lowest and the
+ * highest P, too, on either side of the rough surface, and in what that encloses. */
+static void from_within(void **state)
+{
+    (void)state;
+    int faults = 0;
+    for (int kind = 0; kind < SURFACES; kind++) {
+        surface *f = make_surface(kind);
+        perturb *P = make_bump(kind, SMOOTH_BUMP, f);
+        static rays x;
+        static hits h;
+        displace_counts counts = {0};
+        int met = 0, doubts = 0, wrong = 0;
+        real lit[LANES];
+        for (int i = 0; i < LANES; i++) {
+            double c = random_in(-1, 1), a = random_in(0, 6.283), l = sqrt(1 - c * c);
+            bs_vec3 X = {(real)random_in(-1.3, 1.3), (real)random_in(-1.3, 1.3), (real)random_in(-1.3, 1.3)};
+            bs_vec3 d = {(real)(4 * l * cos(a)), (real)(4 * c), (real)(4 * l * sin(a))};
+            lane_set(&x.r, i, X);
+            lane_set(&x.s, i, d);
+            h.t[i] = lit[i] = 1;
+            h.id[i] = -1;
+        }
+        displace_hit(f, P, LANES, &x, NULL, 5, &h, &counts);
+        displace_occlude(f, P, LANES, &x, NULL, lit, &counts);
+        for (int i = 0; i < LANES; i++) {
+            bs_vec3 X = lane_get(&x.r, i), D = lane_get(&x.s, i);
+            const wide o[3] = {(wide)X.x, (wide)X.y, (wide)X.z}, d[3] = {(wide)D.x, (wide)D.y, (wide)D.z};
+            int doubt;
+            wide t = first_crossing(kind, SMOOTH_BUMP, o, d, 1, &doubt);
+            if (doubt) {
+                doubts++;
+                continue;
+            }
+            met += t >= 0;
+            if ((h.id[i] == 5) != (t >= 0) || (lit[i] > 0) != (t < 0) || (t >= 0 && !(fabs((double)((wide)h.t[i] - t)) < 1e-4))) {
+                wrong++;
+                print_message("%s: ray %d: t %.9g, bisection %.9g\n", names[kind], i, h.id[i] < 0 ? -1. : (double)h.t[i], (double)t);
+            }
+        }
+        print_message("%s: %d hits, %d left out, %d wrong\n", names[kind], met, doubts, wrong);
+        assert_int_equal(counts.uncertain, 0);
+        faults += wrong;
+        perturb_free(P);
+        surface_free(f);
+    }
+    assert_int_equal(faults, 0);
+}
+
 /* A flat bump is the offset surface; exact's tau leads to it; a ray beside the silhouette falls back. */
 static void flat_and_exact(void **state)
 {
@@ -450,25 +620,47 @@ static void flat_and_exact(void **state)
     perturb_free(P);
 }
 
-/* A constant P on a tube or a torus is a wider one, with a shell of no thickness. */
+/* A surface with a constant P = h is a wider one. */
+static surface *widened(int kind, double h)
+{
+    const turned *t = &turns[kind < DISC ? 0 : kind - DISC];
+    if (kind == SPHERE)
+        return sphere_new((vec3){sphere_C[0], sphere_C[1], sphere_C[2]}, sphere_R + h);
+    return kind == TORUS ? torus_new(t->a, t->b, t->r[0], t->r[1] + h) : cone_new(t->a, t->r[0] + h, t->b, t->r[1] + h, true);
+}
+
+/* The shorter the way of a ray that has left it is, the flatter it is to the surface: rounding is divided by that angle. */
+static int differ(int n, const hits *rough, const hits *smooth, int *met)
+{
+    int other = 0;
+    for (int i = 0; i < n; i++) {
+        const double off = fabs((double)(rough->t[i] - smooth->t[i]));
+        *met += smooth->id[i] == 0;
+        other += rough->id[i] != smooth->id[i] || !(off < AGREE || off * (double)smooth->t[i] < AGREE / 10);
+    }
+    return other;
+}
+
+/* Its shell has no thickness; and rays that leave it within meet its far side. */
 static void constant_bumps(void **state)
 {
     (void)state;
     const double all[2] = {-HUGE_VAL, HUGE_VAL}, levels[] = {0.1, -0.1, 1e-6, 0};
-    for (int kind = TUBE; kind <= TORUS; kind += TORUS - TUBE)
+    const int kinds[] = {SPHERE, TUBE, TORUS};
+    for (int which = 0; which < 3; which++)
         for (int k = 0; k < 4; k++) {
-            const turned *t = &turns[kind - DISC];
-            const double h = levels[k];
+            const int kind = kinds[which];
             expr_error e;
-            perturb *P = perturb_function(expr_parse("1", &e), h, all, all);
-            surface *f = make_surface(kind), *wider = kind == TORUS ? torus_new(t->a, t->b, t->r[0], t->r[1] + h)
-                                                                    : cone_new(t->a, t->r[0] + h, t->b, t->r[1] + h, true);
-            int met = 0, other = 0;
+            perturb *P = perturb_function(expr_parse("1", &e), levels[k], all, all);
+            surface *f = make_surface(kind), *wider = widened(kind, levels[k]);
+            int met = 0, other = 0, met_again = 0, other_again = 0;
             for (int round = 0; round < 8; round++) {
-                static rays x;
+                static rays x, y;
                 static hits rough, smooth;
+                static starts from;
                 displace_counts counts = {0};
                 wide r[3], s[3];
+                int n = 0;
                 for (int i = 0; i < LANES; i++) {
                     random_ray(&x, i, r, s);
                     if (round % 2) /* from within, where a tube is open */
@@ -478,14 +670,29 @@ static void constant_bumps(void **state)
                 }
                 displace_hit(f, P, LANES, &x, NULL, 0, &rough, &counts);
                 wider->is->hit(wider, LANES, &x, 0, &smooth);
-                for (int i = 0; i < LANES; i++) {
-                    met += smooth.id[i] == 0;
-                    other += rough.id[i] != smooth.id[i] || !(fabs((double)(rough.t[i] - smooth.t[i])) < AGREE);
+                other += differ(LANES, &rough, &smooth, &met);
+                for (int i = 0; i < LANES; i++)
+                    if (smooth.id[i] == 0 && rough.id[i] == 0) { /* through it, a little bent */
+                        bs_vec3 d = lane_get(&x.s, i), bent = {d.x + R(0.3) * d.y, d.y - R(0.2) * d.z, d.z};
+                        lane_set(&y.r, n, lane_at(&x, i, smooth.t[i]));
+                        lane_set(&y.s, n, bent);
+                        lane_set(&from.at, n, lane_get(&y.r, n));
+                        from.id[n] = 0;
+                        from.part[n++] = 0;
+                    }
+                for (int i = 0; i < n; i++) {
+                    rough.t[i] = smooth.t[i] = R(3);
+                    rough.id[i] = smooth.id[i] = -1;
                 }
+                displace_hit(f, P, n, &y, &from, 0, &rough, &counts);
+                wider->is->hit_own(wider, n, &y, &from, 0, &smooth);
+                other_again += differ(n, &rough, &smooth, &met_again);
                 assert_int_equal(counts.uncertain, 0);
             }
-            print_message("%s, P = %g: %d hits, %d otherwise\n", names[kind], h, met, other);
+            print_message("%s, P = %g: %d hits, %d otherwise; %d more from there, %d otherwise\n", names[kind], levels[k], met, other,
+                          met_again, other_again);
             assert_true(met > 300 && other <= 2); /* at a rim or tangent */
+            assert_true(met_again > 100 && other_again <= 2);
             perturb_free(P);
             surface_free(f);
             surface_free(wider);
@@ -498,6 +705,8 @@ int main(void)
         cmocka_unit_test(hits_agree_with_bisection),
         cmocka_unit_test(normals_are_gradients),
         cmocka_unit_test(own_shadows),
+        cmocka_unit_test(leaving),
+        cmocka_unit_test(from_within),
         cmocka_unit_test(flat_and_exact),
         cmocka_unit_test(constant_bumps),
     };
