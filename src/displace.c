@@ -42,28 +42,12 @@ STAGE static void gaps(search *restrict s, real *restrict slope)
     }
 }
 
-/* (u,w) where the foot is beyond the piece's extent, and P has no bounds: that of the nearest end, so that the rough surface goes on
- * from there. */
-static void within_extent(const ground *f, int n, const int32_t *lane, const feet *p, real *u, real *w)
-{
-    if (f->within) {
-        f->within(f, n, lane, p, u, w);
-        return;
-    }
-    for (int i = 0; i < n; i++) {
-        double U[2], W[2];
-        f->extent(f, lane[i], U, W);
-        u[i] = real_min(real_max(p->u[i], (real)U[0]), (real)U[1]);
-        w[i] = real_min(real_max(p->w[i], (real)W[0]), (real)W[1]);
-    }
-}
-
 static void look(const ground *f, const perturb *P, search *s, real *slope)
 {
     real u[LANES], w[LANES];
     f->foot(f, s->n, s->lane, &s->x, s->t, &s->p);
     if (f->loose)
-        within_extent(f, s->n, s->lane, &s->p, u, w);
+        f->within(f, s->n, s->lane, &s->p, u, w);
     P->is->eval(P, s->n, f->loose ? u : s->p.u, f->loose ? w : s->p.w, 1, &s->h);
     s->looks += s->n;
     gaps(s, slope);
@@ -141,7 +125,7 @@ static bool counts(const ground *f, const search *s, int i, real t)
     lane_set(&x.r, 0, lane_get(&s->x.r, i));
     lane_set(&x.s, 0, lane_get(&s->x.s, i));
     f->foot(f, 1, &s->lane[i], &x, &t, &p);
-    within_extent(f, 1, &s->lane[i], &p, &u, &w);
+    f->within(f, 1, &s->lane[i], &p, &u, &w);
     return u == p.u[0] && w == p.w[0];
 }
 
@@ -286,17 +270,22 @@ static void part_steep(const ground *g, int n, const int32_t *lane, const rays *
     k->f->is->steep(k->f, k->part, n, x, p, Pu_max, Pw_max, rate, reach);
 }
 
-static void part_extent(const ground *g, int32_t lane, double u[2], double w[2])
+static void part_within(const ground *g, int n, const int32_t *lane, const feet *p, real *u, real *w)
 {
     const part_ground *k = part_of(g);
+    double U[2], W[2];
     (void)lane;
-    k->f->is->extent(k->f, k->part, u, w);
+    k->f->is->extent(k->f, k->part, U, W);
+    for (int i = 0; i < n; i++) {
+        u[i] = real_min(real_max(p->u[i], (real)U[0]), (real)U[1]);
+        w[i] = real_min(real_max(p->w[i], (real)W[0]), (real)W[1]);
+    }
 }
 
 long displace_search(const surface *f, const perturb *P, int part, int n, const rays *x, const real *end, const int32_t *on, real *t,
                      int32_t *found)
 {
-    const part_ground k = {{part_shell, part_foot, part_steep, part_extent, NULL, f->is->loose, STEPS}, f, part};
+    const part_ground k = {{part_shell, part_foot, part_steep, part_within, f->is->loose, STEPS}, f, part};
     int32_t own[LANES];
     for (int i = 0; i < n; i++)
         own[i] = on && on[i] == part;

@@ -50,8 +50,8 @@ struct ground {
     void (*foot)(const ground *g, int n, const int32_t *lane, const rays *x, const real *t, feet *p);
     void (*steep)(const ground *g, int n, const int32_t *lane, const rays *x, const feet *p, real Pu_max, real Pw_max, real *rate,
                   real *reach);
-    void (*extent)(const ground *g, int32_t lane, double u[2], double w[2]);
-    /* Of pieces that are no rectangle in (u,w), in place of `extent`: (u,w) of the nearest place of the piece, the foot's own where it is one. */
+    /* Where `loose`, as feet may be beyond the piece, and P has no bounds there: (u,w) of the nearest place of the piece, so that the rough
+     * surface goes on from there; the foot's own where that is one. */
     void (*within)(const ground *g, int n, const int32_t *lane, const feet *p, real *u, real *w);
     bool loose;
     int steps; /* of a search at most: where the bounds are no help it goes on by this share of the shell */
