@@ -15,7 +15,8 @@ import models
 import numpy as np
 import pytest
 from conftest import PROGRAM, TOP, Kage
-from test_pov import CAMERA, FLOOR, HEAD, LIGHTS, layers, needs_povray, povray
+from parity import CAMERA, FLOOR, HEAD, LIGHTS, layers, povray
+from test_parity import needs_povray
 
 sys.path.insert(0, str(TOP / "scripts"))
 
@@ -24,7 +25,7 @@ import make_lantern  # noqa: E402
 
 def scene(kage: Kage, mesh: str, more: str = "", *, size: str = "[96, 72]", material: str = "clay") -> Path:
     path = kage.folder / "mesh.yaml"
-    head = HEAD.format(camera=CAMERA, lights=LIGHTS).replace("[200, 150]", size)
+    head = HEAD.format(camera=CAMERA, lights=LIGHTS).replace("[160, 120]", size)
     path.write_text(head + FLOOR + f"  it:\n    mesh: {{{mesh}}}\n    material: {material}\n" + "".join(f"    {line}\n" for line in more.splitlines()))
     return path
 
