@@ -12,12 +12,6 @@ enum {
     WORDS = LANES / BITS,
 };
 
-#ifdef KAGE_DOUBLE
-#define ROUNDING 4e-16
-#else
-#define ROUNDING 2.4e-7
-#endif
-
 typedef struct box {
     double lo[3], hi[3];
 } box;
@@ -169,7 +163,7 @@ static bool passes(const passage *p, const box *b)
 {
     double t0 = 0, t1 = p->end;
     for (int k = 0; k < 3; k++) {
-        const double air = 16 * ROUNDING * (p->size + fabs(b->lo[k]) + fabs(b->hi[k]));
+        const double air = 16 * REAL_ROUNDING * (p->size + fabs(b->lo[k]) + fabs(b->hi[k]));
         const double lo = b->lo[k] - air - p->r[k], hi = b->hi[k] + air - p->r[k];
         if (p->s[k] == 0) {
             t1 = lo <= 0 && hi >= 0 ? t1 : -1;
@@ -179,7 +173,7 @@ static bool passes(const passage *p, const box *b)
         t0 = fmax(t0, fmin(x, y));
         t1 = fmin(t1, fmax(x, y));
     }
-    return t0 <= t1 * (1 + 16 * ROUNDING);
+    return t0 <= t1 * (1 + 16 * REAL_ROUNDING);
 }
 
 static void visit(void *user, int32_t index)

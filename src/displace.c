@@ -5,12 +5,6 @@
 
 #include <string.h>
 
-#ifdef KAGE_DOUBLE
-#define ROUNDING R(4e-16)
-#else
-#define ROUNDING R(2.4e-7)
-#endif
-
 enum {
     STEPS = 4096, /* of a search along one ray */
     REFINE = 64,  /* halvings at most: more than a real has digits */
@@ -148,7 +142,7 @@ static void begin(const ground *f, const perturb *P, int n, const rays *x, const
         lane_set(&s->x.s, k, d);
         s->t[k] = t0[i];
         s->end[k] = t1[i];
-        s->tolerance[k] = 8 * ROUNDING * size;
+        s->tolerance[k] = 8 * R(REAL_ROUNDING) * size;
         s->shortest[k] = real_max((t1[i] - t0[i]) / (real)f->steps, s->tolerance[k] / real_sqrt(bs_dot(d, d)));
         s->side[k] = 0;
         /* one whose stretch begins farther on comes from what the shell leaves out */

@@ -20,12 +20,6 @@ enum {
 #define OVERLAP 1e-4 /* by how much of a triangle its rough surface goes on beyond it, so that no hit is between two */
 #define AIR 1e-5     /* of the boxes, against float */
 
-#ifdef KAGE_DOUBLE
-#define ROUNDING 4e-16
-#else
-#define ROUNDING 2.4e-7
-#endif
-
 static inline vec3 get(const vec3s *v, int i) { return (vec3){(double)v->x[i], (double)v->y[i], (double)v->z[i]}; }
 static inline bs_vec3 to_real(vec3 v) { return (bs_vec3){(real)v.x, (real)v.y, (real)v.z}; }
 
@@ -271,7 +265,7 @@ static void starts_on(tour *k, const pieces *g, int32_t *own)
     for (int i = 0; i < k->n; i++) {
         const double size = vec3_length(get(&k->y.r, i)) + k->f->height;
         const bool in = u[i] == p.u[i] && w[i] == p.w[i];
-        own[i] = k->own[k->of[i]] && in && fabs((double)p.h[i] - (double)h.P[i]) <= 64 * ROUNDING * size;
+        own[i] = k->own[k->of[i]] && in && fabs((double)p.h[i] - (double)h.P[i]) <= 64 * REAL_ROUNDING * size;
     }
 }
 

@@ -11,12 +11,14 @@
 typedef double real;
 #define REAL_NAME "double"
 #define REAL_INTEGER 6755399441055744.0 /* 1.5 * 2^52 */
+#define REAL_ROUNDING 4e-16             /* what a sum or product can be off, as a share, and as much again */
 #define real_sqrt(x) sqrt(x)
 #define real_abs(x) fabs(x)
 #else
 typedef float real;
 #define REAL_NAME "float"
 #define REAL_INTEGER 12582912.0f /* 1.5 * 2^23 */
+#define REAL_ROUNDING 2.4e-7
 #define real_sqrt(x) sqrtf(x)
 #define real_abs(x) fabsf(x)
 #endif

@@ -8,12 +8,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-#ifdef KAGE_DOUBLE
-#define ROUNDING 4e-16
-#else
-#define ROUNDING 2.4e-7
-#endif
-
 static inline vec3 get(const vec3s *v, int i) { return (vec3){(double)v->x[i], (double)v->y[i], (double)v->z[i]}; }
 
 static void take(const quest *k, int n, int32_t id, hits *h, quest_counts *c)
@@ -52,7 +46,7 @@ static void searched_locate(const surface *base, int n, const rays *x, const rea
     for (int i = 0; i < n; i++) {
         const vec3 r = get(&x->r, i), way = vec3_scale(get(&x->s, i), (double)t[i]);
         p.place[i] = vec3_add(r, way);
-        p.off[i] = ROUNDING * (vec3_length(r) + vec3_length(way));
+        p.off[i] = REAL_ROUNDING * (vec3_length(r) + vec3_length(way));
     }
     settle(f, n, NULL, &p);
     for (int i = 0; i < n; i++) {
@@ -177,7 +171,7 @@ static void depart(const searched *f, int n, const vec3s *at, const vec3s *s, co
     spots p;
     for (int i = 0; i < n; i++) {
         p.place[i] = get(at, i);
-        p.off[i] = 8 * ROUNDING * vec3_length(p.place[i]);
+        p.off[i] = 8 * REAL_ROUNDING * vec3_length(p.place[i]);
     }
     settle(f, n, part, &p);
     for (int first = 0; first < n; first += SHEET_BATCH) {

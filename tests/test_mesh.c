@@ -461,6 +461,72 @@ static void displaced_ball(void **state)
     displaced_as("ball", mesh_of(ball, 200, 100), sphere_new((vec3){0, 0, 0}, 1), "sin(w)^2*sin(9*u)*sin(8*w)", 0.06, 3e-3, 0.02);
 }
 
+#ifdef KAGE_DOUBLE
+/* The mean logarithm of a method's error, against true displacement. */
+static double error_of(mesh *f, double A, int order)
+{
+    static rays x;
+    static hits h, rough;
+    static partials q;
+    static heights p;
+    real u[LANES], w[LANES];
+    double sum = 0;
+    int n = 0;
+    displace_counts c = {0, 0};
+    perturb *P = bump("sin(2*u + w) + 0.5*cos(3*w - u) + 0.3", A, f);
+    assert_true(displace_prepare(&f->base, P));
+    for (int round = 0; round < 4; round++) {
+        for (int i = 0; i < LANES; i++)
+            random_ray(&x, i);
+        no_hits(&h, LANES);
+        no_hits(&rough, LANES);
+        f->base.is->hit(&f->base, LANES, &x, 0, &h);
+        displace_hit(&f->base, P, LANES, &x, NULL, 0, &rough, &c);
+        f->base.is->locate(&f->base, LANES, &x, h.t, h.part, u, w);
+        f->base.is->eval(&f->base, LANES, h.part, u, w, 2, &q);
+        P->is->eval(P, LANES, u, w, 2, &p);
+        for (int i = 0; i < LANES; i++) {
+            const bs_vec3 s = lane_get(&x.s, i), Qu = lane_get(&q.Qu, i), Qw = lane_get(&q.Qw, i), N = bs_normal(Qu, Qw);
+            const double speed = sqrt(bs_dot(s, s));
+            if (h.id[i] < 0 || rough.id[i] < 0 || rough.part[i] != h.part[i])
+                continue; /* over an edge the flat triangle's formulas do not go */
+            const bs_view v = bs_view_of(s, N, Qu, Qw);
+            if (fabs(v.sn) < 0.6 * speed)
+                continue;
+            const bs_bump b = {p.P[i], p.Pu[i], p.Pw[i], p.Puu[i], p.Puw[i], p.Pww[i]};
+            const bs_slab all = {-INFINITY, INFINITY};
+            const double bend = bs_curvature(v, N, lane_get(&q.Quu, i), lane_get(&q.Quw, i), lane_get(&q.Qww, i));
+            sum += log(fabs(rough.t[i] - h.t[i] - bs_shift_of(order, 0, v, bend, b, all).tau) * speed + 1e-300);
+            n++;
+        }
+    }
+    perturb_free(P);
+    assert_true(n > 60);
+    return sum / n;
+}
+
+/* How the errors shrink with the amplitude: on a flat mesh as on a plane (test_slopes.c). Where normals are not the triangles' own, the way
+ * to the height P is P (N.n)/(s.n), n the triangle's, and not P/(s.N): an error as the amplitude, and as the angle between the two. */
+static void error_slopes(void **state)
+{
+    (void)state;
+    const int want[4] = {2, 3, 3, 4};
+    mesh *f = mesh_of(floor_of, 3, 3);
+    for (int order = 0; order < 4; order++) {
+        const double slope = (error_of(f, 1e-2, order) - error_of(f, 1e-3, order)) / log(10);
+        print_message("flat order %d: error as A^%.3f, expected A^%d\n", order, slope, want[order]);
+        assert_true(fabs(slope - want[order]) < 0.25); /* other rays each time */
+    }
+    surface_free(&f->base);
+    mesh *coarse = mesh_of(ball, 40, 20), *fine = mesh_of(ball, 160, 80);
+    const double a = error_of(coarse, 1e-4, 3), times = (a - error_of(coarse, 1e-5, 3)) / log(10), finer = (a - error_of(fine, 1e-4, 3)) / log(4);
+    print_message("ball order 3: error as A^%.3f, and as the cells' size^%.3f\n", times, finer);
+    assert_true(fabs(times - 1) < 0.25 && fabs(finer - 1) < 0.25);
+    surface_free(&coarse->base);
+    surface_free(&fine->base);
+}
+#endif
+
 /* ---- data ---- */
 
 static mesh_data one(const float at[3][3], int n)
@@ -585,6 +651,9 @@ int main(void)
         cmocka_unit_test(the_way_past), cmocka_unit_test(own_shadows),            cmocka_unit_test(images),                cmocka_unit_test(displaced_plane),
         cmocka_unit_test(displaced_ball),         cmocka_unit_test(cleaning),              cmocka_unit_test(creases),
         cmocka_unit_test(odd_textures),
+#ifdef KAGE_DOUBLE
+        cmocka_unit_test(error_slopes),
+#endif
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
