@@ -47,6 +47,13 @@ typedef struct pov_identifier {
 
 pov_identifier pov_identify(const char *kind, const char *name, int index);
 
+/* Whether an object is made by pov_sheet: POV-Ray has no shape for it, or none for its displacement. */
+static inline bool pov_is_sheet(const scene *s, const object *o)
+{
+    const shape_kind kind = o->shape_said.kind;
+    return kind == SHAPE_SEARCHED || (s->displaced && o->shape->rough && kind != SHAPE_MESH);
+}
+
 /* All materials; and that of an object, on a part of its surface. pov_by_parts: each part has its own; pov_by_uv: its mesh must say
  * where in (u,w) vertices are. */
 void pov_materials(pov_text *t, const scene *s);

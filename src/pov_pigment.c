@@ -236,7 +236,7 @@ void pov_texture(pov_text *t, const scene *s, const object *o, int part)
 bool pov_by_uv(const scene *s, const object *o)
 {
     const bool cone = o->shape_said.kind == SHAPE_CONE && s->displaced && o->bump; /* by no warp: its w is that of the foot */
-    return s->material[o->material].pattern && (cone || o->shape_said.kind == SHAPE_SEARCHED || o->shape_said.kind == SHAPE_MESH);
+    return s->material[o->material].pattern && (cone || pov_is_sheet(s, o) || o->shape_said.kind == SHAPE_MESH);
 }
 
 bool pov_by_parts(const scene *s, const object *o)

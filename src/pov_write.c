@@ -226,7 +226,7 @@ bool pov_write(const scene *s, const pov_options *how, const char *path, pov_rep
         const object *o = &s->object[k];
         pov_print(&t, "// object %s: %s%s%s\n", o->name, o->shape->is->kind, o->bump ? ", bump by " : "",
                   o->bump ? o->bump->is->kind : "");
-        if (o->shape_said.kind == SHAPE_SEARCHED)
+        if (pov_is_sheet(s, o))
             good = pov_sheet(&t, s, o);
         else if (o->shape_said.kind == SHAPE_MESH)
             good = pov_triangles(&t, s, o);

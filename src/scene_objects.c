@@ -251,7 +251,7 @@ static void place(reader *r, node *v, object *o)
     if (!good || !o->moved || !o->own || !reader_place(r, at, o))
         return;
     if (o->bump && !o->shape->is->foot && !o->shape->rough && scene_wants_truth(r->s))
-        yaml_error(r->y, at, "a %s with a bump is stretched more one way than another, expected the same scale all ways for %s",
+        yaml_error(r->y, at, "a %s with caps and a bump is stretched more one way than another, expected the same scale all ways, or 'open: true', for %s",
                    o->shape->is->kind, r->s->displaced ? "surface displaced" : "shadow exact");
 }
 

@@ -55,6 +55,10 @@ bool reader_no_shape(reader *r, node *at); /* it has none; otherwise an error is
 /* What `transform` says, after what *m is already. False: an error is told. (scene_transform.c) */
 bool reader_transform(reader *r, node *at, affine *m);
 
+/* A round shape about the origin as a sheet, which bears every transform truly displaced. NULL: it has ends (caps) or is not round, or
+ * out of memory. (scene_turned.c) */
+surface *reader_turned(const shape_spec *f);
+
 /* Put an object's shape where `placed` says. False: an error is told, at the node. */
 bool reader_place(reader *r, node *at, object *o);
 

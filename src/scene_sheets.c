@@ -84,7 +84,7 @@ surface *reader_parametric(reader *r, node *at, shape_spec *said)
             expr_free(e[k]);
         return NULL;
     }
-    return search(r, at, sheet_function(e, u, w),
+    return search(r, at, sheet_function("parametric", e, u, w),
                   "a surface without bounds, or all in one place, expected functions that are bounded over the range of u and w");
 }
 

@@ -171,15 +171,23 @@ static surface *centred(const shape_spec *f, vec3 *middle)
     return NULL;
 }
 
+static bool wants_truth(const reader *r, const object *o) { return o->bump && scene_wants_truth(r->s); }
+
 /* An image with all that the original has, where true displacement needs that. */
-static surface *image_of(const reader *r, const object *o, const surface *from, const affine *m)
+static surface *image_of(const reader *r, object *o, const surface *from, const affine *m)
 {
-    const bool truth = o->bump && scene_wants_truth(r->s);
-    if (truth && o->shape_said.kind == SHAPE_SEARCHED)
-        return searched_moved(from, m);
+    const bool truth = wants_truth(r, o);
     if (truth && o->shape_said.kind == SHAPE_MESH)
         return mesh_moved(from, m);
-    return surface_transformed(from, m);
+    if (truth && o->shape_said.kind == SHAPE_SEARCHED)
+        return searched_moved(from, m);
+    surface *f = surface_transformed(from, m), *turned = f && truth && !f->is->foot ? reader_turned(&o->shape_said) : NULL;
+    if (!turned)
+        return f;
+    surface_free(f);
+    surface_free(o->centred);
+    o->centred = turned;
+    return searched_moved(turned, m);
 }
 
 /* A mesh has no edges of its own: its size is that of the sphere around it. */

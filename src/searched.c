@@ -293,7 +293,7 @@ static surface_methods *methods_of(const sheet *q)
     surface_methods *is = malloc(sizeof *is);
     if (is)
         *is = (surface_methods){
-            .kind = q->is->kind,
+            .kind = q->kind,
             .hit = searched_hit,
             .hit_own = searched_hit_own,
             .locate = searched_locate,

@@ -30,8 +30,6 @@ typedef struct sheet_bends {
 typedef struct sheet sheet;
 
 typedef struct sheet_methods {
-    const char *kind; /* as in the scene file */
-
     /* order 0: Q; 1: also Qu and Qw; 2: also Quu, Quw and Qww. Reentrant, no allocation; each lane by itself. (u,w) may lie
      * beyond the range: what holds there is the same formula. */
     void (*eval)(const sheet *q, int n, const int32_t *part, const double *u, const double *w, int order, sheet_jets *out);
@@ -45,12 +43,13 @@ typedef struct sheet_methods {
 
 struct sheet {
     const sheet_methods *is;
+    const char *kind; /* as in the scene file */
     int parts;
     double u[2], w[2]; /* the range, of every part */
 };
 
-/* Q from three expressions over u[0]..u[1], w[0]..w[1]. Owns them, also on failure. NULL: out of memory. */
-sheet *sheet_function(expr *const xyz[3], const double u[2], const double w[2]);
+/* Q from three expressions over u[0]..u[1], w[0]..w[1]. Owns them, also on failure. kind: a constant. NULL: out of memory. */
+sheet *sheet_function(const char *kind, expr *const xyz[3], const double u[2], const double w[2]);
 
 /* Bicubic Bezier patches, each a part over 0..1 in u and in w, from 16 control points each: point 4 j + i goes with the i-th
  * Bernstein polynomial in u and the j-th in w. Copies them. NULL: out of memory. */

@@ -190,7 +190,7 @@ static void bezier_free(sheet *base)
     free(q);
 }
 
-static const sheet_methods bezier_methods = {"patches", bezier_eval, bezier_bound, bezier_free};
+static const sheet_methods bezier_methods = {bezier_eval, bezier_bound, bezier_free};
 
 sheet *sheet_bezier(int patches, const vec3 *point)
 {
@@ -210,6 +210,6 @@ sheet *sheet_bezier(int patches, const vec3 *point)
             q->axis[1][i][k] = p.y;
             q->axis[2][i][k] = p.z;
         }
-    q->base = (sheet){&bezier_methods, patches, {0, 1}, {0, 1}};
+    q->base = (sheet){&bezier_methods, "patches", patches, {0, 1}, {0, 1}};
     return &q->base;
 }

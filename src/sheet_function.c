@@ -36,9 +36,9 @@ static void function_free(sheet *base)
     free(q);
 }
 
-static const sheet_methods function_methods = {"parametric", function_eval, function_bound, function_free};
+static const sheet_methods function_methods = {function_eval, function_bound, function_free};
 
-sheet *sheet_function(expr *const xyz[3], const double u[2], const double w[2])
+sheet *sheet_function(const char *kind, expr *const xyz[3], const double u[2], const double w[2])
 {
     function *q = calloc(1, sizeof *q);
     for (int k = 0; k < 3; k++) {
@@ -49,6 +49,6 @@ sheet *sheet_function(expr *const xyz[3], const double u[2], const double w[2])
     }
     if (!q)
         return NULL;
-    q->base = (sheet){&function_methods, 1, {u[0], u[1]}, {w[0], w[1]}};
+    q->base = (sheet){&function_methods, kind, 1, {u[0], u[1]}, {w[0], w[1]}};
     return &q->base;
 }

@@ -9,7 +9,6 @@
 
 typedef struct moved {
     sheet base;
-    sheet_methods methods; /* its own, for the kind is that of `from` */
     const sheet *from;
     double M[3][3], o[3]; /* M[k]: how coordinate k goes by x, y and z */
     double turn, ends;    /* u there is ends + turn u here */
@@ -89,6 +88,8 @@ static void moved_bound(const sheet *base, int part, const double u[2], const do
 
 static void moved_free(sheet *q) { free(q); }
 
+static const sheet_methods moved_methods = {moved_eval, moved_bound, moved_free};
+
 sheet *sheet_moved(const sheet *from, const affine *m)
 {
     moved *q = calloc(1, sizeof *q);
@@ -96,8 +97,7 @@ sheet *sheet_moved(const sheet *from, const affine *m)
     if (!q)
         return NULL;
     q->base = *from;
-    q->base.is = &q->methods;
-    q->methods = (sheet_methods){from->is->kind, moved_eval, moved_bound, moved_free};
+    q->base.is = &moved_methods;
     q->from = from;
     q->turn = affine_volume(m) < 0 ? -1 : 1;
     q->ends = q->turn < 0 ? from->u[0] + from->u[1] : 0;

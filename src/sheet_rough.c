@@ -15,7 +15,6 @@
 
 typedef struct rough {
     sheet base;
-    sheet_methods methods; /* its own, for the kind is that of q */
     const sheet *q;
     const perturb *P;
 } rough;
@@ -178,14 +177,15 @@ static void rough_bound(const sheet *base, int part, const double u[2], const do
 
 static void rough_free(sheet *q) { free(q); }
 
+static const sheet_methods rough_methods = {rough_eval, rough_bound, rough_free};
+
 sheet *sheet_rough(const sheet *q, const perturb *P)
 {
     rough *k = calloc(1, sizeof *k);
     if (!k)
         return NULL;
     k->base = *q;
-    k->base.is = &k->methods;
-    k->methods = (sheet_methods){q->is->kind, rough_eval, rough_bound, rough_free};
+    k->base.is = &rough_methods;
     k->q = q;
     k->P = P;
     return &k->base;

@@ -415,6 +415,10 @@ SHEETS_DISPLACED = {
     "waves, mirrored": (f"{TABLE}\n    transform: {MOVES['mirrored']}", "{function: '0.02*sin(9*u + 1)*sin(9*w)'}"),
     "moebius": (SHEETS["moebius"], "{function: '0.02*sin(9*u)*sin(9*w)'}"),
     "saddle": (SHEETS["saddle"], "{function: '0.03*sin(18*u)*sin(18*w)'}"),
+    "stretched sphere": (moved("sphere", "stretched"), ROUND),
+    "sheared torus": (moved("torus", "sheared"), WAVES),
+    "stretched open cone": ("cone: {from: [0, -0.8, 0], from_radius: 1, to: [0.1, 0.9, 0.1], to_radius: 0.3, open: true}\n"
+                            f"    transform: {MOVES['stretched']}", WAVES),
     "teapot": (f"patches: {{file: {POT}}}\n    transform: [{{scale: 0.4}}]", "{function: '0.02*sin(3*pi*u)*sin(3*pi*w)'}"),  # 0 where they join
 }
 

@@ -876,16 +876,20 @@ STRETCHED = SCENE.replace(
 
 @pytest.mark.parametrize(("change", "what"), [("render.surface=displaced", "surface displaced"), ("render.shadow=exact", "shadow exact")])
 def test_stretched_and_displaced(bench: Kage, change: str, what: str) -> None:
-    """No foot is known of an ellipsoid; without a need for one it serves."""
-    message = f"a sphere with a bump is stretched more one way than another, expected the same scale all ways for {what}"
-    assert refused_scene(bench, STRETCHED, "--set", change)[0] == f"scene.yaml:24:16: {message}"
-    copied = SCENE + "    bump: {function: 0.1 * sin(u)}\n  egg: {copy: ball, transform: [{scale: [1, 2, 1]}]}\n"
+    """No foot is known of what a stretched cylinder becomes, and with caps it is no one sheet; without a need for one it serves, and open, and an
+    ellipsoid."""
+    drum = "cylinder: {from: [1, 1, 0], to: [1, 2, 0], radius: 0.5}"
+    message = ("a cylinder with caps and a bump is stretched more one way than another, expected the same scale all ways, or 'open: true', "
+               f"for {what}")
+    ball = "sphere: {center: [1, 1, 0], radius: 0.5}"
+    assert refused_scene(bench, STRETCHED.replace(ball, drum), "--set", change)[0] == f"scene.yaml:24:16: {message}"
+    copied = SCENE.replace(ball, drum) + "    bump: {function: 0.1 * sin(u)}\n  egg: {copy: ball, transform: [{scale: [1, 2, 1]}]}\n"
     assert refused_scene(bench, copied, "--set", change)[0] == f"scene.yaml:25:32: {message}"
-    (bench.folder / "scene.yaml").write_text(STRETCHED)
+    (bench.folder / "scene.yaml").write_text(STRETCHED.replace(ball, drum))
     bench.good("render", "scene.yaml", "-o", "out.png", "--quiet", "--shadow", "march:4")
-    cube = STRETCHED.replace("sphere: {center: [1, 1, 0], radius: 0.5}", "box: {from: [1, 1, 0], to: [2, 2, 1]}")
-    (bench.folder / "scene.yaml").write_text(cube)
-    bench.good("render", "scene.yaml", "-o", "out.png", "--quiet", "--set", change)
+    for shape in (ball, drum.replace("}", ", open: true}"), "box: {from: [1, 1, 0], to: [2, 2, 1]}"):
+        (bench.folder / "scene.yaml").write_text(STRETCHED.replace(ball, shape))
+        bench.good("render", "scene.yaml", "-o", "out.png", "--quiet", "--set", change)
 
 
 def test_copies(bench: Kage) -> None:

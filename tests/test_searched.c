@@ -31,7 +31,7 @@ static sheet *function(const char *x, const char *y, const char *z, double u0, d
     expr_error wrong;
     expr *e[3] = {expr_parse(x, &wrong), expr_parse(y, &wrong), expr_parse(z, &wrong)};
     assert_true(e[0] && e[1] && e[2]);
-    return sheet_function(e, (double[2]){u0, u1}, (double[2]){w0, w1});
+    return sheet_function("parametric", e, (double[2]){u0, u1}, (double[2]){w0, w1});
 }
 
 static const double pi = 3.14159265358979323846;
