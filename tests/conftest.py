@@ -15,6 +15,14 @@ import pytest
 TOP = Path(__file__).resolve().parent.parent
 PROGRAM = Path(os.environ.get("KAGE", TOP / "build" / "float" / "kage")).resolve()
 
+#: The files that take longest, which begin first, so that two workers end together.
+LONG = ("test_parity.py", "test_regression.py", "test_images.py", "test_pov.py", "test_input.py", "test_mesh.py", "test_bench_run.py")
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    items.sort(key=lambda item: LONG.index(item.path.name) if item.path.name in LONG else len(LONG))
+
+
 #: A scene with one of everything that can be wrong. Tests replace parts of it.
 SCENE = """\
 camera: {from: [0, 3, -5], at: [0, 0, 0], up: [0, 1, 0], fov: 40}
