@@ -4,6 +4,10 @@
 #include <stdio.h>
 #include <string.h>
 
+#if defined(_OPENMP)
+#include <omp.h>
+#endif
+
 #include "real.h"
 
 static const char help[] =
@@ -80,6 +84,10 @@ scene *command_scene(const arguments *a)
     progress p;
     progress_start(&p, a->quiet, base_name(a->operand[0]), 0);
     const watch w = {progress_load, &p};
+#if defined(_OPENMP)
+    if (a->threads > 0) /* also where a scene is made ready (leaf.c) */
+        omp_set_num_threads(a->threads);
+#endif
     scene *s = scene_read(a->operand[0], a->sets, a->set, &w, &e);
     progress_end(&p);
     if (!s)
