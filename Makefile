@@ -14,6 +14,8 @@ BUILD    ?= build/$(REAL)
 BENCH    ?= normal
 PREFIX   ?= /usr/local
 Q         = $(if $(V),,@)
+# As many jobs as processors, unless make was told how many.
+JOBS      = $(if $(findstring jobserver,$(MAKEFLAGS)),,-j$(shell nproc 2>/dev/null || echo 1))
 
 PKGS      = libpng libfyaml OpenEXR assimp
 WARNINGS  = -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wdouble-promotion -Wmissing-prototypes \
@@ -55,7 +57,7 @@ GALLERY   = $(patsubst scenes/gallery/%.yaml,%,$(wildcard scenes/gallery/*.yaml)
 
 .PHONY: all render bench readme reference accept test unit-tests program-tests install clean help bootstrap FORCE
 all: bootstrap
-	@$(MAKE) --no-print-directory $(BUILD)/kage
+	@$(MAKE) --no-print-directory $(JOBS) $(BUILD)/kage
 
 help:
 	@echo 'make            build the tracer, $(BUILD)/kage'
@@ -148,15 +150,18 @@ $(BUILD)/test_%: $(BUILD)/test_%.o $(LIBRARY:%=$(BUILD)/%.o)
 # The units in C, in float and in double; then the program and the scripts, in Python.
 test: all
 	@CC='$(CC)' scripts/bootstrap test python
-	@$(MAKE) --no-print-directory unit-tests REAL=float
-	@$(MAKE) --no-print-directory unit-tests REAL=double
+	@$(MAKE) --no-print-directory $(JOBS) unit-tests REAL=float
+	@$(MAKE) --no-print-directory $(JOBS) unit-tests REAL=double
 	@$(MAKE) --no-print-directory program-tests
 
 unit-tests: $(UNITS:%=$(BUILD)/%)
-	@for t in $(UNITS); do $(BUILD)/$$t || exit 1; done
+	@$(MAKE) --no-print-directory --output-sync=target $(UNITS:%=run-%)
+
+run-%: $(BUILD)/%
+	@$<
 
 program-tests: $(BUILD)/kage
-	@$(MAKE) --no-print-directory REAL=double build/double/kage
+	@$(MAKE) --no-print-directory $(JOBS) REAL=double build/double/kage
 	scripts/venv python -m pytest -q -n auto --dist loadfile tests # a file's tests share what they make
 
 # What POV-Ray, valgrind or a Python package would tell is left out where they are missing and can't be installed.

@@ -16,7 +16,7 @@ TOP = Path(__file__).resolve().parent.parent
 PROGRAM = Path(os.environ.get("KAGE", TOP / "build" / "float" / "kage")).resolve()
 
 #: The files that take longest, which begin first, so that two workers end together.
-LONG = ("test_parity.py", "test_regression.py", "test_images.py", "test_pov.py", "test_input.py", "test_mesh.py", "test_bench_run.py")
+LONG = ("test_parity.py", "test_bench_run.py", "test_images.py", "test_regression.py", "test_input.py", "test_mesh.py", "test_pov.py")
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

@@ -374,7 +374,7 @@ AREA = "{a: {at: [-3, 5, -2], area: {u: [1.5, 0, 0], w: [0, 0, 1], samples: [3, 
 #: name: (sheet, material, lights, camera), on a floor
 SHEETS_SMOOTH = {
     **{f"{material} {name}": (SHEETS[name], material, LIGHTS, CAMERA)
-       for material, name in (("clay", "waves"), ("glaze", "moebius"), ("shiny", "shell"), ("glaze", "saddle"), ("clay", "spout"), ("shiny", "teapot"))},
+       for material, name in (("clay", "waves"), ("glaze", "moebius"), ("shiny", "shell"), ("glaze", "saddle"), ("shiny", "teapot"))},
     "waves, area light": (SHEETS["waves"], "shiny", AREA, CAMERA),
     "moebius, spot": (SHEETS["moebius"], "clay", SPOT, CAMERA),
     "saddle, parallel": (SHEETS["saddle"], "shiny", PARALLEL, CAMERA),
@@ -530,8 +530,9 @@ def displaced_ones() -> Iterator[Scene]:
                 yield Scene(row, column, name, displaced(name), size,
                             ("--surface", "displaced", *(["--no-self-shadow"] if column == "displaced" else [])), least, shape=made)
     for name, (shape, bump) in SHEETS_DISPLACED.items():
+        size = (48, 36) if name == "stretched sphere" else (80, 60)  # that is slow
         yield Scene(surface_in(shape), "own shadows", name, HEAD.format(camera=CAMERA, lights=LIGHTS)
-                    + f"{FLOOR}  rough:\n    {shape}\n    material: shiny\n    bump: {bump}\n", (80, 60), ("--surface", "displaced"), 0.995,
+                    + f"{FLOOR}  rough:\n    {shape}\n    material: shiny\n    bump: {bump}\n", size, ("--surface", "displaced"), 0.995,
                     shape="mesh2")
     for name in ("plane", "plane, map"):
         for light, lights in (("parallel", "{a: {at: [-0.3, 1, -0.2], parallel: {to: [0, 0, 0]}}}"),
