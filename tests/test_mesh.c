@@ -119,10 +119,11 @@ static double apart(bs_vec3 a, bs_vec3 b) { return vec3_length(vec3_sub(wide(a),
 /* t of the plane of a triangle, and whether the ray is within its edges by the signs of volumes; in long double. */
 static bool brute(const mesh *f, int k, vec3 r, vec3 s, long double *t)
 {
-    long double p[3][3], S[3] = {s.x, s.y, s.z}, v[3];
+    const long double R[3] = {(long double)r.x, (long double)r.y, (long double)r.z};
+    long double p[3][3], S[3] = {(long double)s.x, (long double)s.y, (long double)s.z}, v[3];
     for (int i = 0; i < 3; i++)
         for (int a = 0; a < 3; a++)
-            p[i][a] = (long double)f->d.at[k][i][a] - (a == 0 ? r.x : a == 1 ? r.y : r.z);
+            p[i][a] = (long double)f->d.at[k][i][a] - R[a];
     for (int i = 0; i < 3; i++) {
         const long double *b = p[i], *c = p[(i + 1) % 3];
         v[i] = S[0] * (b[1] * c[2] - b[2] * c[1]) + S[1] * (b[2] * c[0] - b[0] * c[2]) + S[2] * (b[0] * c[1] - b[1] * c[0]);
