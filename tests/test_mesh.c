@@ -495,7 +495,7 @@ static double error_of(mesh *f, double A, int order)
             if (fabs(v.sn) < 0.6 * speed)
                 continue;
             const bs_bump b = {p.P[i], p.Pu[i], p.Pw[i], p.Puu[i], p.Puw[i], p.Pww[i]};
-            const bs_slab all = {-INFINITY, INFINITY};
+            const bs_slab all = {-HUGE_VAL, HUGE_VAL};
             const double bend = bs_curvature(v, N, lane_get(&q.Quu, i), lane_get(&q.Quw, i), lane_get(&q.Qww, i));
             sum += log(fabs(rough.t[i] - h.t[i] - bs_shift_of(order, 0, v, bend, b, all).tau) * speed + 1e-300);
             n++;
