@@ -18,8 +18,7 @@ typedef struct box {
 
 struct crowd {
     int objects, bounded;
-    bool *endless;   /* of each object */
-    int32_t *object; /* of each box */
+    int32_t *object; /* of each box; then those that have none, as they have no end */
     box *box;
     bvh_space space; /* about all boxes */
     bvh *tree;       /* over them */
@@ -78,15 +77,14 @@ crowd *crowd_new(const scene *s, bool *good)
 {
     const size_t n = (size_t)s->objects;
     crowd *c = calloc(1, sizeof *c);
-    *good = c && (c->endless = calloc(n, sizeof *c->endless)) && (c->object = malloc(sizeof *c->object * n)) &&
-            (c->box = malloc(sizeof *c->box * n));
-    for (int i = 0; *good && i < s->objects; i++) {
+    *good = c && (c->object = malloc(sizeof *c->object * n)) && (c->box = malloc(sizeof *c->box * n));
+    for (int i = 0, endless = 0; *good && i < s->objects; i++) {
         const box b = box_of(s, &s->object[i]);
-        c->endless[i] = !has_end(&b);
-        if (c->endless[i])
-            continue;
-        c->box[c->bounded] = b;
-        c->object[c->bounded++] = i;
+        if (has_end(&b)) {
+            c->box[c->bounded] = b;
+            c->object[c->bounded++] = i;
+        } else
+            c->object[s->objects - ++endless] = i;
     }
     if (*good && c->bounded > FEW) {
         c->objects = s->objects;
@@ -104,7 +102,6 @@ void crowd_free(crowd *c)
     if (!c)
         return;
     bvh_free(c->tree);
-    free(c->endless);
     free(c->object);
     free(c->box);
     free(c);
@@ -186,9 +183,9 @@ static void visit(void *user, int32_t index)
 void crowd_meet(const crowd *c, int n, const rays *x, const real *end, const int32_t *own, meetings *m)
 {
     clear(m);
-    for (int32_t k = 0; k < c->objects; k++)
-        for (int i = 0; c->endless[k] && i < n; i++)
-            note(m, k, i);
+    for (int k = c->bounded; k < c->objects; k++)
+        for (int i = 0; i < n; i++)
+            note(m, c->object[k], i);
     for (int i = 0; i < n; i++) {
         const vec3 r = {(double)x->r.x[i], (double)x->r.y[i], (double)x->r.z[i]};
         const vec3 s = {(double)x->s.x[i], (double)x->s.y[i], (double)x->s.z[i]};

@@ -32,9 +32,6 @@ void searched_free_rough(rough_form *first);
 /* For true displacement. */
 extern const struct displaced searched_displaced;
 
-/* The stretch of a ray within a sphere about the sheet's centre, and the same ray in the trees' units. False: there is none. */
-bool searched_enter(const searched *f, double radius, vec3 r, vec3 s, double *from, double *to, float at[3], float way[3], float *end);
-
 /* The rays that are searched, each from the place of it that is nearest to the sheet's centre on, so that no digit is lost to a
  * far eye: r + s (t - start) is where the ray is at t. */
 typedef struct quest {

@@ -276,15 +276,10 @@ void quest_add(quest *k, int i, vec3 r, vec3 s, double from, double to)
     k->found[i] = k->unsure[i] = false;
 }
 
-bool searched_enter(const searched *f, double radius, vec3 r, vec3 s, double *from, double *to, float at[3], float way[3], float *end)
-{
-    const bvh_space space = {f->l.centre, f->l.radius};
-    return bvh_enter(&space, radius, r, s, from, to, at, way, end);
-}
-
 void quest_run(quest *k, int n)
 {
     const searched *f = k->f;
+    const bvh_space space = {f->l.centre, f->l.radius};
     hunt h;
     h.k = k;
     h.p.n = h.waiting = 0;
@@ -294,7 +289,7 @@ void quest_run(quest *k, int n)
         float r[3], s[3], end;
         double from = k->from[i], to = k->to[i];
         h.lane = i;
-        if (searched_enter(f, f->l.radius, k->r[i], k->s[i], &from, &to, r, s, &end))
+        if (bvh_enter(&space, space.radius, k->r[i], k->s[i], &from, &to, r, s, &end))
             bvh_along(f->tree, r, s, end, visit, &h);
     }
     halve_all(&h);
