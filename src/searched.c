@@ -82,20 +82,20 @@ static bool has_two_directions(vec3 U, vec3 W)
 }
 
 /* Where Qu x Qw = 0, as at the end of a patch that is but a point, n is the limit from within the range: that a little way off. One of
- * the partials is made so short that bs_regular still sees that there is no second direction. */
+ * the partials is made so short that bs_regular still sees that there is no second direction. Only directions count
+ * there: where both are short, as at a cusp, the longer one is made LONG, so that float holds the square of their
+ * product. */
 static void take_limit(const sheet *q, int32_t part, double u, double w, int lane, vec3s *Qu, vec3s *Qw)
 {
-    const double NEAR = 1e-6, SHORT = 1e-9;
+    const double NEAR = 1e-6, SHORT = 1e-9, LONG = 1e-4;
     sheet_jets j;
     u += NEAR * (0.5 * (q->u[0] + q->u[1]) - u);
     w += NEAR * (0.5 * (q->w[0] + q->w[1]) - w);
     q->is->eval(q, 1, &part, &u, &w, 1, &j);
     vec3 U = along_u(&j, 0), W = along_w(&j, 0);
-    const double lu = vec3_length(U), lw = vec3_length(W);
-    if (lu < lw)
-        U = vec3_scale(U, SHORT * lw / lu);
-    else
-        W = vec3_scale(W, SHORT * lu / lw);
+    const double lu = vec3_length(U), lw = vec3_length(W), l = fmax(fmax(lu, lw), LONG);
+    U = vec3_scale(U, (lu < lw ? SHORT : 1) * l / lu);
+    W = vec3_scale(W, (lu < lw ? 1 : SHORT) * l / lw);
     put3(1, &U.x, &U.y, &U.z, Qu, lane);
     put3(1, &W.x, &W.y, &W.z, Qw, lane);
 }

@@ -100,12 +100,12 @@ static void rough_feet(const surface *base, const perturb *P, int n, const rays 
     for (int i = 0; i < n; i++) {
         const bs_vec3 at = lane_at(x, i, t[i]), Q = lane_get(&q.Q, i), up = {at.x - Q.x, at.y - Q.y, at.z - Q.z};
         const bs_vec3 Qu = lane_get(&q.Qu, i), Qw = lane_get(&q.Qw, i);
-        p->h[i] = bs_dot(up, lane_unit(bs_normal(Qu, Qw)));
+        p->h[i] = bs_dot(up, offset_unit(bs_normal(Qu, Qw)));
         const offset o = offset_of(Qu, Qw, lane_get(&q.Quu, i), lane_get(&q.Quw, i), lane_get(&q.Qww, i), p->h[i]);
         const bs_vec3 Wn = bs_cross(o.W, o.n), nU = bs_cross(o.n, o.U);
         lane_set(&p->gh, i, o.n);
-        lane_set(&p->gu, i, offset_mix(Wn, 1 / bs_dot(o.U, Wn) - 1, Wn));
-        lane_set(&p->gw, i, offset_mix(nU, 1 / bs_dot(o.W, nU) - 1, nU));
+        lane_set(&p->gu, i, offset_scale(Wn, 1 / bs_dot(o.U, Wn)));
+        lane_set(&p->gw, i, offset_scale(nU, 1 / bs_dot(o.W, nU)));
     }
 }
 

@@ -15,6 +15,7 @@
 #include "displace.h"
 #include "golden_json.h"
 #include "lane.h"
+#include "offset.h"
 #include "patch_file.h"
 #include "random_rays.h"
 #include "sheet.h"
@@ -629,6 +630,78 @@ static void displaced_as_closed_forms(void **state)
     surface_free(g);
 }
 
+static bs_vec3 times(bs_vec3 v, real k) { return (bs_vec3){k * v.x, k * v.y, k * v.z}; }
+
+/* In other units the rough surface has the same normals, and its partials are in these units. */
+static void displaced_at_any_scale(void **state)
+{
+    (void)state;
+    const bs_vec3 Qu = {R(1.1), R(0.2), R(-0.3)}, Qw = {R(-0.1), R(0.4), R(1.3)}, Quu = {R(0.2), R(-0.5), R(0.1)};
+    const bs_vec3 Quw = {R(0.3), R(0.1), R(-0.2)}, Qww = {R(-0.1), R(0.6), R(0.2)};
+    const real h = R(0.05), Pu = R(0.3), Pw = R(-0.4);
+    const real scales[] = {R(1e-12), R(1e-3), 800, R(2e3), R(1e4), R(1e6), R(1e12)};
+    const offset one = offset_of(Qu, Qw, Quu, Quw, Qww, h);
+    const bs_vec3 normal = offset_normal(one, Pu, Pw);
+    assert_true(fabs((double)bs_dot(one.n, one.n) - 1) < 4 * EPS);
+    for (int i = 0; i < (int)(sizeof scales / sizeof *scales); i++) {
+        const real k = scales[i];
+        const offset o = offset_of(times(Qu, k), times(Qw, k), times(Quu, k), times(Quw, k), times(Qww, k), k * h);
+        assert_true(distance(o.n, one.n) < 8 * EPS);
+        assert_true(distance(times(o.U, 1 / k), one.U) < 8 * EPS && distance(times(o.W, 1 / k), one.W) < 8 * EPS);
+        assert_true(distance(offset_normal(o, k * Pu, k * Pw), normal) < 8 * EPS);
+    }
+}
+
+static surface *saddle(double k)
+{
+    vec3 p[16];
+    for (int i = 0; i < 16; i++)
+        p[i] = vec3_scale((vec3){0.8 * (i % 4) - 1.2, 0.5 * (i % 3 == 0), 0.8 * (i / 4) - 1.2}, k);
+    return searched_new(sheet_bezier(1, p));
+}
+
+/* How the height, u and w change in space: u and w by one over the scale. */
+static void feet_at_any_scale(void **state)
+{
+    (void)state;
+    const double U[2] = {0, 1}, W[2] = {0, 1}, scales[] = {1, 1e-3, 1e3, 1e4};
+    static feet one, p;
+    static rays x;
+    static real t[LANES];
+    int32_t part[LANES] = {0};
+    for (int k = 0; k < 4; k++) {
+        const double size = scales[k];
+        const real c = (real)size;
+        surface *f = saddle(size);
+        perturb *P = bumps(0.03 * size, U, W);
+        assert_true(displace_prepare(f, P));
+        partials q;
+        heights h;
+        for (int i = 0; i < LANES; i++) {
+            p.u[i] = R(0.1) + R(0.8) * (real)(i % 8) / 8;
+            p.w[i] = R(0.1) + R(0.8) * (real)(i / 8 % 8) / 8;
+            t[i] = 0;
+        }
+        f->is->eval(f, LANES, part, p.u, p.w, 1, &q);
+        P->is->eval(P, LANES, p.u, p.w, 1, &h);
+        for (int i = 0; i < LANES; i++) {
+            const bs_vec3 n = lane_unit(bs_normal(lane_get(&q.Qu, i), lane_get(&q.Qw, i))), Q = lane_get(&q.Q, i);
+            lane_set(&x.r, i, (bs_vec3){Q.x + h.P[i] * n.x, Q.y + h.P[i] * n.y, Q.z + h.P[i] * n.z});
+            lane_set(&x.s, i, n);
+        }
+        f->rough->feet(f, P, LANES, &x, t, part, &p);
+        one = k ? one : p;
+        for (int i = 0; i < LANES; i++) {
+            assert_true(fabs((double)(p.h[i] - h.P[i])) < 20 * EPS * size);
+            assert_true(distance(lane_get(&p.gh, i), lane_get(&one.gh, i)) < 100 * EPS);
+            assert_true(distance(times(lane_get(&p.gu, i), c), lane_get(&one.gu, i)) < 100 * EPS);
+            assert_true(distance(times(lane_get(&p.gw, i), c), lane_get(&one.gw, i)) < 100 * EPS);
+        }
+        perturb_free(P);
+        surface_free(f);
+    }
+}
+
 #ifdef KAGE_DOUBLE
 /* How the orders' errors shrink with the amplitude: as on a sphere (test_slopes.c). */
 static double error_of(surface *f, double A, int order, const rays *x, const hits *h, const partials *q, const real *u, const real *w)
@@ -710,6 +783,7 @@ int main(void)
         cmocka_unit_test(own_shadows),     cmocka_unit_test(brute_force),             cmocka_unit_test(no_cracks),
         cmocka_unit_test(degenerate_edges), cmocka_unit_test(odd_rays),               cmocka_unit_test(each_ray_by_itself),
         cmocka_unit_test(refused),         cmocka_unit_test(displaced_as_closed_forms),
+        cmocka_unit_test(displaced_at_any_scale), cmocka_unit_test(feet_at_any_scale),
         cmocka_unit_test(rough_bounds),
 #ifdef KAGE_DOUBLE
         cmocka_unit_test(error_slopes),

@@ -4,13 +4,14 @@ threads. POV-Ray's picture of them: test_parity.py.
 
 from __future__ import annotations
 
+import re
 import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 from conftest import TOP, Kage
-from parity import CAMERA, FLOOR, HEAD, LIGHTS, SHEETS
+from parity import CAMERA, FLOOR, HEAD, LIGHTS, SHEETS, layers
 
 sys.path.insert(0, str(TOP / "scripts"))
 
@@ -121,3 +122,92 @@ def test_threads(kage: Kage, options: list[str]) -> None:
         kage.good("render", path, "-o", "x.exr", "--quiet", "--threads", str(threads), *options)
         made.append((kage.folder / "x.exr").read_bytes())
     assert made[0] == made[1] == made[2]
+
+
+# ---- the same scene in other units ----
+
+SCALES = (1e-3, 1e3, 1e4)
+PATCH_PLACES = [(0.8 * i - 1.2, 1 + 0.5 * (i % 3 == 0) - 0.6 * (j % 3 == 0), 0.8 * j - 1.2)
+                for j in range(4) for i in range(4)]
+
+
+def times(k: float, *at: float) -> str:
+    return str([k * x for x in at])
+
+
+#: a shape and its bump, k times as large
+SCALED = {
+    "waves": lambda k: (f'parametric: {{x: "{k}*u", y: "{k}*(1 + 0.2*sin(3*u)*cos(2*w))", z: "{k}*w", '
+                        "u: [-1, 1], w: [-1, 1]}",
+                        f'{{function: "{0.02 * k}*sin(9*u)*sin(9*w)"}}'),
+    "waves, the range too": lambda k: (
+        f'parametric: {{x: "u", y: "{k}*(1 + 0.2*sin(3*u/{k})*cos(2*w/{k}))", z: "w", '
+        f"u: {times(k, -1, 1)}, w: {times(k, -1, 1)}}}",
+        f'{{function: "{0.02 * k}*sin(9*u/{k})*sin(9*w/{k})"}}'),
+    "ball": lambda k: (f'parametric: {{x: "{k}*sin(w)*cos(u)", y: "{k}*(1 + cos(w))", z: "{k}*sin(w)*sin(u)", '
+                       "u: [-pi, pi], w: [0, pi]}",
+                       f'{{function: "{0.03 * k}*sin(6*u)*sin(9*w)"}}'),
+    "patch": lambda k: (f"patches: {{points: [[{', '.join(times(k, *at) for at in PATCH_PLACES)}]]}}",
+                        f'{{function: "{0.03 * k}*sin(25*u)*sin(25*w)"}}'),
+}
+
+
+def scaled(kage: Kage, name: str, k: float) -> Path:
+    """The scene with all its lengths k times as large: the same picture."""
+    camera = f"{{from: {times(k, 0.3, 2.9, -5.2)}, at: {times(k, 0, 0.5, 0)}, fov: 40}}"
+    lights = f"{{lamp: {{at: {times(k, -4.5, 5.2, -2.2)}, color: [1.1, 1.08, 1]}}}}"
+    plane = f"{{origin: [0, 0, 0], u: {times(k, 0, 0, 1)}, w: {times(k, 1, 0, 0)}}}"
+    floor = f"  floor: {{plane: {plane}, material: clay}}\n"
+    shape, bump = SCALED[name](k)
+    text = HEAD.format(camera=camera, lights=lights).replace("[160, 120]", "[96, 72]") + floor
+    path = kage.folder / "scaled.yaml"
+    path.write_text(text + f"  it:\n    {shape}\n    material: shiny\n    bump: {bump}\n")
+    return path
+
+
+@pytest.mark.parametrize("options", [["--surface", "displaced"], ["--shadow", "2+"]], ids=lambda o: o[-1])
+@pytest.mark.parametrize("name", SCALED)
+def test_any_scale(kage: Kage, name: str, options: list[str]) -> None:
+    """A tenth of a step of 1/255; float leaves 1.4e-5."""
+    pictures = []
+    for k in (1.0, *SCALES):
+        kage.good("render", scaled(kage, name, k), "-o", "x.exr", "--quiet", *options)
+        found = layers(kage.folder / "x.exr")
+        pictures.append({side: np.stack([found[channel] for channel in channels], axis=-1)
+                         for side, channels in {"rgb": "RGB", "normal": ("N.X", "N.Y", "N.Z")}.items()})
+    for k, picture in zip(SCALES, pictures[1:], strict=True):
+        assert np.isfinite(picture["normal"]).all(), k
+        assert np.abs(picture["normal"] - pictures[0]["normal"]).max() < 1e-3, k
+        assert np.abs(picture["rgb"] - pictures[0]["rgb"]).max() < 0.1 / 255, k
+
+
+def exported(kage: Kage, path: Path, *options: str) -> tuple[np.ndarray, np.ndarray, tuple[int, int]]:
+    """The mesh's vertices, its normals, and how many cells it has along u and w."""
+    kage.good("pov", path, "-o", "x.pov", *options)
+    text = (kage.folder / "x.pov").read_text()
+    cells = re.search(r"pixels: (\d+) x (\d+) cells", text)
+    lists = [re.search(rf"{name}_vectors {{ \d+,(.*?)}}", text, re.DOTALL) for name in ("vertex", "normal")]
+    assert cells and all(lists)
+    at, normal = (np.array(re.findall(r"[^<>,\s]+", found[1]), dtype=float).reshape(-1, 3) for found in lists)
+    return at, normal, (int(cells[1]), int(cells[2]))
+
+
+@pytest.mark.parametrize("k", [1.0, *SCALES])
+def test_exported_bumps(kage: Kage, k: float) -> None:
+    """Every vertex is as far from the smooth surface as the bump is high there."""
+    at, normal, (n, m) = exported(kage, scaled(kage, "waves", k), "--surface", "displaced")
+    w, u = (x.ravel() for x in np.meshgrid(np.linspace(-1, 1, m + 1), np.linspace(-1, 1, n + 1), indexing="ij"))
+    smooth = np.stack([u, 1 + 0.2 * np.sin(3 * u) * np.cos(2 * w), w], axis=1)
+    height = 0.02 * np.sin(9 * u) * np.sin(9 * w)
+    assert np.abs(height).max() > 0.019
+    assert np.abs(np.linalg.norm(at / k - smooth, axis=1) - np.abs(height)).max() < 2e-6
+    assert np.abs(np.linalg.norm(normal, axis=1) - 1).max() < 1e-5
+
+
+@pytest.mark.parametrize(("k", "surface"), [(1.0, "smooth"), (1e-3, "displaced"), (1e4, "displaced")])
+def test_exported_cusp(kage: Kage, k: float, surface: str) -> None:
+    """At its tip both partials are 0, and near it the square of their product is beyond float's range."""
+    shape = f'parametric: {{x: "{k}*u^3*cos(w)", y: "{k}*(1 + u^3)", z: "{k}*u^3*sin(w)", u: [0, 1], w: [0, 2*pi]}}'
+    bump = f'{{function: "{0.02 * k}*sin(9*u)*sin(3*w)"}}'
+    at, normal, _ = exported(kage, scene(kage, shape, bump), "--surface", surface)
+    assert np.isfinite(at).all() and np.abs(np.linalg.norm(normal, axis=1) - 1).max() < 1e-5
