@@ -220,7 +220,7 @@ static inline bs_shift bs_shift_of(int order, int guard, bs_view v, bs_real curv
  *     // away from it, or P is flat at Pmin, and there order 0 is exact.
  */
 typedef struct bs_march {
-    bs_real tau, gap; /* the last place above the surface; once found, the shift; infinite in a slab without an end */
+    bs_real tau, gap; /* the last place above the surface; once found, the shift. tau is infinite where the slab has no end */
     int found;
 } bs_march;
 
