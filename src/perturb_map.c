@@ -25,7 +25,7 @@ STAGE static void level_beyond(int n, real k, real o, int last, const real *rest
     const real end = (real)last;
     for (int i = 0; i < n; i++) {
         const real y = x[i] * k + o;
-        derivative[i] = (y >= 0) & (y <= end) ? derivative[i] : 0;
+        derivative[i] = y >= 0 && y <= end ? derivative[i] : 0;
     }
 }
 
