@@ -220,32 +220,37 @@ static inline bs_shift bs_shift_of(int order, int guard, bs_view v, bs_real curv
  *     // away from it, or P is flat at Pmin, and there order 0 is exact.
  */
 typedef struct bs_march {
-    bs_real tau, gap; /* the last place above the surface; once found, the shift */
+    bs_real tau, gap; /* the last place above the surface; once found, the shift. tau is infinite where the slab has no end */
     int found;
 } bs_march;
+
+/* Whether the slab has two ends. Where P has no bound on a side, or s.n is 0, there are no equal steps through it. */
+static inline int bs_slab_ends(bs_slab slab) { return slab.back - slab.front < (bs_real)INFINITY; }
 
 static inline bs_march bs_march_start(bs_slab slab)
 {
     bs_march m;
-    m.tau = slab.front;
+    m.tau = bs_slab_ends(slab) ? slab.front : (bs_real)INFINITY;
     m.gap = 0;
     m.found = 0;
     return m;
 }
 
-/* The i-th of the places 0..N. The last is back itself, not a sum that may fall short of it. */
+/* The i-th of the places 0..N. The last is back itself, not a sum that may fall short of it. Without an end all are
+ * the smooth hit: P can be looked up there, and nothing is found. */
 static inline bs_real bs_march_tau(bs_slab slab, int i, int N)
 {
-    return i == N ? slab.back : slab.front + (slab.back - slab.front) * ((bs_real)i / (bs_real)N);
+    bs_real tau = i == N ? slab.back : slab.front + (slab.back - slab.front) * ((bs_real)i / (bs_real)N);
+    return bs_slab_ends(slab) ? tau : 0;
 }
 
 static inline bs_march bs_march_step(bs_march m, bs_real tau, bs_real gap, bs_view v)
 {
     bs_real above = v.sn < 0 ? gap : -gap; /* from behind the gap has the other sign */
-    int hit = (m.found == 0) & (above <= 0);
+    int looking = (m.found == 0) & (m.tau < (bs_real)INFINITY), hit = looking & (above <= 0);
     bs_real rise = m.gap - above; /* > 0 at a hit, but for one at the very first place, where m.tau is tau */
     bs_real secant = m.tau + (tau - m.tau) * (rise > 0 ? m.gap / rise : 0);
-    m.tau = hit ? secant : m.found ? m.tau : tau;
+    m.tau = hit ? secant : looking ? tau : m.tau;
     m.gap = m.found ? m.gap : above;
     m.found = m.found | hit;
     return m;

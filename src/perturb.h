@@ -41,9 +41,9 @@ struct perturb {
 };
 
 /* P from samples as the paper has it (section 4.1): partials by central differences at the samples; height and
- * partials interpolated bilinearly. u goes along the rows from left to right, w down the columns. `samples` is only
- * read here. NULL: out of memory, fewer than 2 x 2 samples, or more
- * than 2^29 (a mirrored map counts four times). */
+ * partials interpolated bilinearly. Beyond the outermost samples of a clamped map P is level, and its partials that way are 0.
+ * u goes along the rows from left to right, w down the columns. `samples` is only read here. NULL: out of memory, fewer than
+ * 2 x 2 samples, or more than 2^29 (a mirrored map counts four times). */
 perturb *perturb_map(const image *samples, const map_layout *layout);
 
 /* P = scale f(u,w), with exact partials. Owns f, also on failure. The bounds (Pmin to Pw_max) hold for u and w in

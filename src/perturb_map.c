@@ -2,7 +2,10 @@
  * differences as approximate derivatives ... where the coordinates are real numbers, the derivatives at the neighbouring
  * points are interpolated bilinearly".
  *
- * The central differences are made once, at the samples, and already carry scale and chain rule.
+ * The central differences are made once, at the samples, and already carry scale and chain rule. Interpolated, they are those of P
+ * as it is looked up, a sample's distance to either side: (P(u + du, w) - P(u - du, w))/(2 du). But where a clamped map is level,
+ * beyond its outermost samples (with `cells` that is half a cell before its edge), the derivatives that way are 0: a difference
+ * would reach back to where it is not. On the outermost sample itself they are the mean of both sides.
  */
 #include "perturb.h"
 
@@ -16,6 +19,25 @@ typedef struct map {
     real *table[TABLES]; /* row 0 at the lowest w, as in the image */
 } map;
 
+/* 0 where x is beyond the outermost samples along its axis. */
+STAGE static void level_beyond(int n, real k, real o, int last, const real *restrict x, real *restrict derivative)
+{
+    const real end = (real)last;
+    for (int i = 0; i < n; i++) {
+        const real y = x[i] * k + o;
+        derivative[i] = y >= 0 && y <= end ? derivative[i] : 0;
+    }
+}
+
+static void clamp_derivatives(const table_grid *g, int n, const real *u, const real *w, int order, heights *h)
+{
+    real *const along_u[] = {h->Pu, h->Puu, h->Puw}, *const along_w[] = {h->Pw, h->Puw, h->Pww};
+    for (int k = 0; k < (order == 2 ? 3 : 1); k++) {
+        level_beyond(n, g->ku, g->ou, g->columns, u, along_u[k]);
+        level_beyond(n, g->kw, g->ow, g->rows, w, along_w[k]);
+    }
+}
+
 static void map_eval(const perturb *base, int n, const real *u, const real *w, int order, heights *h)
 {
     const map *m = (const map *)base;
@@ -28,6 +50,8 @@ static void map_eval(const perturb *base, int n, const real *u, const real *w, i
         table_three(&m->grid, m->table[P_PU_PW], n, at, a, b, h->P, h->Pu, h->Pw);
     if (order == 2)
         table_three(&m->grid, m->table[PUU_PUW_PWW], n, at, a, b, h->Puu, h->Puw, h->Pww);
+    if (order >= 1 && !m->grid.repeat)
+        clamp_derivatives(&m->grid, n, u, w, order, h);
 }
 
 /* The cell of a coordinate x among n samples, and where in it. *k, samples a unit, becomes 0 beyond an end. */

@@ -168,6 +168,31 @@ static void from_behind(void **state)
     }
 }
 
+/* Where P has no bound on one side or on both, every place of a march is finite, and none is taken. */
+static void no_end(void **state)
+{
+    (void)state;
+    const bs_real inf = (bs_real)INFINITY, low = (bs_real)-0.1, high = (bs_real)0.2;
+    const bs_real bounds[3][2] = {{low, inf}, {-inf, high}, {-inf, inf}};
+    for (int k = 0; k < 3 * 2 * 9; k++) {
+        const bs_view v = {(bs_real)(k / 3 % 2 ? -0.5 : 0.5), 1, (bs_real)0.5};
+        const bs_slab slab = bs_slab_of(v, bounds[k % 3][0], bounds[k % 3][1]);
+        const int N = 1 + k / 6;
+        bs_march below = bs_march_start(slab), above = below;
+        assert_false(bs_slab_ends(slab));
+        for (int i = 0; i <= N; i++) {
+            const bs_real tau = bs_march_tau(slab, i, N);
+            assert_true(isfinite(tau));
+            below = bs_march_step(below, tau, bs_gap(v, 0, tau, low), v);
+            above = bs_march_step(above, tau, bs_gap(v, 0, tau, high), v);
+        }
+        assert_false(below.found || above.found);
+    }
+    const bs_view along = {0, 1, 0}, down = {(bs_real)-0.5, 1, 0};
+    assert_false(bs_slab_ends(bs_slab_of(along, low, high)) || bs_slab_ends(bs_slab_of(along, 0, high)));
+    assert_true(bs_slab_ends(bs_slab_of(down, low, high)) && bs_slab_ends(bs_slab_of(down, 0, 0)));
+}
+
 static void poles(void **state)
 {
     (void)state;
@@ -184,6 +209,7 @@ int main(void)
         cmocka_unit_test(golden),
         cmocka_unit_test(guard),
         cmocka_unit_test(from_behind),
+        cmocka_unit_test(no_end),
         cmocka_unit_test(poles),
     };
     return cmocka_run_group_tests_name(BUMPSHADOW_NAME, tests, NULL, NULL);

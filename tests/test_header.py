@@ -44,6 +44,16 @@ int main(void)
         m = bs_march_step(m, t, bs_gap(v, 0, t, p.P + p.Pu * v.a * t), v);
     }
     printf("%a %d\n", (double)m.tau, m.found);
+    for (int k = 0; k < 3; k++) { /* no bound above, none below, none at all */
+        bs_slab endless = bs_slab_of(v, k ? (bs_real)-INFINITY : (bs_real)-.1, k == 1 ? (bs_real).2 : (bs_real)INFINITY);
+        bs_march e = bs_march_start(endless);
+        for (int i = 0; i <= 5; i++) {
+            bs_real t = bs_march_tau(endless, i, 5);
+            e = bs_march_step(e, t, bs_gap(v, 0, t, p.P + p.Pu * v.a * t), v);
+            printf("%a ", (double)t);
+        }
+        printf("%d\n", e.found);
+    }
     return 0;
 }
 """
@@ -82,7 +92,8 @@ def test_alike_in_every_language(compiler: str, standard: str, real: list[str], 
     if not shutil.which(compiler):
         pytest.skip(f"{compiler} is not installed")
     want = run("gcc", "c99", tmp_path, real)
-    assert want.count("\n") == 10 and "nan" not in want
+    assert want.count("\n") == 13 and "nan" not in want and "inf" not in want
+    assert [line[-1] for line in want.splitlines()[-4:]] == ["1", "0", "0", "0"]  # what the marches found
     assert run(compiler, standard, tmp_path, real) == want
 
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 import hashlib
 import os
 import platform
+import re
 import subprocess
 from pathlib import Path
 
@@ -58,6 +59,39 @@ def shadows_differ(a: dict[str, np.ndarray], b: dict[str, np.ndarray]) -> tuple[
     both = ground(a) & ground(b)
     differ = sum(int((both & (a[f"visibility.{k}"] != b[f"visibility.{k}"])).sum()) for k in ("lamp", "sun"))
     return differ, int((both & (a["visibility.lamp"] == 0)).sum())
+
+
+@pytest.mark.parametrize("method", ["1", "2", "2+"])
+def test_clamped_ramp_is_the_function(tmp_path: Path, method: str) -> None:
+    """A ramp between two levels, as a map and as a function: the same normals and shifts, but for a sample's distance around the bends."""
+    n = 256
+    Image.fromarray(np.tile(np.arange(n, dtype=np.uint8), (4, 1))).save(tmp_path / "ramp.png")
+    low, high, at = -0.5 + 0.5 / n, 0.5 - 0.5 / n, ["--shadow", method, "--no-guard", "--size", "160x120"]
+    function = f"0.25*clamp((u-({low}))/{high - low},0,1)"
+    want = render(tmp_path, SCENE.format(ground=FLAT, bump=f', bump: {{function: "{function}"}}'), *at)
+    got = render(tmp_path, SCENE.format(ground=FLAT, bump=", bump: {map: {file: ramp.png}, scale: 0.25, zero: 0, sign: up, size: [1, 1], "
+                                                          "offset: [-0.5, -0.5], wrap: clamp}"), *at)
+    u, bend = want["uw.u"], 1.01 / n
+    away = ground(want) & (np.abs(u - low) > bend) & (np.abs(u - high) > bend)
+    level = away & ((u < low) | (u > high))
+    assert level.sum() > 7000 and (away & ~level).sum() > 1000
+    assert all((got[f"N.{axis}"][level] == value).all() for axis, value in (("X", 0), ("Y", 1), ("Z", 0)))
+    for name in ("N.X", "N.Y", "N.Z", "height", "tau"):
+        assert np.abs(got[name] - want[name])[away].max() < 1e-4, name
+
+
+@pytest.mark.parametrize("method", ["march:1", "march:4"])
+@pytest.mark.parametrize("function", ["0.1*sqrt(u^2+w^2)", "-0.1*sqrt(u^2+w^2)", "0.01*u^2", "0.3*exp(u)", "0.1*u"])
+def test_march_without_a_bound_is_order_0(tmp_path: Path, method: str, function: str) -> None:
+    """P on a plane, with no upper bound, no lower one, or neither: there is no slab to step through. And it counts as a fallback."""
+    scene = SCENE.format(ground=FLAT, bump=f', bump: {{function: "{function}"}}')
+    want = render(tmp_path, scene, "--shadow", "0", "--size", "160x120")
+    got = render(tmp_path, scene, "--shadow", method, "--size", "160x120")
+    assert not np.isnan(want["tau"]).any() and (want["visibility.lamp"][ground(want)] == 0).sum() > 700
+    assert all(np.array_equal(got[name], want[name], equal_nan=True) for name in want)
+    told = subprocess.run([KAGE, "render", tmp_path / "scene.yaml", "-o", tmp_path / "out.exr", "--shadow", method, "--stats", "--size", "40x30"],
+                          check=True, capture_output=True, text=True, timeout=120).stdout
+    assert re.search(rf"bumped samples [1-9]\d* by method {method}, fell back \d+ \(100\.0* %\)", told), told
 
 
 @pytest.mark.parametrize("method", ALL)

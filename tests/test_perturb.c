@@ -6,6 +6,7 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
 #include <stdlib.h>
 
 #include <cmocka.h>
@@ -119,9 +120,13 @@ static void at_the_samples(void **state)
             for (int i = -2; i < W + 2; i++) {
                 if (l->wrap == MAP_CLAMP && (i < 0 || j < 0 || i >= W || j >= H))
                     continue;
-                double half = l->corners ? 0 : 0.5;
-                look(p, l->offset[0] + (i + half) * l->size[0] / (W - l->corners),
-                     l->offset[1] + (j + half) * l->size[1] / (H - l->corners), got);
+                double half = l->corners ? 0 : 0.5, x = i, y = j;
+                if (l->wrap == MAP_CLAMP) { /* no rounding puts it beyond */
+                    x = fmin(fmax(x, TOLERANCE), W - 1 - TOLERANCE);
+                    y = fmin(fmax(y, TOLERANCE), H - 1 - TOLERANCE);
+                }
+                look(p, l->offset[0] + (x + half) * l->size[0] / (W - l->corners),
+                     l->offset[1] + (y + half) * l->size[1] / (H - l->corners), got);
                 differences(l, i, j, want);
                 for (int k = 0; k < 6; k++)
                     near(got[k], want[k], size[k] * 8); /* the place itself is rounded: slopes of the interpolation */
@@ -150,6 +155,95 @@ static void bilinear_between(void **state)
                 near(got[m], (c[0][m] * (1 - a) + c[1][m] * a) * (1 - b) + (c[2][m] * (1 - a) + c[3][m] * a) * b, size[m] * 8);
         }
         perturb_free(p);
+    }
+}
+
+/* P a sample's distance around a place, [w][u], as it is looked up; and the differences in the order of look. */
+static void differences_of_P(const perturb *p, double u, double w, double du, double dw, double d[6])
+{
+    double P[3][3], v[6];
+    for (int y = 0; y < 3; y++)
+        for (int x = 0; x < 3; x++) {
+            look(p, u + (x - 1) * du, w + (y - 1) * dw, v);
+            P[y][x] = v[0];
+        }
+    d[0] = P[1][1];
+    d[1] = (P[1][2] - P[1][0]) / (2 * du);
+    d[2] = (P[2][1] - P[0][1]) / (2 * dw);
+    d[3] = (P[1][2] - 2 * P[1][1] + P[1][0]) / (du * du);
+    d[4] = (P[2][2] - P[2][0] - P[0][2] + P[0][0]) / (4 * du * dw);
+    d[5] = (P[2][1] - 2 * P[1][1] + P[0][1]) / (dw * dw);
+}
+
+/* Whether sample number x is well beyond the outermost of n, or well within: not so near that rounding decides. */
+static int beyond(double x, int n)
+{
+    return x < -1e-3 || x > n - 1 + 1e-3 ? 1 : x > 1e-3 && x < n - 1 - 1e-3 ? 0 : -1;
+}
+
+/* The derivatives at any place, on a sample or between, are the differences of P itself over a sample to either side: bilinear
+ * interpolation and differences at such a distance can be exchanged. So the tolerance is for rounding alone: of the place, and of P.
+ * Where a clamped map is level its derivatives that way are exactly 0, and the others are those of the border. */
+static void derivatives_are_differences(void **state)
+{
+    (void)state;
+    for (int n = 0; n < LAYOUTS; n++) {
+        const map_layout *l = &layouts[n];
+        const double du = l->size[0] / (W - l->corners), dw = l->size[1] / (H - l->corners), half = l->corners ? 0 : 0.5;
+        perturb *p = perturb_map(data(), l);
+        double got[6], want[6], size[6];
+        int level[3] = {0, 0, 0};
+        sizes(l, size);
+        for (int k = 0; k < 5000; k++) {
+            const double x = (k * 37 % 1009 / 1009.0 * 2 - 0.5) * W, y = (k * 61 % 1013 / 1013.0 * 2 - 0.5) * H;
+            const int clamped = l->wrap == MAP_CLAMP, past_u = clamped ? beyond(x, W) : 0, past_w = clamped ? beyond(y, H) : 0;
+            const double u = l->offset[0] + (x + half) * du, w = l->offset[1] + (y + half) * dw;
+            if (past_u < 0 || past_w < 0)
+                continue;
+            look(p, u, w, got);
+            differences_of_P(p, u, w, du, dw, want);
+            if (past_u)
+                want[1] = want[3] = want[4] = 0;
+            if (past_w)
+                want[2] = want[4] = want[5] = 0;
+            for (int m = 0; m < 6; m++)
+                want[m] != 0 ? near(got[m], want[m], size[m] * 8) : assert_true(got[m] == 0);
+            level[past_u + past_w]++;
+        }
+        assert_true(level[0] > 500 && (l->wrap != MAP_CLAMP || (level[1] > 1000 && level[2] > 500)));
+        perturb_free(p);
+    }
+}
+
+/* A ramp between two levels as a clamped map and as a function: P and its gradient are the same but for a cell next to the bends,
+ * where a map's are means. */
+static void clamped_ramp(void **state)
+{
+    (void)state;
+    enum { SIDE = 17 };
+    float ramp[SIDE * SIDE];
+    for (int i = 0; i < SIDE * SIDE; i++)
+        ramp[i] = (float)(i % SIDE) / (SIDE - 1); /* exact in float, too */
+    image m = {SIDE, SIDE, ramp};
+    for (int corners = 0; corners < 2; corners++) {
+        const double cell = 1.0 / (SIDE - corners), lo = corners ? 0 : cell / 2, hi = 1 - lo, all[2] = {-HUGE_VAL, HUGE_VAL};
+        const map_layout l = {{1, 1}, {0, 0}, MAP_CLAMP, corners, 0.5, 0};
+        char text[99];
+        expr_error e;
+        snprintf(text, sizeof text, "clamp((u-%.17g)/%.17g,0,1)", lo, hi - lo);
+        perturb *map = perturb_map(&m, &l), *function = perturb_function(expr_parse(text, &e), 0.5, all, all);
+        for (int k = 0; k < 3000; k++) {
+            const double u = k * 0.001 - 1, w = k % 17 * 0.1 - 0.3;
+            double a[6], b[6];
+            look(map, u, w, a);
+            look(function, u, w, b);
+            near(a[0], b[0], 8);
+            if (u < lo - 1e-5 || u > hi + 1e-5 || (u > lo + cell && u < hi - cell))
+                for (int i = 1; i < 3; i++)
+                    b[i] != 0 ? near(a[i], b[i], 32) : assert_true(a[i] == 0);
+        }
+        perturb_free(map);
+        perturb_free(function);
     }
 }
 
@@ -381,7 +475,7 @@ int main(void)
         cmocka_unit_test(at_the_samples), cmocka_unit_test(bilinear_between), cmocka_unit_test(anywhere),
         cmocka_unit_test(map_bounds),     cmocka_unit_test(orders),           cmocka_unit_test(functions),
         cmocka_unit_test(map_slopes),     cmocka_unit_test(odd_map_slopes),   cmocka_unit_test(function_slopes),
-        cmocka_unit_test(too_small),
+        cmocka_unit_test(too_small),      cmocka_unit_test(clamped_ramp),     cmocka_unit_test(derivatives_are_differences),
     };
     return cmocka_run_group_tests_name("heights", tests, NULL, NULL);
 }

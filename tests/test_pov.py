@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from conftest import Kage
-from parity import (CAMERA, DISPLACED, HEAD, LIGHTINGS, LIGHTS, POVRAY, SIZE, STEP, SURFACES, colored, displaced, layers, povray, rgb,
+from parity import (CAMERA, DISPLACED, HEAD, LIGHTINGS, LIGHTS, MAP, PLANE, POVRAY, SIZE, STEP, SURFACES, colored, displaced, layers, povray, rgb,
                     write_images)
 from test_parity import needs_povray
 
@@ -32,6 +32,30 @@ def test_image_that_povray_has_not(kage: Kage, color: str) -> None:
     assert done.returncode == 2 and "object it: POV-Ray's images repeat and do nothing else, expected 'wrap: repeat'" in done.stderr
     assert not (kage.folder / "color.pov").exists()
     kage.good("render", scene, "-o", "color.exr", "--quiet")
+
+
+def mesh_list(text: str, name: str) -> np.ndarray:
+    """One list of the first mesh2, a row for each of its vectors."""
+    found = re.search(name + r" \{ \d+,([^}]*)\}", text)
+    assert found
+    return np.array([row.split(",") for row in re.findall(r"<([^>]*)>", found[1])], float)
+
+
+def test_normals_beyond_a_clamped_map_are_those_of_the_triangles(kage: Kage) -> None:
+    """From the places of their corners alone. Pictures cannot tell: POV-Ray shades with the normals that stand in the file."""
+    text = HEAD.format(camera=CAMERA, lights=LIGHTS)
+    scene = write_scene(kage, f"{text}  rough: {{{PLANE}, material: clay, bump: {MAP.replace('[2, 2]', '[1, 1], wrap: clamp')}}}\n")
+    kage.good("pov", scene, "-o", "rough.pov", "--surface", "displaced", "--size", "48x36")
+    mesh = (kage.folder / "rough.pov").read_text()
+    at, normals, corners = mesh_list(mesh, "vertex_vectors"), mesh_list(mesh, "normal_vectors"), mesh_list(mesh, "face_indices").astype(int)
+    a, b, c = (at[corners[:, k]] for k in range(3))
+    facets = np.cross(b - a, c - a)
+    facets /= np.linalg.norm(facets, axis=1, keepdims=True)
+    for axis in (2, 0):  # u, then w; a sample is half a cell inside the edge, and a cell is 1/16
+        beyond = np.all((at[corners, axis] < 1 / 32) | (at[corners, axis] > 31 / 32), axis=1)
+        assert beyond.sum() > 1000 and np.abs(facets[beyond, axis]).max() < 1e-3
+        assert np.abs(normals[corners[beyond], axis]).max() < 1e-6
+        assert np.abs(normals[corners[beyond], 2 - axis]).max() > 0.1
 
 
 @needs_povray
