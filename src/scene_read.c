@@ -185,6 +185,7 @@ static void read_render(reader *r)
 
 /* ---- the whole ---- */
 
+/* Once all objects are good: each has a material. */
 static void note_secondary(scene *s)
 {
     for (int k = 0; k < s->objects; k++) {
@@ -194,12 +195,11 @@ static void note_secondary(scene *s)
     }
 }
 
-/* Once all objects are good. */
-static void note_crowd(reader *r, int before)
+/* Likewise. */
+static void note_crowd(reader *r)
 {
     bool good = true;
-    if (r->e->count == before)
-        r->s->crowd = crowd_new(r->s, &good);
+    r->s->crowd = crowd_new(r->s, &good);
     if (!good)
         errors_add(r->e, "out of memory");
 }
@@ -220,8 +220,10 @@ scene *scene_read(const char *path, int sets, char *const *set, const watch *w, 
             reader_lights(&r);
             reader_materials(&r);
             reader_objects(&r);
-            note_secondary(r.s);
-            note_crowd(&r, before);
+            if (e->count == before) {
+                note_secondary(r.s);
+                note_crowd(&r);
+            }
         }
         yaml_close(r.y);
     }

@@ -668,6 +668,23 @@ def test_excerpt_of_a_long_line(bench: Kage) -> None:
     assert lines[message + 1][lines[message + 2].index("^") :].startswith("fvo: 2}")
 
 
+#: What a key at the top may hold instead of what it should; None: it is not there.
+MISFITS = {"missing": None, "empty": "", "no-items": " {}", "list": " [1]", "no-list": " []", "number": " 3", "empty-item": " {a: }"}
+
+
+@pytest.mark.parametrize("what", MISFITS)
+@pytest.mark.parametrize("key", ["camera", "image", "render", "lights", "materials", "objects"])
+def test_any_key_at_the_top(bench: Kage, key: str, what: str) -> None:
+    kept = [part for part in re.split(r"(?m)^(?=\w)", SCENE) if part and not part.startswith(f"{key}:")]
+    assert len(kept) == 5
+    (bench.folder / "scene.yaml").write_text("".join(kept) + ("" if MISFITS[what] is None else f"{key}:{MISFITS[what]}\n"))
+    for command, *options in (["check"], ["pixel", "3,3"], ["render", "-o", "out.png"], ["pov", "-o", "out.pov"]):
+        done = bench(command, "scene.yaml", *options)
+        assert done.returncode in (0, 2), done.stderr
+        placed = re.match(r"scene\.yaml:\d+:\d+: .", done.stderr)
+        assert bool(placed) == (done.returncode == 2), done.stderr
+
+
 def test_scene_that_cannot_be_read(kage: Kage) -> None:
     assert refused(kage, "check", "none.yaml") == ["none.yaml: can't read the scene: No such file or directory"]
     assert refused(kage, "check", ".") == [".: can't read the scene: Is a directory"]
