@@ -183,7 +183,7 @@ REPLACED = [
     ("ambient-negative", "ambient: 0.1", "ambient: -0.1",
      "7:43: -0.1 is less than 0, expected a share of light, 0 or more"),
     ("roughness", "diffuse: 0.8", "roughness: 0",
-     "7:59: 0 is too small, expected a number above 0; small is sharp"),
+     "7:59: 0 is less than 1e-06, expected a number of 1e-6 or more; small is sharp"),
     ("phong-size", "diffuse: 0.8", "phong_size: 0", "7:60: 0 is too small, expected an exponent above 0"),
     ("size-zero", "size: [40, 30]", "size: [0, 30]",
      "2:16: 0 is less than 1, expected [width, height] in pixels, from 1 to 32768"),
