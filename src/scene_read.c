@@ -60,7 +60,7 @@ char *reader_beside(reader *r, const char *file)
     char *path = malloc(size);
     if (path)
         snprintf(path, size, "%.*s%s", folder, r->s->path, file);
-    else
+    if (!path || !files_add_path(&r->s->made_from, path))
         errors_add(r->e, "out of memory");
     return path;
 }
@@ -211,6 +211,8 @@ scene *scene_read(const char *path, int sets, char *const *set, const watch *w, 
     r.y = r.s ? yaml_open(path, sets, set, "image render", e) : NULL;
     if (r.y) {
         r.s->path = reader_copy(&r, path);
+        if (!files_add_path(&r.s->made_from, path))
+            errors_add(e, "out of memory");
         r.s->source = reader_copy(&r, yaml_source(r.y));
         if (r.s->path) {
             yaml_map(r.y, yaml_root(r.y), "the scene", "camera image render lights materials objects");
@@ -267,6 +269,7 @@ void scene_free(scene *s)
     free(s->light);
     free(s->material);
     free(s->object);
+    files_free(&s->made_from);
     free(s->path);
     free(s->source);
     free(s);
