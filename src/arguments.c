@@ -155,7 +155,8 @@ bool arguments_read(arguments *a, int argc, char **argv)
 {
     static const char *const render_values[] = {"-o",    "--shadow",  "--surface", "--size",   "--aa", "--aa-threshold", "--crop",
                                                 "--set", "--threads", "--bits",    "--layers", NULL};
-    static const char *const render_flags[] = {"--no-guard", "--no-self-shadow", "--overwrite", "--stats", "--quiet", NULL};
+    static const char *const render_flags[] = {"--no-guard", "--no-self-shadow", "--overwrite", "--stats",
+                                               "--quiet",    NULL};
     static const char *const pov_values[] = {"-o", "--surface", "--size", "--set", NULL};
     static const char *const pov_flags[] = {"--no-self-shadow", "--no-cast", NULL};
     static const char *const other_values[] = {"--set", "--size", NULL};

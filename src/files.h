@@ -1,4 +1,4 @@
-/* The files that a scene is made from, known by what they are and not by a name, so that no output replaces one of them. */
+/* The files that a scene is made from, known by what they are and not by a name: no output replaces one of them. */
 #ifndef KAGE_FILES_H
 #define KAGE_FILES_H
 

@@ -40,11 +40,12 @@ void mesh_data_free(mesh_data *d);
 
 typedef enum mesh_normals { MESH_NORMALS_FILE, MESH_NORMALS_SMOOTH, MESH_NORMALS_FLAT } mesh_normals;
 
-/* Read a file of a model; it and those that it names are added to *opened. False, and why not in one line. (mesh_file.c) */
+/* Read a file of a model; it and those that it names are added to *opened. False, and why not in one line.
+ * (mesh_file.c) */
 bool mesh_file_read(const char *path, const watch *w, files *opened, mesh_data *out, char why[MESH_WHY]);
 
-/* The importer itself, as it runs in a process of its own. What it tells: each file that it opens, and the share that has been read.
- * (mesh_import.c) */
+/* The importer itself, as it runs in a process of its own. What it tells: each file that it opens, and the share that
+ * has been read. (mesh_import.c) */
 typedef struct mesh_listener {
     void (*open)(void *user, file_id id);
     void (*read)(void *user, double share);

@@ -17,8 +17,8 @@
 #define MIB ((size_t)1 << 20)
 enum { MOST_MIB = 1024, SECONDS = 3, MIB_A_SECOND = 1, ROOM_MIB = 512, TIMES = 96 };
 
-/* What comes through the pipe: a file that is opened, a share of it that is read, the end with an error, or the end with triangles, their
- * corners and skins. */
+/* What comes through the pipe: a file that is opened, a share of it that is read, the end with an error, or the end
+ * with triangles, their corners and skins. */
 typedef struct letter {
     enum { OPENED, READ, WRONG, DONE } is;
     file_id opened;
