@@ -45,7 +45,7 @@ override CFLAGS  += $(STANDARD) $(OPTIMISE) -fopenmp $(WARNINGS) $(DEFINES) $(SA
 override LDFLAGS += -fopenmp $(SANITIZER)
 LIBS       = $(PKG_LIBS) -lembree$(or $(EMBREE),3) -lm
 
-PROGRAM   = main arguments progress command_render command_check command_pixel command_pov
+PROGRAM   = main arguments progress command_render command_check command_pixel command_pov command_output
 SOURCES   = $(patsubst src/%.c,%,$(wildcard src/*.c))
 LIBRARY   = $(filter-out $(PROGRAM),$(SOURCES))
 UNITS     = $(patsubst tests/%.c,%,$(wildcard tests/test_*.c))

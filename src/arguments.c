@@ -133,6 +133,8 @@ static bool flag(arguments *a, const char *name)
         return add_set(a, "render.guard=false");
     if (strcmp(name, "--no-cast") == 0)
         a->no_cast = true;
+    else if (strcmp(name, "--overwrite") == 0)
+        a->overwrite = true;
     else if (strcmp(name, "--stats") == 0)
         a->stats = true;
     else
@@ -153,7 +155,8 @@ bool arguments_read(arguments *a, int argc, char **argv)
 {
     static const char *const render_values[] = {"-o",    "--shadow",  "--surface", "--size",   "--aa", "--aa-threshold", "--crop",
                                                 "--set", "--threads", "--bits",    "--layers", NULL};
-    static const char *const render_flags[] = {"--no-guard", "--no-self-shadow", "--stats", "--quiet", NULL};
+    static const char *const render_flags[] = {"--no-guard", "--no-self-shadow", "--overwrite", "--stats",
+                                               "--quiet",    NULL};
     static const char *const pov_values[] = {"-o", "--surface", "--size", "--set", NULL};
     static const char *const pov_flags[] = {"--no-self-shadow", "--no-cast", NULL};
     static const char *const other_values[] = {"--set", "--size", NULL};

@@ -9,6 +9,9 @@
 
 enum { EXIT_OUTPUT = 1, EXIT_INPUT = 2, MAX_OUTPUTS = 16, MAX_SETS = 256 };
 
+/* How pictures tell in their text Software that they are kage's, with the version behind it. */
+#define OUTPUT_SOFTWARE "kage"
+
 /* What may stand on the command line, read. Zero: not given. */
 typedef struct arguments {
     const char *command;
@@ -21,7 +24,7 @@ typedef struct arguments {
     window crop; /* x1 == 0: none */
     const char *layers; /* of an EXR; NULL: all */
     int threads, bits;
-    bool stats, quiet, no_cast;
+    bool stats, quiet, no_cast, overwrite;
 } arguments;
 
 /* Read the options of a command; tells what is wrong and returns false. arguments_free in either case. */
@@ -38,6 +41,12 @@ scene *command_scene(const arguments *a);
 
 /* A path's last name: what pictures and exports tell of it, so that they do not depend on the folder. */
 const char *base_name(const char *path);
+
+/* No output is a file that the scene is made from. False: it is told. (command_output.c) */
+bool outputs_spare_inputs(const scene *s, const char *const *output, int outputs);
+
+/* Whether a name that nobody gave is free, or a picture of kage's. False: it is told. (command_output.c) */
+bool output_is_replaceable(const char *path);
 
 /* Print a list of errors. Returns `status`. */
 int command_fail(errors *e, int status);

@@ -36,9 +36,9 @@ int command_pov(const arguments *a)
     errors e = {0};
     if (!s)
         return EXIT_INPUT;
-    if (!pov_possible(s, &e)) {
+    if (!outputs_spare_inputs(s, a->output, 1) || !pov_possible(s, &e)) {
         scene_free(s);
-        return command_fail(&e, EXIT_INPUT);
+        return e.count ? command_fail(&e, EXIT_INPUT) : EXIT_INPUT;
     }
     char *text = command_text(a);
     pov_options how = {text, a->no_cast};

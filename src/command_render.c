@@ -78,7 +78,8 @@ static bool write_output(const char *path, const scene *s, const arguments *a, c
     method_name(s->shadow, shadow);
     snprintf(crop, sizeof crop, "%d,%d,%d,%d", f->part.x0, f->part.y0, f->part.x1, f->part.y1);
     const image_text text[] = {
-        {"Software", "kage " KAGE_VERSION " " REAL_NAME}, {"kage:file", base_name(s->path)}, {"kage:scene", s->source},
+        {"Software", OUTPUT_SOFTWARE " " KAGE_VERSION " " REAL_NAME},
+        {"kage:file", base_name(s->path)}, {"kage:scene", s->source},
         {"kage:set", sets},     {"kage:crop", crop}, {"kage:shadow", shadow}, {"kage:guard", s->guard ? "yes" : "no"},
     };
     const int texts = sizeof text / sizeof *text;
@@ -219,9 +220,16 @@ int command_render(const arguments *a)
         return EXIT_INPUT;
     char *fallback = a->outputs ? NULL : default_output(s->path);
     const char *one[] = {fallback};
+    const char *const *output = a->outputs ? a->output : one;
+    const int outputs = a->outputs ? a->outputs : 1;
     int status = EXIT_OUTPUT;
-    if (a->outputs || fallback)
-        status = render_outputs(s, a, a->outputs ? a->output : one, a->outputs ? a->outputs : 1);
+    if (!a->outputs && !fallback)
+        usage_error("out of memory");
+    else if (!outputs_spare_inputs(s, output, outputs) ||
+             (fallback && !a->overwrite && !output_is_replaceable(fallback)))
+        status = EXIT_INPUT;
+    else
+        status = render_outputs(s, a, output, outputs);
     free(fallback);
     scene_free(s);
     return status;

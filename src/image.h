@@ -61,4 +61,7 @@ bool image_write_exr(const char *path, int width, int height, int channels, cons
 bool image_write_png(const char *path, int width, int height, int bits, const float *r, const float *g,
                      const float *b, int texts, const image_text *text, errors *e);
 
+/* Whether the file is a PNG that says in its text Software that it comes from the program, of any version. */
+bool image_png_is_from(const char *path, const char *program);
+
 #endif

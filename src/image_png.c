@@ -128,6 +128,47 @@ bool image_read_png(FILE *file, bool color, image *out, char *why)
     return ok;
 }
 
+/* NULL: there is no such text. */
+static const char *find_text(const png_job *job, const char *key)
+{
+    png_textp text = NULL;
+    const int n = png_get_text(job->png, job->info, &text, NULL);
+    for (int k = 0; k < n; k++)
+        if (strcmp(text[k].key, key) == 0)
+            return text[k].text;
+    return NULL;
+}
+
+/* The text Software; NULL: none before the samples. The job's. */
+static const char *software(png_job *job, FILE *file)
+{
+    if (setjmp(job->jump))
+        return NULL;
+    job->png = png_create_read_struct(PNG_LIBPNG_VER_STRING, job, on_error, on_warning);
+    job->info = job->png ? png_create_info_struct(job->png) : NULL;
+    if (!job->info)
+        return NULL;
+    png_set_read_fn(job->png, file, read_bytes);
+    png_set_user_limits(job->png, PNG_UINT_31_MAX, PNG_UINT_31_MAX);
+    png_read_info(job->png, job->info);
+    return find_text(job, "Software");
+}
+
+bool image_png_is_from(const char *path, const char *program)
+{
+    char why[IMAGE_WHY];
+    png_job job = {.why = why};
+    FILE *file = fopen(path, "rb");
+    if (!file)
+        return false;
+    const char *text = software(&job, file);
+    const size_t n = strlen(program);
+    const bool is = text && strncmp(text, program, n) == 0 && text[n] == ' ';
+    png_destroy_read_struct(&job.png, &job.info, NULL);
+    fclose(file);
+    return is;
+}
+
 /* ------------------------------------------------------------------------------------------------ writing */
 
 typedef struct png_out {

@@ -8,6 +8,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "files.h"
 #include "watch.h"
 
 enum { MESH_MOST = 1 << 24, MESH_WHY = 200 }; /* triangles; bytes of a message */
@@ -39,12 +40,18 @@ void mesh_data_free(mesh_data *d);
 
 typedef enum mesh_normals { MESH_NORMALS_FILE, MESH_NORMALS_SMOOTH, MESH_NORMALS_FLAT } mesh_normals;
 
-/* Read a file of a model. False, and why not in one line. (mesh_file.c) */
-bool mesh_file_read(const char *path, const watch *w, mesh_data *out, char why[MESH_WHY]);
+/* Read a file of a model; it and those that it names are added to *opened. False, and why not in one line.
+ * (mesh_file.c) */
+bool mesh_file_read(const char *path, const watch *w, files *opened, mesh_data *out, char why[MESH_WHY]);
 
-/* The importer itself, as it runs in a process of its own; `read` is told the share of the file that has been read. (mesh_import.c) */
-typedef void mesh_share(void *user, double share);
-bool mesh_import(const char *path, mesh_share *read, void *user, mesh_data *out, char why[MESH_WHY]);
+/* The importer itself, as it runs in a process of its own. What it tells: each file that it opens, and the share that
+ * has been read. (mesh_import.c) */
+typedef struct mesh_listener {
+    void (*open)(void *user, file_id id);
+    void (*read)(void *user, double share);
+    void *user;
+} mesh_listener;
+bool mesh_import(const char *path, const mesh_listener *to, mesh_data *out, char why[MESH_WHY]);
 
 /* Check the numbers, leave out triangles without an area, and find a normal for every corner: the file's where it is usable, otherwise the mean over
  * the triangles about the vertex that are within `crease` degrees of this one. `most`: no coordinate is farther. (mesh_clean.c) */

@@ -17,9 +17,11 @@
 #define MIB ((size_t)1 << 20)
 enum { MOST_MIB = 1024, SECONDS = 3, MIB_A_SECOND = 1, ROOM_MIB = 512, TIMES = 96 };
 
-/* What comes through the pipe: a share of the file that is read, the end with an error, or the end with triangles, their corners and skins. */
+/* What comes through the pipe: a file that is opened, a share of it that is read, the end with an error, or the end
+ * with triangles, their corners and skins. */
 typedef struct letter {
-    enum { READ, WRONG, DONE } is;
+    enum { OPENED, READ, WRONG, DONE } is;
+    file_id opened;
     double share;
     mesh_data data; /* without its arrays */
     char why[MESH_WHY];
@@ -36,6 +38,12 @@ static void send(int to, const void *from, size_t size)
         at += n > 0 ? n : 0;
         size -= n > 0 ? (size_t)n : 0;
     }
+}
+
+static void send_opened(void *user, file_id id)
+{
+    const letter l = {.is = OPENED, .opened = id};
+    send(*(const int *)user, &l, sizeof l);
 }
 
 static void send_share(void *user, double share)
@@ -70,7 +78,7 @@ static void child(const char *path, size_t size, int to)
 {
     letter l = {.is = WRONG};
     confine(size);
-    if (mesh_import(path, send_share, &to, &l.data, l.why))
+    if (mesh_import(path, &(mesh_listener){send_opened, send_share, &to}, &l.data, l.why))
         l.is = DONE;
     const mesh_data d = l.data;
     l.data.at = NULL;
@@ -97,12 +105,25 @@ static bool receive(int from, void *to, size_t size)
     return true;
 }
 
-static bool receive_all(int from, const watch *w, letter *l, mesh_data *out)
+/* The letter that is the last; READ where none came. */
+static void receive_last(int from, const watch *w, files *opened, letter *l)
 {
-    bool come = receive(from, l, sizeof *l);
-    for (; come && l->is == READ; come = receive(from, l, sizeof *l))
-        watch_show(w, l->share < 1 ? "reading" : "unpacking", l->share);
-    l->is = come ? l->is : READ;
+    bool come = receive(from, l, sizeof *l), room = true;
+    for (; come && room && (l->is == OPENED || l->is == READ); come = receive(from, l, sizeof *l))
+        if (l->is == OPENED)
+            room = files_add(opened, l->opened);
+        else
+            watch_show(w, l->share < 1 ? "reading" : "unpacking", l->share);
+    if (!room) {
+        l->is = WRONG;
+        snprintf(l->why, sizeof l->why, "out of memory");
+    } else if (!come)
+        l->is = READ;
+}
+
+static bool receive_all(int from, const watch *w, files *opened, letter *l, mesh_data *out)
+{
+    receive_last(from, w, opened, l);
     if (l->is != DONE)
         return false;
     *out = l->data;
@@ -155,7 +176,7 @@ static bool can_open(const char *path, size_t *size, char why[MESH_WHY])
     return *size > 0;
 }
 
-bool mesh_file_read(const char *path, const watch *w, mesh_data *out, char why[MESH_WHY])
+bool mesh_file_read(const char *path, const watch *w, files *opened, mesh_data *out, char why[MESH_WHY])
 {
     letter l = {.is = READ};
     size_t size = 0;
@@ -174,7 +195,7 @@ bool mesh_file_read(const char *path, const watch *w, mesh_data *out, char why[M
         child(path, size, ends[1]);
     }
     close(ends[1]);
-    const bool good = pid > 0 && receive_all(ends[0], w, &l, out);
+    const bool good = pid > 0 && receive_all(ends[0], w, opened, &l, out);
     close(ends[0]);
     while (pid > 0 && waitpid(pid, &status, 0) < 0 && errno == EINTR)
         ;

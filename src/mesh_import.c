@@ -25,8 +25,7 @@ typedef struct reading {
     bool buffers; /* glTF: other files may be opened, too */
     size_t size, done;
     double told; /* the share that was told last */
-    mesh_share *read;
-    void *user;
+    const mesh_listener *to;
 } reading;
 
 /* A file with the way to whom its reading is told. */
@@ -42,7 +41,7 @@ static void tell_share(reading *k)
     if (share < k->told + 0.01 && share < 1)
         return;
     k->told = share;
-    k->read(k->user, share);
+    k->to->read(k->to->user, share);
 }
 
 static size_t read_some(struct aiFile *base, char *to, size_t size, size_t count)
@@ -85,17 +84,21 @@ static enum aiReturn seek(struct aiFile *base, size_t offset, enum aiOrigin orig
 
 static void flush(struct aiFile *base) { (void)base; }
 
-static bool is_regular(FILE *f)
+/* A regular file; it is told. */
+static bool is_good(FILE *f, const mesh_listener *to)
 {
     struct stat about;
-    return fstat(fileno(f), &about) == 0 && S_ISREG(about.st_mode);
+    if (fstat(fileno(f), &about) != 0 || !S_ISREG(about.st_mode))
+        return false;
+    to->open(to->user, file_id_of(&about));
+    return true;
 }
 
 static struct aiFile *open_one(struct aiFileIO *io, const char *path, const char *mode)
 {
     reading *of = (reading *)(void *)io->UserData;
     FILE *f = mode[0] == 'r' && (of->buffers || strcmp(path, of->path) == 0) ? fopen(path, "rb") : NULL;
-    source *s = f && is_regular(f) ? malloc(sizeof *s) : NULL;
+    source *s = f && is_good(f, of->to) ? malloc(sizeof *s) : NULL;
     if (!s) {
         if (f)
             fclose(f);
@@ -238,10 +241,10 @@ static bool ends_with(const char *path, const char *end)
     return n >= m;
 }
 
-bool mesh_import(const char *path, mesh_share *read, void *user, mesh_data *out, char why[MESH_WHY])
+bool mesh_import(const char *path, const mesh_listener *to, mesh_data *out, char why[MESH_WHY])
 {
     struct stat about;
-    reading of = {path, ends_with(path, ".gltf"), stat(path, &about) == 0 ? (size_t)about.st_size : 0, 0, 0, read, user};
+    reading of = {path, ends_with(path, ".gltf"), stat(path, &about) == 0 ? (size_t)about.st_size : 0, 0, 0, to};
     struct aiFileIO io = {.OpenProc = open_one, .CloseProc = close_one, .UserData = (aiUserData)(void *)&of};
     struct aiPropertyStore *how = aiCreatePropertyStore();
     aiSetImportPropertyInteger(how, AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);

@@ -3,6 +3,7 @@
 #define KAGE_SCENE_H
 
 #include "errors.h"
+#include "files.h"
 #include "light.h"
 #include "mesh_data.h"
 #include "method.h"
@@ -128,6 +129,7 @@ typedef struct object {
 typedef struct scene {
     char *path;   /* of the file */
     char *source; /* its text; with the maps and the --set changes all that the picture is made from */
+    files made_from; /* with the scene's own file */
     int width, height;
     vec3 background;
     camera camera;

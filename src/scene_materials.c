@@ -119,7 +119,8 @@ void reader_materials(reader *r)
         reader_number(r, v, "phong", 0, false, BIG, "a share of light, 0 or more", &m->phong);
         reader_number(r, v, "phong_size", 0, true, BIG, "an exponent above 0", &m->phong_size);
         reader_number(r, v, "specular", 0, false, BIG, "a share of light, 0 or more", &m->specular);
-        reader_number(r, v, "roughness", 0, true, BIG, "a number above 0; small is sharp", &m->roughness);
+        reader_number(r, v, "roughness", SMALL, false, BIG, "a number of 1e-6 or more; small is sharp",
+                      &m->roughness); /* the cosine may be a few ulp above 1, which float bears to the power 1e6 */
         if ((k = yaml_get(v, "reflection")))
             read_reflection(r, k, m);
         read_clear(r, v, m);

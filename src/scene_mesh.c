@@ -40,7 +40,7 @@ surface *reader_mesh(reader *r, node *at, shape_spec *said)
     if (!read_normals(r, at, &normals, &crease) || !name)
         return NULL;
     char *path = reader_beside(r, name);
-    bool good = path && mesh_file_read(path, r->watch, &d, why);
+    bool good = path && mesh_file_read(path, r->watch, &r->s->made_from, &d, why);
     if (good)
         watch_show(r->watch, "checking", 1);
     good = good && mesh_clean(&d, normals, crease, BIG, why);

@@ -60,7 +60,7 @@ char *reader_beside(reader *r, const char *file)
     char *path = malloc(size);
     if (path)
         snprintf(path, size, "%.*s%s", folder, r->s->path, file);
-    else
+    if (!path || !files_add_path(&r->s->made_from, path))
         errors_add(r->e, "out of memory");
     return path;
 }
@@ -185,6 +185,7 @@ static void read_render(reader *r)
 
 /* ---- the whole ---- */
 
+/* Once all objects are good: each has a material. */
 static void note_secondary(scene *s)
 {
     for (int k = 0; k < s->objects; k++) {
@@ -194,12 +195,11 @@ static void note_secondary(scene *s)
     }
 }
 
-/* Once all objects are good. */
-static void note_crowd(reader *r, int before)
+/* Likewise. */
+static void note_crowd(reader *r)
 {
     bool good = true;
-    if (r->e->count == before)
-        r->s->crowd = crowd_new(r->s, &good);
+    r->s->crowd = crowd_new(r->s, &good);
     if (!good)
         errors_add(r->e, "out of memory");
 }
@@ -211,6 +211,8 @@ scene *scene_read(const char *path, int sets, char *const *set, const watch *w, 
     r.y = r.s ? yaml_open(path, sets, set, "image render", e) : NULL;
     if (r.y) {
         r.s->path = reader_copy(&r, path);
+        if (!files_add_path(&r.s->made_from, path))
+            errors_add(e, "out of memory");
         r.s->source = reader_copy(&r, yaml_source(r.y));
         if (r.s->path) {
             yaml_map(r.y, yaml_root(r.y), "the scene", "camera image render lights materials objects");
@@ -220,8 +222,10 @@ scene *scene_read(const char *path, int sets, char *const *set, const watch *w, 
             reader_lights(&r);
             reader_materials(&r);
             reader_objects(&r);
-            note_secondary(r.s);
-            note_crowd(&r, before);
+            if (e->count == before) {
+                note_secondary(r.s);
+                note_crowd(&r);
+            }
         }
         yaml_close(r.y);
     }
@@ -265,6 +269,7 @@ void scene_free(scene *s)
     free(s->light);
     free(s->material);
     free(s->object);
+    files_free(&s->made_from);
     free(s->path);
     free(s->source);
     free(s);

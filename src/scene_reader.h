@@ -37,7 +37,8 @@ node *reader_named(reader *r, const char *key, const char *what, bool need, size
 /* (scene_lights.c) */
 void reader_lights(reader *r);
 
-/* The file beside the scene, so that a scene finds its files from any working directory; owned. */
+/* The file beside the scene, so that a scene finds its files from any working directory; owned. It is one of those that
+ * the scene is made from. */
 char *reader_beside(reader *r, const char *file);
 
 /* Where a map lies on a surface with that extent: size or repeat, offset, wrap and samples. (scene_objects.c) */

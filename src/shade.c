@@ -118,14 +118,21 @@ static inline void phong(const group *restrict g, const way to, double *restrict
 STAGE static void phong_to(const group *g, const light *l, double *c, real *lit) { phong(g, way_to(l), c, lit); }
 STAGE static void phong_against(const group *g, const light *l, double *c, real *lit) { phong(g, way_against(l), c, lit); }
 
-/* Blinn's: the half-way vector between light and viewer, L - s, against the normal. */
+/* Blinn's: the half-way vector between light and viewer, h = L - s, against the normal. |h|^2 = 2 - 2 s.L and
+ * n.h = n.L - n.s have no digits left where L is near s: the light is behind the surface. There they come from h itself,
+ * so that c is a cosine, no more than 1, and its power stays finite. */
 static inline void blinn(const group *restrict g, const way to, double *restrict c, real *restrict lit)
 {
     for (int i = 0; i < g->n; i++) {
         bs_vec3 L, n, s = lane_unit(lane_get(&g->x.s, i));
         lit[i] = facing(g, i, to, &L, &n);
-        real length = real_sqrt(real_max(2 - 2 * bs_dot(s, L), R(1e-20)));
-        c[i] = (double)real_max((bs_dot(n, L) - bs_dot(s, n)) / length, 0);
+        bs_vec3 h = {L.x - s.x, L.y - s.y, L.z - s.z};
+        real square = 2 - 2 * bs_dot(s, L), along = bs_dot(n, L) - bs_dot(s, n);
+        real short_square = bs_dot(h, h), short_along = bs_dot(n, h);
+        int behind = square < R(0.01);
+        square = behind ? short_square : square;
+        along = behind ? short_along : along;
+        c[i] = (double)real_max(along / real_sqrt(real_max(square, R(1e-20))), 0);
     }
 }
 

@@ -89,8 +89,8 @@ def off(path: Path, m: Model) -> None:
     path.write_text(f"OFF\n{len(m.at)} {len(m.face)} 0\n" + rows("%.9g %.9g %.9g\n", m.at) + rows("3 %d %d %d\n", m.face))
 
 
-def gltf(path: Path, m: Model, matrix: list[float] | None = None) -> None:
-    """glTF or, by the name, GLB; v goes down in these."""
+def gltf(path: Path, m: Model, matrix: list[float] | None = None, buffer: str = "") -> None:
+    """glTF, with its numbers in a file beside it where that has a name, or, by the name, GLB; v goes down in these."""
     arrays = [m.at.astype("<f4"), m.normal.astype("<f4"), (m.uv * (1, -1) + (0, 1)).astype("<f4"), m.face.astype("<u4").ravel()]
     kinds = [("VEC3", 5126), ("VEC3", 5126), ("VEC2", 5126), ("SCALAR", 5125)]
     blob, views, accessors = b"", [], []
@@ -100,13 +100,16 @@ def gltf(path: Path, m: Model, matrix: list[float] | None = None) -> None:
         blob += array.tobytes()
     accessors[0] |= {"min": arrays[0].min(axis=0).tolist(), "max": arrays[0].max(axis=0).tolist()}
     binary = path.suffix == ".glb"
-    buffer: dict[str, object] = {"byteLength": len(blob)}
-    if not binary:
-        buffer["uri"] = "data:application/octet-stream;base64," + base64.b64encode(blob).decode()
+    numbers: dict[str, object] = {"byteLength": len(blob)}
+    if buffer:
+        numbers["uri"] = buffer
+        (path.parent / buffer).write_bytes(blob)
+    elif not binary:
+        numbers["uri"] = "data:application/octet-stream;base64," + base64.b64encode(blob).decode()
     document = {
         "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0} | ({"matrix": matrix} if matrix else {})],
         "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "NORMAL": 1, "TEXCOORD_0": 2}, "indices": 3}]}],
-        "buffers": [buffer], "bufferViews": views, "accessors": accessors,
+        "buffers": [numbers], "bufferViews": views, "accessors": accessors,
     }
     text = json.dumps(document).encode()
     if not binary:

@@ -11,6 +11,7 @@ import subprocess
 import time
 from pathlib import Path
 
+import models
 import numpy as np
 import OpenEXR
 import pytest
@@ -48,7 +49,7 @@ def same(a: dict[str, np.ndarray], b: dict[str, np.ndarray]) -> bool:
 def test_help_and_version(kage: Kage) -> None:
     text = kage.good("--help")
     for word in ("render", "check", "pixel", "methods", "--set", "--size", "-o", "--shadow", "--no-guard", "--aa",
-                 "--aa-threshold", "--crop", "--layers", "--bits", "--threads", "--stats", "--quiet"):
+                 "--aa-threshold", "--crop", "--layers", "--bits", "--overwrite", "--threads", "--stats", "--quiet"):
         assert word in text
     assert max(map(len, text.splitlines())) <= 120
     assert kage.good("-h") == text == kage.good("render", "--help")
@@ -452,3 +453,92 @@ def test_interrupt_leaves_no_half_file(kage: Kage, wait: float) -> None:
             assert exr(path)["R"].shape == (1200, 1600)
         else:
             assert png(path).shape == (1200, 1600, 3)
+
+
+# ---- what no output replaces ----
+
+PATCH = "0 0 0, 0 0 1, 0 0 2, 0 0 3, 1 0 0, 1 1 1, 1 1 2, 1 0 3, 2 0 0, 2 1 1, 2 1 2, 2 0 3, 3 0 0, 3 0 1, 3 0 2, 3 0 3\n"
+MADE_FROM = """
+  cloth: {patches: {file: "data/cloth"}, material: clay}
+  roof: {mesh: {file: roof.obj}, material: clay}
+  model: {mesh: {file: model.gltf}, material: tiles}
+"""
+
+
+def grey(path: Path) -> None:
+    Image.fromarray((np.arange(48).reshape(6, 8) * 5).astype(np.uint8)).save(path, "PNG")
+
+
+def write_hill(kage: Kage) -> dict[str, bytes]:
+    """A scene with every kind of file that it can be made from. What is in the folder."""
+    folder = kage.folder
+    (folder / "data").mkdir()
+    grey(folder / "hill.png")
+    grey(folder / "tiles.exr")  # its first bytes say what it is
+    (folder / "data" / "cloth").write_text(PATCH)
+    (folder / "roof.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+    models.gltf(folder / "model.gltf", models.ball(8, 4), buffer="model.bin")
+    scene = SCENE.replace("map.png", "hill.png").replace("materials:", "materials:\n  tiles: {color: {image: {file: tiles.exr}}}")
+    (folder / "hill.yaml").write_text(scene + MADE_FROM.strip("\n") + "\n")
+    return contents(kage)
+
+
+def contents(kage: Kage) -> dict[str, bytes]:
+    return {name: (kage.folder / name).read_bytes() for name in kage.files() if (kage.folder / name).is_file()}
+
+
+INPUTS = ["hill.yaml", "hill.png", "tiles.exr", "data/cloth", "roof.obj", "model.gltf", "model.bin"]
+
+
+def refuses(kage: Kage, *arguments: object) -> str:
+    before = contents(kage)
+    done = kage(*arguments)
+    assert (done.returncode, done.stdout) == (2, ""), done.stderr
+    assert contents(kage) == before
+    return done.stderr
+
+
+@pytest.mark.parametrize(("link", "ending"), [("symbolic", "png"), ("symbolic", "pov"), ("hard", "exr")])
+@pytest.mark.parametrize("name", INPUTS)
+def test_no_output_is_an_input(kage: Kage, name: str, link: str, ending: str) -> None:
+    write_hill(kage)
+    output = kage.folder / f"link.{ending}"
+    if link == "hard":
+        output.hardlink_to(kage.folder / name)
+    else:
+        output.symlink_to(name)
+    command = "pov" if ending == "pov" else "render"
+    told = f"link.{ending}: the scene is made from this file, expected -o with another name\n"
+    assert refuses(kage, command, "hill.yaml", "-o", output.name) == f"kage: {told}"
+    if command == "render":
+        assert refuses(kage, command, "hill.yaml", "-o", "good.png", "-o", output, "--overwrite").endswith(told)
+    output.unlink()
+    kage.good(command, "hill.yaml", "-o", output.name)
+
+
+def test_no_output_is_an_input_by_its_own_name(kage: Kage) -> None:
+    write_hill(kage)
+    for name in ("hill.png", "./data/../hill.png", "tiles.exr"):
+        assert refuses(kage, "render", "hill.yaml", "-o", name) == f"kage: {name}: the scene is made from this file, expected -o with another name\n"
+    for more in ([], ["--overwrite"]):
+        assert refuses(kage, "render", "hill.yaml", *more) == "kage: hill.png: the scene is made from this file, expected -o with another name\n"
+
+
+def test_the_default_output_replaces_no_other_file(kage: Kage) -> None:
+    plain = "\n".join(line for line in SCENE.split("\n") if "map.png" not in line)
+    (kage.folder / "plain.yaml").write_text(plain)
+    output = kage.folder / "plain.png"
+    grey(output)
+    data = output.read_bytes()
+    for other in (data, data[:40], b"", b"a text", data[:8] + b"\0\0\0\0tEXt"):
+        output.write_bytes(other)
+        assert refuses(kage, "render", "plain.yaml") == (
+            "kage: plain.png: kage did not write this file, expected -o with another name, or --overwrite\n")
+    kage.good("render", "plain.yaml", "--overwrite")
+    made = output.read_bytes()
+    kage.good("render", "plain.yaml", "--shadow", "2")  # its own
+    assert output.read_bytes() != made
+    grey(output)
+    kage.good("render", "plain.yaml", "-o", "plain.png")  # as was asked for
+    kage.good("render", "plain.yaml", "--set", "camera.up=[0, 1, 0]  # ä")  # whose texts are UTF-8
+    kage.good("render", "plain.yaml")

@@ -221,6 +221,49 @@ def test_adaptive(tmp_path: Path, view: str, aa: str, threshold: float) -> None:
         assert all(part[name].tobytes() == got[name][y0:y1, x0:x1].tobytes() for name in got)
 
 
+# ---- highlights ----
+
+
+def rgb(layers: dict[str, np.ndarray]) -> np.ndarray:
+    return np.stack([layers[name] for name in "RGB"], axis=-1).astype(float)
+
+
+SHINY = """
+camera: {{from: {eye}, at: {at}, {lens}}}
+image: {{size: [41, 31], background: [0, 0, 0]}}
+lights:
+  lamp: {{at: {lamp}}}
+materials:
+  clay: {{color: [0.8, 0.7, 0.6], specular: 0.5, roughness: {roughness}}}
+objects:
+  {thing}
+"""
+
+
+@pytest.mark.parametrize("roughness", ["0.05", "0.001", "1e-6"])
+@pytest.mark.parametrize("bump", ["", ", bump: {function: '0.05*sin(20*u)*sin(9*w)'}"], ids=["smooth", "bumped"])
+def test_a_light_right_behind_gives_no_highlight(tmp_path: Path, bump: str, roughness: str) -> None:
+    """It is on the viewing ray through the middle pixel, so that the half-way vector has no length."""
+    for k in range(8):
+        eye, at = np.array([-2.81 + 0.6 * k, 2.66 - 0.53 * k, -5]), np.array([0.29, -0.04, 0.2])
+        lamp = (2 * at - eye).tolist()
+        scene = SHINY.format(eye=eye.tolist(), at=at.tolist(), lens="fov: 40", lamp=lamp, roughness=roughness,
+                             thing=f"ball: {{sphere: {{center: [0, 0, 0], radius: 1}}, material: clay{bump}}}")
+        color = rgb(render(tmp_path, scene))
+        assert np.allclose(color[15, 20], [0.08, 0.07, 0.06])
+        assert np.isfinite(color).all()
+
+
+def test_the_sharpest_highlight_is_finite(tmp_path: Path) -> None:
+    """All of a plane in the middle of its highlight: the cosine is 1 to the last digits."""
+    for x, y, z in ((5, 1, 2), (1, 1, 4), (3, 1, 2), (1, 2, 3)):
+        scene = SHINY.format(eye=[x, y, -z], at=[0, 0, 0], lens="width: 4", lamp=f"[{-x}, {y}, {z}], parallel: {{to: [0, 0, 0]}}", roughness="1e-6",
+                             thing="ground: {plane: {origin: [0, 0, 0], u: [0, 0, 1], w: [1, 0, 0]}, material: clay}")
+        color = rgb(render(tmp_path, scene))
+        assert np.isfinite(color).all()
+        assert color.max() < 2
+
+
 # ---- secondary rays ----
 
 VANITY = """
@@ -239,10 +282,6 @@ objects:
   ball: {{sphere: {{center: [0.4, 0, {near}4.5], radius: 0.8}}, material: red, bump: {{function: "0.05*cos(5*u)*sin(7*w)*sin(w)"}}}}
   block: {{box: {{from: [-1.6, 0.2, {near}5], to: [-0.8, 1.2, {near}4]}}, material: clay}}
 """
-
-
-def rgb(layers: dict[str, np.ndarray]) -> np.ndarray:
-    return np.stack([layers[name] for name in "RGB"], axis=-1).astype(float)
 
 
 def share_close(a: dict[str, np.ndarray], b: dict[str, np.ndarray], tolerance: float = 2e-4) -> float:

@@ -183,7 +183,7 @@ REPLACED = [
     ("ambient-negative", "ambient: 0.1", "ambient: -0.1",
      "7:43: -0.1 is less than 0, expected a share of light, 0 or more"),
     ("roughness", "diffuse: 0.8", "roughness: 0",
-     "7:59: 0 is too small, expected a number above 0; small is sharp"),
+     "7:59: 0 is less than 1e-06, expected a number of 1e-6 or more; small is sharp"),
     ("phong-size", "diffuse: 0.8", "phong_size: 0", "7:60: 0 is too small, expected an exponent above 0"),
     ("size-zero", "size: [40, 30]", "size: [0, 30]",
      "2:16: 0 is less than 1, expected [width, height] in pixels, from 1 to 32768"),
@@ -666,6 +666,23 @@ def test_excerpt_of_a_long_line(bench: Kage) -> None:
     message = next(k for k, line in enumerate(lines) if "'fvo'" in line)
     assert lines[message].startswith("scene.yaml:1:332: ")
     assert lines[message + 1][lines[message + 2].index("^") :].startswith("fvo: 2}")
+
+
+#: What a key at the top may hold instead of what it should; None: it is not there.
+MISFITS = {"missing": None, "empty": "", "no-items": " {}", "list": " [1]", "no-list": " []", "number": " 3", "empty-item": " {a: }"}
+
+
+@pytest.mark.parametrize("what", MISFITS)
+@pytest.mark.parametrize("key", ["camera", "image", "render", "lights", "materials", "objects"])
+def test_any_key_at_the_top(bench: Kage, key: str, what: str) -> None:
+    kept = [part for part in re.split(r"(?m)^(?=\w)", SCENE) if part and not part.startswith(f"{key}:")]
+    assert len(kept) == 5
+    (bench.folder / "scene.yaml").write_text("".join(kept) + ("" if MISFITS[what] is None else f"{key}:{MISFITS[what]}\n"))
+    for command, *options in (["check"], ["pixel", "3,3"], ["render", "-o", "out.png"], ["pov", "-o", "out.pov"]):
+        done = bench(command, "scene.yaml", *options)
+        assert done.returncode in (0, 2), done.stderr
+        placed = re.match(r"scene\.yaml:\d+:\d+: .", done.stderr)
+        assert bool(placed) == (done.returncode == 2), done.stderr
 
 
 def test_scene_that_cannot_be_read(kage: Kage) -> None:
