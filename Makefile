@@ -41,14 +41,14 @@ PKG_CFLAGS := $(patsubst -I%,-isystem %,$(shell pkg-config --cflags $(PKGS) 2>/d
 EMBREE     := $(firstword $(foreach v,4 3,$(shell printf '\043include <embree$(v)/rtcore.h>\n' | $(CC) -fsyntax-only -x c - 2>/dev/null && echo $(v))))
 DEFINES    += -DKAGE_EMBREE=$(or $(EMBREE),0)
 PKG_LIBS   := $(shell pkg-config --libs-only-L OpenEXR 2>/dev/null) -lOpenEXRCore $(shell pkg-config --libs libpng libfyaml assimp 2>/dev/null)
-override CFLAGS  += $(STANDARD) $(OPTIMISE) -fopenmp $(WARNINGS) $(DEFINES) $(SANITIZER) $(PKG_CFLAGS) -MMD -MP
+override CFLAGS  += -Iinclude -Isrc $(STANDARD) $(OPTIMISE) -fopenmp $(WARNINGS) $(DEFINES) $(SANITIZER) $(PKG_CFLAGS) -MMD -MP
 override LDFLAGS += -fopenmp $(SANITIZER)
 LIBS       = $(PKG_LIBS) -lembree$(or $(EMBREE),3) -lm
 
-PROGRAM   = main arguments progress command_render command_check command_pixel command_pov command_output
-SOURCES   = $(patsubst src/%.c,%,$(wildcard src/*.c))
-LIBRARY   = $(filter-out $(PROGRAM),$(SOURCES))
-UNITS     = $(patsubst tests/%.c,%,$(wildcard tests/test_*.c))
+SOURCES   = $(patsubst src/%.c,%,$(wildcard src/*/*.c))
+PROGRAM   = $(filter cli/%,$(SOURCES))
+LIBRARY   = $(filter-out cli/%,$(SOURCES))
+UNITS     = $(patsubst tests/%.c,%,$(wildcard tests/unit/*/test_*.c))
 
 FIGURES   = figure4 figure5 figure6 figure7 figure8-none figure8 terrain-none terrain
 PICTURES  = $(FIGURES:%=out/%.png)
@@ -124,7 +124,7 @@ out/gallery/index.html: $(GALLERY:%=out/gallery/%-none.png) $(GALLERY:%=out/gall
 
 # ---- the program ----
 
-$(BUILD)/kage: $(PROGRAM:%=$(BUILD)/%.o) $(LIBRARY:%=$(BUILD)/%.o)
+$(BUILD)/kage: $(PROGRAM:%=$(BUILD)/%.o) $(BUILD)/internal.a
 	@echo '  LD  $@'
 	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(LIBS)
 
@@ -135,13 +135,19 @@ $(BUILD)/flags: FORCE
 
 $(BUILD)/%.o: src/%.c $(BUILD)/flags
 	@echo '  CC  $@'
+	@mkdir -p $(@D)
 	$(Q)$(CC) $(CFLAGS) -c -o $@ $<
 
 $(BUILD)/%.o: tests/%.c $(BUILD)/flags
 	@echo '  CC  $@'
-	$(Q)$(CC) $(CFLAGS) -Isrc -Itests -DKAGE_TESTS_DIR='"tests"' -c -o $@ $<
+	@mkdir -p $(@D)
+	$(Q)$(CC) $(CFLAGS) -Itests -DKAGE_TESTS_DIR='"tests"' -c -o $@ $<
 
-$(BUILD)/test_%: $(BUILD)/test_%.o $(LIBRARY:%=$(BUILD)/%.o)
+# All objects of the library: for the program and the unit tests, which look inside.
+$(BUILD)/internal.a: $(LIBRARY:%=$(BUILD)/%.o)
+	$(Q)rm -f $@ && $(AR) rcs $@ $^
+
+$(UNITS:%=$(BUILD)/%): $(BUILD)/%: $(BUILD)/%.o $(BUILD)/internal.a
 	@echo '  LD  $@'
 	$(Q)$(CC) $(LDFLAGS) -o $@ $^ -lcmocka $(LIBS)
 
@@ -186,11 +192,11 @@ accept: all
 install: all
 	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/include
 	install -m 755 $(BUILD)/kage $(DESTDIR)$(PREFIX)/bin/kage
-	install -m 644 src/bumpshadow.h $(DESTDIR)$(PREFIX)/include/bumpshadow.h
+	install -m 644 include/bumpshadow.h $(DESTDIR)$(PREFIX)/include/bumpshadow.h
 
 clean:
 	rm -rf build out
 
 .PRECIOUS: $(BUILD)/%.o
 
--include $(wildcard $(BUILD)/*.d)
+-include $(wildcard $(BUILD)/*/*.d $(BUILD)/unit/*/*.d)

@@ -6,6 +6,7 @@ The environment variable KAGE names the program, by default build/float/kage.
 from __future__ import annotations
 
 import os
+import shutil
 import subprocess
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -14,6 +15,9 @@ import pytest
 
 TOP = Path(__file__).resolve().parent.parent
 PROGRAM = Path(os.environ.get("KAGE", TOP / "build" / "float" / "kage")).resolve()
+
+#: CI must have POV-Ray: there its absence is a failure.
+needs_povray = pytest.mark.skipif(not shutil.which("povray") and not os.environ.get("CI"), reason="no povray")
 
 #: The files that take longest, which begin first, so that two workers end together.
 LONG = ("test_parity.py", "test_bench_run.py", "test_images.py", "test_regression.py", "test_input.py", "test_mesh.py", "test_pov.py")

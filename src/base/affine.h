@@ -1,0 +1,48 @@
+/* Affine maps in double, for setting scenes up: where a transform puts things. */
+#ifndef KAGE_BASE_AFFINE_H
+#define KAGE_BASE_AFFINE_H
+
+#include "base/vec3.h"
+
+/* Where the axes (of length 1) and the origin go: the four rows of POV-Ray's `matrix`. */
+typedef struct affine {
+    vec3 x, y, z, o;
+} affine;
+
+static inline affine affine_identity(void) { return (affine){{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, 0}}; }
+
+static inline vec3 affine_vector(const affine *m, vec3 v)
+{
+    return vec3_add(vec3_add(vec3_scale(m->x, v.x), vec3_scale(m->y, v.y)), vec3_scale(m->z, v.z));
+}
+
+static inline vec3 affine_point(const affine *m, vec3 p) { return vec3_add(affine_vector(m, p), m->o); }
+
+/* First m, then next. */
+static inline affine affine_then(const affine *m, const affine *next)
+{
+    return (affine){affine_vector(next, m->x), affine_vector(next, m->y), affine_vector(next, m->z), affine_point(next, m->o)};
+}
+
+/* What becomes of a unit of volume; below 0 where the map mirrors. */
+static inline double affine_volume(const affine *m) { return vec3_dot(vec3_cross(m->x, m->y), m->z); }
+
+/* The way back: its rows x, y, z, so that a vector v comes from (x.v, y.v, z.v); a gradient goes by them where vectors go by the
+ * axes. o: the origin, as in m. */
+static inline affine affine_back(const affine *m)
+{
+    const double k = 1 / affine_volume(m);
+    return (affine){vec3_scale(vec3_cross(m->y, m->z), k), vec3_scale(vec3_cross(m->z, m->x), k),
+                    vec3_scale(vec3_cross(m->x, m->y), k), m->o};
+}
+
+/* How much larger all becomes, by a map that keeps angles; 0: it does not. */
+static inline double affine_scale(const affine *m)
+{
+    const double xx = vec3_dot(m->x, m->x), yy = vec3_dot(m->y, m->y), zz = vec3_dot(m->z, m->z), least = 1e-12 * xx;
+    const int same = fabs(yy - xx) <= least && fabs(zz - xx) <= least;
+    const int square = fabs(vec3_dot(m->x, m->y)) <= least && fabs(vec3_dot(m->y, m->z)) <= least && fabs(vec3_dot(m->z, m->x)) <= least;
+    return same && square ? sqrt(xx) : 0;
+}
+
+#endif

@@ -1,0 +1,126 @@
+#define _XOPEN_SOURCE 700 /* realpath */
+
+#include "base/file_writer.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+static bool fail(const char *path, const char *why, errors *e)
+{
+    return errors_add(e, "%s: cannot be written: %s", path, why);
+}
+
+/* Create a file of a new name, hidden, in a directory given with its final slash ("" : the current one).
+ * Unlike mkstemp, with the permissions that any new file gets. NULL with errno set on failure. */
+static char *create_aside(const char *dir, size_t dir_length, int *fd)
+{
+    const size_t room = dir_length + 64;
+    char *name = malloc(room);
+    *fd = -1;
+    for (int n = 0; name && *fd < 0 && n < 1000; n++) {
+        snprintf(name, room, "%.*s.kage-%ld-%d", (int)dir_length, dir, (long)getpid(), n);
+        *fd = open(name, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        if (*fd < 0 && errno != EEXIST)
+            break; /* EEXIST: another thread's, or left by a process that was killed */
+    }
+    if (*fd < 0) {
+        int error = errno;
+        free(name);
+        errno = error;
+        return NULL;
+    }
+    return name;
+}
+
+bool image_file_open(image_file *f, const char *path, errors *e)
+{
+    struct stat st;
+    const bool exists = stat(path, &st) == 0;
+    *f = (image_file){.path = path, .fd = -1};
+    if (exists && S_ISDIR(st.st_mode))
+        return fail(path, strerror(EISDIR), e);
+    if (exists && !S_ISREG(st.st_mode)) {
+        static const char dir[] = "/tmp/";
+        f->aside = create_aside(dir, sizeof dir - 1, &f->fd);
+        if (!f->aside)
+            return errors_add(e, "%s: no room to prepare it in %s: %s", path, dir, strerror(errno));
+        unlink(f->aside); /* the open file suffices for the copy */
+        free(f->aside);
+        f->aside = NULL;
+        return true;
+    }
+    /* Renaming needs no right to write to the old file: respect its protection all the same. */
+    if (exists && access(path, W_OK) != 0)
+        return fail(path, strerror(errno), e);
+    f->target = exists ? realpath(path, NULL) : strdup(path);
+    if (!f->target)
+        return fail(path, strerror(errno), e);
+    const char *slash = strrchr(f->target, '/');
+    f->aside = create_aside(f->target, slash ? (size_t)(slash + 1 - f->target) : 0, &f->fd);
+    if (!f->aside) {
+        fail(path, strerror(errno), e);
+        free(f->target);
+        return false;
+    }
+    return true;
+}
+
+/* write() of everything. */
+static bool write_all(int fd, const char *data, size_t size)
+{
+    while (size > 0) {
+        ssize_t n = write(fd, data, size);
+        if (n < 0 && errno != EINTR)
+            return false;
+        if (n > 0) {
+            data += n;
+            size -= (size_t)n;
+        }
+    }
+    return true;
+}
+
+bool image_file_write(image_file *f, const void *data, size_t size, uint64_t offset)
+{
+    if (!f->error && (lseek(f->fd, (off_t)offset, SEEK_SET) < 0 || !write_all(f->fd, data, size)))
+        f->error = errno;
+    return !f->error;
+}
+
+/* Copy all of `from` to what `path` leads to. 0, or the errno of what failed. */
+static int copy_to(const char *path, int from)
+{
+    char block[65536];
+    ssize_t n = 0;
+    int to = open(path, O_WRONLY | O_CLOEXEC);
+    if (to < 0)
+        return errno;
+    int error = lseek(from, 0, SEEK_SET) < 0 ? errno : 0;
+    while (!error && (n = read(from, block, sizeof block)) != 0)
+        if (n < 0 || !write_all(to, block, (size_t)n))
+            error = errno;
+    if (close(to) != 0 && !error)
+        error = errno;
+    return error;
+}
+
+bool image_file_close(image_file *f, const char *why, errors *e)
+{
+    if (!why && !f->error && !f->target)
+        f->error = copy_to(f->path, f->fd);
+    if (close(f->fd) != 0 && !f->error) /* some file systems tell only now that the disk is full */
+        f->error = errno;
+    if (!why && !f->error && f->target && rename(f->aside, f->target) != 0)
+        f->error = errno;
+    if ((why || f->error) && f->aside)
+        unlink(f->aside);
+    free(f->aside);
+    free(f->target);
+    if (f->error)
+        return fail(f->path, strerror(f->error), e);
+    return !why || fail(f->path, why, e);
+}

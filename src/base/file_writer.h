@@ -1,0 +1,44 @@
+/* What the image files share; private to image*.c. */
+#ifndef KAGE_BASE_FILE_WRITER_H
+#define KAGE_BASE_FILE_WRITER_H
+
+#include <stdint.h>
+#include <stdio.h>
+
+#include "image/image.h"
+
+/* Room for a reason in one sentence. */
+enum { IMAGE_WHY = 512 };
+
+/* NULL, or why an image of this size is neither read nor written. */
+const char *image_refuse_size(int64_t width, int64_t height);
+
+/* Room for width x height pixels of so many values in *out. NULL, or why there is none. */
+const char *image_alloc(image *out, int64_t width, int64_t height, int values);
+
+/* The readers behind image_read. *out is empty and stays so on error; why[IMAGE_WHY] then holds the reason. */
+bool image_read_png(FILE *file, bool color, image *out, char *why); /* after the 8 bytes of signature */
+bool image_read_exr(FILE *file, const char *channel, bool color, image *out, char *why); /* from anywhere */
+
+/* A file being written. Nobody sees it at `path` before it is whole: it grows under another name in the same
+ * directory and is renamed at the end. A path that leads to something other than a regular file (a terminal,
+ * a pipe, /dev/null) keeps being that: the bytes are then copied there at the end. */
+typedef struct image_file {
+    const char *path; /* as the caller wrote it, for messages */
+    char *target;     /* where to rename to, all links followed; NULL: copy to path instead */
+    char *aside;      /* the name meanwhile; NULL: none any more */
+    int fd;
+    int error; /* errno of the first write that failed; 0: none */
+} image_file;
+
+/* False with a message in *e; then there is nothing to close. */
+bool image_file_open(image_file *f, const char *path, errors *e);
+
+/* Put `size` bytes at `offset`. A failure is kept in f->error. */
+bool image_file_write(image_file *f, const void *data, size_t size, uint64_t offset);
+
+/* End the file: with `why` NULL it takes its place, otherwise it is dropped. False with one message in *e, which
+ * tells the system's reason if a write has failed, else `why`. */
+bool image_file_close(image_file *f, const char *why, errors *e);
+
+#endif

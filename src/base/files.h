@@ -1,0 +1,36 @@
+/* The files that a scene is made from, known by what they are and not by a name: no output replaces one of them. */
+#ifndef KAGE_BASE_FILES_H
+#define KAGE_BASE_FILES_H
+
+#include <stdbool.h>
+#include <sys/stat.h>
+#include <sys/types.h>
+
+/* The same for all names of a file. */
+typedef struct file_id {
+    dev_t device;
+    ino_t number;
+} file_id;
+
+typedef struct files {
+    file_id *id; /* owned */
+    int count;
+} files;
+
+static inline file_id file_id_of(const struct stat *about)
+{
+    file_id id = {about->st_dev, about->st_ino};
+    return id;
+}
+
+/* Add a file, once. False: out of memory. */
+bool files_add(files *f, file_id id);
+
+/* The same by a name, links followed. What is not there, or no regular file, has nothing to lose and is not added. */
+bool files_add_path(files *f, const char *path);
+
+bool files_have_path(const files *f, const char *path);
+
+void files_free(files *f);
+
+#endif

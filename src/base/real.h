@@ -1,0 +1,61 @@
+/* The number type of the tracer, and how its loops become SIMD.
+ *
+ * `real` is float; `make REAL=double` builds the same code in double, for verification.
+ */
+#ifndef KAGE_BASE_REAL_H
+#define KAGE_BASE_REAL_H
+
+#include <math.h>
+
+#ifdef KAGE_DOUBLE
+typedef double real;
+#define REAL_NAME "double"
+#define REAL_INTEGER 6755399441055744.0 /* 1.5 * 2^52 */
+#define REAL_ROUNDING 4e-16             /* what a sum or product can be off, as a share, and as much again */
+#define real_sqrt(x) sqrt(x)
+#define real_abs(x) fabs(x)
+#else
+typedef float real;
+#define REAL_NAME "float"
+#define REAL_INTEGER 12582912.0f /* 1.5 * 2^23 */
+#define REAL_ROUNDING 2.4e-7
+#define real_sqrt(x) sqrtf(x)
+#define real_abs(x) fabsf(x)
+#endif
+
+/* A literal of type real: R(0.5). */
+#define R(x) ((real)(x))
+
+/* No real number of the scene: the t of a ray that has met nothing. */
+#define REAL_FAR ((real)1e30)
+
+/* Put before the definition of a stage, a static function that is one plain loop over lanes (static, as clang 14 exports
+ * clones under another name): it is compiled once for any x86-64, once for AVX2 and once for AVX-512 (gcc), and the loader
+ * takes the one that fits. All give the same bytes, because nothing is contracted (-ffp-contract=off) and every operation used is exact
+ * by IEEE 754 (+ - * / sqrt, comparisons, conversions); no stage calls libm for anything else.
+ * Processors other than x86-64 build the same source without clones. */
+#if defined(__x86_64__) && defined(__gnu_linux__) && !defined(KAGE_NO_CLONES)
+#if defined(__clang__)
+#define STAGE __attribute__((target_clones("default", "avx2")))
+#else
+#define STAGE __attribute__((target_clones("default", "arch=x86-64-v3", "arch=x86-64-v4")))
+#endif
+#else
+#define STAGE
+#endif
+
+/* Comparisons as the hardware has them, so that a loop with them stays a plain loop: where x or y is
+ * NaN the result is y. (fmin and fmax promise more, and cost a branch.) */
+static inline real real_min(real x, real y) { return x < y ? x : y; }
+static inline real real_max(real x, real y) { return x > y ? x : y; }
+
+/* floor without a call to libm, which SSE2 would need: adding REAL_INTEGER leaves no bit for a fraction. From
+ * REAL_INTEGER / 3 on, where it would fail, x comes back; it has no more than one bit of a fraction then. */
+static inline real real_floor(real x)
+{
+    real f = (x + REAL_INTEGER) - REAL_INTEGER;
+    f = f > x ? f - 1 : f;
+    return real_abs(x) < REAL_INTEGER / 3 ? f : x;
+}
+
+#endif

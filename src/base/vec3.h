@@ -1,0 +1,26 @@
+/* A vector in double, for setting scenes up. The waves have their own layout, wave.h. */
+#ifndef KAGE_BASE_VEC3_H
+#define KAGE_BASE_VEC3_H
+
+#include <math.h>
+
+typedef struct vec3 {
+    double x, y, z;
+} vec3;
+
+/* Of two numbers, as the hardware has them: libm's fmin and fmax are calls. */
+static inline double lesser(double x, double y) { return x < y ? x : y; }
+static inline double greater(double x, double y) { return x > y ? x : y; }
+
+static inline vec3 vec3_add(vec3 a, vec3 b) { return (vec3){a.x + b.x, a.y + b.y, a.z + b.z}; }
+static inline vec3 vec3_sub(vec3 a, vec3 b) { return (vec3){a.x - b.x, a.y - b.y, a.z - b.z}; }
+static inline vec3 vec3_scale(vec3 a, double k) { return (vec3){k * a.x, k * a.y, k * a.z}; }
+static inline double vec3_dot(vec3 a, vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+static inline vec3 vec3_cross(vec3 a, vec3 b)
+{
+    return (vec3){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+static inline double vec3_length(vec3 a) { return sqrt(vec3_dot(a, a)); }
+static inline vec3 vec3_unit(vec3 a) { return vec3_scale(a, 1 / vec3_length(a)); }
+
+#endif

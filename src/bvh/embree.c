@@ -1,0 +1,171 @@
+/* Embree's hierarchy over boxes of ours (user geometry): it walks, and we note which boxes it came to. Nothing that it computes
+ * reaches a picture, since its roundings differ between processors. */
+#include "bvh/bvh.h"
+
+#if KAGE_EMBREE == 4
+#include <embree4/rtcore.h>
+#else
+#include <embree3/rtcore.h>
+#endif
+
+#include <stdlib.h>
+#include <string.h>
+
+struct bvh {
+    RTCDevice device;
+    RTCScene scene;
+    bvh_box *box;
+};
+
+/* What a walk is for, behind Embree's own context. */
+typedef struct walk {
+#if KAGE_EMBREE == 4
+    struct RTCRayQueryContext context;
+#else
+    struct RTCIntersectContext context;
+#endif
+    bvh_visit *visit;
+    bvh_shorten *shorten;
+    void *user;
+} walk;
+
+static void bounds(const struct RTCBoundsFunctionArguments *a)
+{
+    const bvh_box *b = &((const bvh *)a->geometryUserPtr)->box[a->primID];
+    struct RTCBounds *o = a->bounds_o;
+    o->lower_x = b->lo[0], o->lower_y = b->lo[1], o->lower_z = b->lo[2];
+    o->upper_x = b->hi[0], o->upper_y = b->hi[1], o->upper_z = b->hi[2];
+}
+
+/* A box is met: noted, and never told to Embree as a hit, so that it goes on to all others. */
+static void met(const struct RTCOccludedFunctionNArguments *a)
+{
+    const walk *k = (const walk *)(const void *)a->context;
+    if (a->valid[0])
+        k->visit(k->user, (int32_t)a->primID);
+}
+
+/* On a walk that ends sooner: no hit is told either, but where the ray ends now. */
+static void met_toward(const struct RTCIntersectFunctionNArguments *a)
+{
+    const walk *k = (const walk *)(const void *)a->context;
+    struct RTCRay *x = &((struct RTCRayHit *)(void *)a->rayhit)->ray;
+    if (a->valid[0])
+        x->tfar = k->shorten(k->user, (int32_t)a->primID, x->tfar);
+}
+
+static bool near_one(struct RTCPointQueryFunctionArguments *a)
+{
+    const walk *k = a->userPtr;
+    k->visit(k->user, (int32_t)a->primID);
+    return false; /* the radius stays */
+}
+
+/* What Embree calls while it builds. */
+typedef struct onlooker {
+    bvh_watch *watch;
+    void *user;
+} onlooker;
+
+static bool look(void *user, double share)
+{
+    const onlooker *k = user;
+    k->watch(k->user, share);
+    return true;
+}
+
+bvh *bvh_new(int n, const bvh_box *box) { return bvh_new_watched(n, box, NULL, NULL); }
+
+bvh *bvh_new_watched(int n, const bvh_box *box, bvh_watch *watch, void *user)
+{
+    onlooker k = {watch, user};
+    bvh *b = calloc(1, sizeof *b);
+    if (!b)
+        return NULL;
+    b->box = malloc(sizeof *box * (size_t)(n > 0 ? n : 1));
+    /* without threads of its own: kage's are enough, and a scene builds in a moment */
+    b->device = b->box ? rtcNewDevice("threads=1") : NULL;
+    b->scene = b->device ? rtcNewScene(b->device) : NULL;
+    RTCGeometry g = b->scene ? rtcNewGeometry(b->device, RTC_GEOMETRY_TYPE_USER) : NULL;
+    if (!g) {
+        bvh_free(b);
+        return NULL;
+    }
+    memcpy(b->box, box, sizeof *box * (size_t)n);
+    rtcSetGeometryUserPrimitiveCount(g, (unsigned)n);
+    rtcSetGeometryUserData(g, b);
+    rtcSetGeometryBoundsFunction(g, bounds, NULL);
+    rtcSetGeometryOccludedFunction(g, met);
+    rtcSetGeometryIntersectFunction(g, met_toward);
+    rtcCommitGeometry(g);
+    rtcAttachGeometry(b->scene, g);
+    rtcReleaseGeometry(g);
+    rtcSetSceneFlags(b->scene, RTC_SCENE_FLAG_ROBUST);
+    if (watch)
+        rtcSetSceneProgressMonitorFunction(b->scene, look, &k);
+    rtcCommitScene(b->scene);
+    rtcSetSceneProgressMonitorFunction(b->scene, NULL, NULL);
+    if (rtcGetDeviceError(b->device) != RTC_ERROR_NONE) {
+        bvh_free(b);
+        return NULL;
+    }
+    return b;
+}
+
+void bvh_free(bvh *b)
+{
+    if (!b)
+        return;
+    if (b->scene)
+        rtcReleaseScene(b->scene);
+    if (b->device)
+        rtcReleaseDevice(b->device);
+    free(b->box);
+    free(b);
+}
+
+void bvh_along(const bvh *b, const float r[3], const float s[3], float end, bvh_visit *visit, void *user)
+{
+    walk k = {.visit = visit, .user = user};
+    struct RTCRay x = {.org_x = r[0], .org_y = r[1], .org_z = r[2], .dir_x = s[0], .dir_y = s[1], .dir_z = s[2]};
+    x.tfar = end;
+    x.mask = ~0u;
+#if KAGE_EMBREE == 4
+    struct RTCOccludedArguments how;
+    rtcInitOccludedArguments(&how);
+    rtcInitRayQueryContext(&k.context);
+    how.context = &k.context;
+    rtcOccluded1(b->scene, &x, &how);
+#else
+    rtcInitIntersectContext(&k.context);
+    rtcOccluded1(b->scene, &k.context, &x);
+#endif
+}
+
+void bvh_toward(const bvh *b, const float r[3], const float s[3], float end, bvh_shorten *visit, void *user)
+{
+    walk k = {.shorten = visit, .user = user};
+    struct RTCRayHit x = {.ray = {.org_x = r[0], .org_y = r[1], .org_z = r[2], .dir_x = s[0], .dir_y = s[1], .dir_z = s[2]}};
+    x.ray.tfar = end;
+    x.ray.mask = ~0u;
+    x.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+#if KAGE_EMBREE == 4
+    struct RTCIntersectArguments how;
+    rtcInitIntersectArguments(&how);
+    rtcInitRayQueryContext(&k.context);
+    how.context = &k.context;
+    rtcIntersect1(b->scene, &x, &how);
+#else
+    rtcInitIntersectContext(&k.context);
+    rtcIntersect1(b->scene, &k.context, &x);
+#endif
+}
+
+void bvh_around(const bvh *b, const float p[3], float radius, bvh_visit *visit, void *user)
+{
+    walk k = {.visit = visit, .user = user};
+    struct RTCPointQuery q = {.x = p[0], .y = p[1], .z = p[2], .radius = radius};
+    struct RTCPointQueryContext context;
+    rtcInitPointQueryContext(&context);
+    rtcPointQuery(b->scene, &q, &context, near_one, &k);
+}

@@ -1,0 +1,44 @@
+#include "bvh/bvh.h"
+
+#include <math.h>
+
+#define AIR 4e-6     /* of the boxes, in radii: more than what float leaves of coordinates about 1, and of a ray's */
+#define MARGIN 4e-6f /* of a ray's end, likewise */
+
+bvh_space bvh_space_about(const double lo[3], const double hi[3])
+{
+    double half[3];
+    for (int k = 0; k < 3; k++)
+        half[k] = 0.5 * (hi[k] - lo[k]);
+    return (bvh_space){{lo[0] + half[0], lo[1] + half[1], lo[2] + half[2]}, vec3_length((vec3){half[0], half[1], half[2]})};
+}
+
+bvh_box bvh_box_in(const bvh_space *p, const double lo[3], const double hi[3])
+{
+    const double C[3] = {p->centre.x, p->centre.y, p->centre.z};
+    bvh_box b;
+    for (int k = 0; k < 3; k++) {
+        b.lo[k] = (float)((lo[k] - C[k]) / p->radius - AIR);
+        b.hi[k] = (float)((hi[k] - C[k]) / p->radius + AIR);
+    }
+    return b;
+}
+
+/* Without a direction, or with NaN, there is no stretch. */
+bool bvh_enter(const bvh_space *p, double reach, vec3 r, vec3 s, double *from, double *to, float at[3], float way[3], float *end)
+{
+    const double length = vec3_length(s), R = (1 + 1e-5) * reach, unit = 1 / p->radius;
+    const vec3 o = vec3_sub(r, p->centre);
+    const double start = -vec3_dot(o, s) / (length * length);
+    const vec3 near = vec3_add(o, vec3_scale(s, start));
+    const double half = sqrt(R * R - vec3_dot(near, near)) / length; /* NaN beside it */
+    *from = fmax(*from, start - half);
+    *to = fmin(*to, start + half);
+    if (!(half >= 0 && half < HUGE_VAL) || !(*from <= *to))
+        return false;
+    const vec3 q = vec3_scale(vec3_add(near, vec3_scale(s, *from - start)), unit), d = vec3_scale(s, 1 / length);
+    at[0] = (float)q.x, at[1] = (float)q.y, at[2] = (float)q.z;
+    way[0] = (float)d.x, way[1] = (float)d.y, way[2] = (float)d.z;
+    *end = (float)((*to - *from) * length * unit) + MARGIN;
+    return true;
+}

@@ -1,0 +1,148 @@
+#include "cli/command.h"
+#include "base/version.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#if defined(_OPENMP)
+#include <omp.h>
+#endif
+
+#include "base/real.h"
+
+static const char help[] =
+    "kage renders shadows of other objects on bump-mapped surfaces (Sumi and Noma's method).\n"
+    "\n"
+    "  kage render SCENE [options]      make the picture of a scene\n"
+    "  kage check SCENE [options]       say what is in a scene, and how steep its bumps are\n"
+    "  kage pixel SCENE X,Y [options]   every value on the way of one pixel, method by method\n"
+    "  kage pov SCENE -o FILE [options] write the scene for POV-Ray 3.7\n"
+    "  kage methods                     list the methods\n"
+    "  kage --help, kage --version\n"
+    "\n"
+    "Options of all commands:\n"
+    "  --set PATH=VALUE     change a value of the scene: --set objects.ground.bump.scale=0.1\n"
+    "  --size WxH           size of the picture in pixels\n"
+    "\n"
+    "Options of render:\n"
+    "  -o FILE              where to: .png (sRGB) or .exr (linear, with all layers); may be given again.\n"
+    "                       Without it: the scene's name with .png, here. Never a file that the scene is made from\n"
+    "  --overwrite          without -o, replace also a file that kage did not write\n"
+    "  --shadow METHOD      where shadow rays start: none, 0, 1, 2, 2+, iter:K, march:N, exact\n"
+    "  --surface KIND       smooth (bump mapping), or displaced: bumped surfaces as what they stand for\n"
+    "  --no-self-shadow     bumped objects cast no shadows\n"
+    "  --no-guard           the paper's bare formulas, also where they leave the slab between Pmin and Pmax\n"
+    "  --aa N               N x N samples a pixel\n"
+    "  --aa-threshold T     these only where neighbours differ by more than T (0 to 3, red, green and blue together,\n"
+    "                       as displayed), elsewhere one\n"
+    "  --crop X0,Y0,X1,Y1   only this part of the picture, in pixels from the top left, X1 and Y1 exclusive\n"
+    "  --layers A,B,...     of an EXR: color, Z, P, N, uw, height, tau, order, visibility (all)\n"
+    "  --bits 8|16          of a PNG (8)\n"
+    "  --threads N          (as many as there are processors)\n"
+    "  --stats              time and count each stage\n"
+    "  --quiet              no progress bar, no closing line\n"
+    "\n"
+    "Options of pov:\n"
+    "  -o FILE              where to, a name that ends in .pov\n"
+    "  --surface KIND       smooth (without the bumps), or displaced: bumped surfaces as what they stand for\n"
+    "  --no-self-shadow     bumped objects cast no shadows\n"
+    "  --no-cast            all other objects cast none\n"
+    "\n"
+    "Scene files are described in docs/scene.md, the method in docs/method.md, the way to POV-Ray in\n"
+    "docs/povray.md.\n"
+    "Exit status: 0; 1 where a picture can't be written; 2 for bad input.\n";
+
+const char *base_name(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
+int command_fail(errors *e, int status)
+{
+    if (e->text)
+        fputs(e->text, stderr);
+    else
+        fputs("kage: out of memory\n", stderr);
+    if (status == EXIT_INPUT && e->count > 1)
+        fprintf(stderr, "%d errors%s\n", e->count, e->count > ERRORS_SHOWN ? ", the first of them above" : "");
+    errors_free(e);
+    return status;
+}
+
+/* A model is shown without its triangles that have no area; that is nothing to see, but may be a sign. */
+static void tell_flat(const object *o)
+{
+    const shape_spec *f = &o->shape_said;
+    if (f->kind == SHAPE_MESH && !o->copy_of && f->found.flat)
+        fprintf(stderr, "kage: object %s: %d of the %d triangles in %s have no area; they are left out\n", o->name, f->found.flat,
+                f->triangles + f->found.flat, f->file);
+}
+
+scene *command_scene(const arguments *a)
+{
+    errors e = {0};
+    progress p;
+    progress_start(&p, a->quiet, base_name(a->operand[0]), 0);
+    const watch w = {progress_load, &p};
+#if defined(_OPENMP)
+    if (a->threads > 0) /* also where a scene is made ready (leaf.c) */
+        omp_set_num_threads(a->threads);
+#endif
+    scene *s = scene_read(a->operand[0], a->sets, a->set, &w, &e);
+    progress_end(&p);
+    if (!s)
+        command_fail(&e, EXIT_INPUT);
+    const bool tell = !a->quiet && strcmp(a->command, "check") != 0; /* which tells it itself */
+    for (int k = 0; s && tell && k < s->objects; k++)
+        tell_flat(&s->object[k]);
+    return s;
+}
+
+/* The exit status, once all that was said on stdout has gone out. */
+static int finish(int status)
+{
+    if (fflush(stdout) == 0 && !ferror(stdout))
+        return status;
+    usage_error("standard output can't be written");
+    return status ? status : EXIT_OUTPUT;
+}
+
+static int methods(void)
+{
+    for (int k = 0; k < method_help_count; k++)
+        printf("%-8s  %s\n", method_helps[k].name, method_helps[k].text);
+    return 0;
+}
+
+int main(int argc, char **argv)
+{
+    static const struct {
+        const char *name;
+        int (*run)(const arguments *a);
+    } commands[] = {{"render", command_render}, {"check", command_check}, {"pixel", command_pixel}, {"pov", command_pov}};
+    if (argc < 2) {
+        fputs(help, stderr);
+        return EXIT_INPUT;
+    }
+    for (int k = 1; k < argc; k++)
+        if (strcmp(argv[k], "--help") == 0 || strcmp(argv[k], "-h") == 0) {
+            fputs(help, stdout);
+            return finish(0);
+        }
+    if (strcmp(argv[1], "--version") == 0) {
+        printf("kage %s (%s)\n", KAGE_VERSION, REAL_NAME);
+        return finish(0);
+    }
+    if (strcmp(argv[1], "methods") == 0)
+        return finish(methods());
+    for (size_t k = 0; k < sizeof commands / sizeof *commands; k++)
+        if (strcmp(argv[1], commands[k].name) == 0) {
+            arguments a;
+            int status = arguments_read(&a, argc, argv) ? commands[k].run(&a) : EXIT_INPUT;
+            arguments_free(&a);
+            return finish(status);
+        }
+    usage_error("no command '%s', expected render, check, pixel, pov or methods; see kage --help", argv[1]);
+    return EXIT_INPUT;
+}

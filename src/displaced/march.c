@@ -1,0 +1,403 @@
+#include "displaced/march.h"
+
+#include "wave/lane.h"
+#include "method/method.h"
+
+#include <string.h>
+
+enum {
+    STEPS = 4096, /* of a search along one ray */
+    REFINE = 64,  /* halvings at most: more than a real has digits */
+    COMPACT = 4,  /* after so many steps the rays that have ended are dropped from the wave */
+};
+
+/* What is known of the rays that are still searched, side by side. */
+typedef struct search {
+    int n;
+    int32_t lane[LANES]; /* whose ray it is */
+    rays x;
+    real t[LANES], gap[LANES], end[LANES], shortest[LANES], tolerance[LANES];
+    real side[LANES]; /* 1: the ray comes from above the rough surface; -1: from below; 0: not known yet */
+    int32_t own[LANES], left[LANES], open[LANES]; /* starts on this part; has clearly left it; is still searched */
+    feet p;
+    heights h;
+    real rate[LANES], reach[LANES];
+    long looks; /* at P */
+} search;
+
+/* The gap at t, and its derivative along the ray. */
+STAGE static void gaps(search *restrict s, real *restrict slope)
+{
+    for (int i = 0; i < s->n; i++) {
+        bs_vec3 d = lane_get(&s->x.s, i);
+        s->gap[i] = s->p.h[i] - s->h.P[i];
+        slope[i] = bs_dot(d, lane_get(&s->p.gh, i)) - s->h.Pu[i] * bs_dot(d, lane_get(&s->p.gu, i)) -
+                   s->h.Pw[i] * bs_dot(d, lane_get(&s->p.gw, i));
+    }
+}
+
+static void look(const ground *f, const perturb *P, search *s, real *slope)
+{
+    real u[LANES], w[LANES];
+    f->foot(f, s->n, s->lane, &s->x, s->t, &s->p);
+    if (f->loose)
+        f->within(f, s->n, s->lane, &s->p, u, w);
+    P->is->eval(P, s->n, f->loose ? u : s->p.u, f->loose ? w : s->p.w, 1, &s->h);
+    s->looks += s->n;
+    gaps(s, slope);
+}
+
+static void keep(search *s, int from, int to)
+{
+    s->lane[to] = s->lane[from];
+    lane_set(&s->x.r, to, lane_get(&s->x.r, from));
+    lane_set(&s->x.s, to, lane_get(&s->x.s, from));
+    s->t[to] = s->t[from];
+    s->end[to] = s->end[from];
+    s->shortest[to] = s->shortest[from];
+    s->tolerance[to] = s->tolerance[from];
+    s->side[to] = s->side[from];
+    s->own[to] = s->own[from];
+    s->left[to] = s->left[from];
+    s->open[to] = s->open[from];
+}
+
+static void compact(search *s)
+{
+    int n = 0;
+    for (int i = 0; i < s->n; i++)
+        if (s->open[i])
+            keep(s, i, n++);
+    s->n = n;
+}
+
+/* A crossing between a and b, the gap's sign changing: Newton's steps from b, or halvings where they leave the bracket or
+ * do not pay. Returns the confirmed t in *t. */
+static displace_end refine(const ground *f, const perturb *P, search *s, int i, real a, real b, real *t)
+{
+    search one; /* its first lane alone is used */
+    real slope[LANES], best = b, least = REAL_FAR, before = REAL_FAR;
+    one.n = 1;
+    one.looks = 0;
+    one.lane[0] = s->lane[i];
+    lane_set(&one.x.r, 0, lane_get(&s->x.r, i));
+    lane_set(&one.x.s, 0, lane_get(&s->x.s, i));
+    one.t[0] = b;
+    for (int k = 0; k < REFINE; k++) {
+        look(f, P, &one, slope);
+        real gap = s->side[i] * one.gap[0], size = real_abs(gap);
+        if (size < least) {
+            least = size;
+            best = one.t[0];
+        }
+        if (gap > 0)
+            a = one.t[0];
+        else
+            b = one.t[0];
+        real next = one.t[0] - one.gap[0] / slope[0];
+        if (!(next > a && next < b) || size > R(0.5) * before)
+            next = a + (b - a) * R(0.5);
+        before = size;
+        if (gap == 0 || next == one.t[0] || !(next > a && next < b))
+            break;
+        one.t[0] = next;
+    }
+    s->looks += one.looks;
+    *t = best;
+    /* a ray from the surface itself was let go on until it was clearly below, so that its bracket can begin there */
+    return least <= (s->own[i] ? 2 : 1) * s->tolerance[i] ? DISPLACE_HIT : DISPLACE_UNCERTAIN;
+}
+
+/* Whether the foot of a hit is on the piece, and not on what extends it. */
+static bool counts(const ground *f, const search *s, int i, real t)
+{
+    rays x;
+    feet p;
+    real u, w;
+    if (!f->loose)
+        return true;
+    lane_set(&x.r, 0, lane_get(&s->x.r, i));
+    lane_set(&x.s, 0, lane_get(&s->x.s, i));
+    f->foot(f, 1, &s->lane[i], &x, &t, &p);
+    f->within(f, 1, &s->lane[i], &p, &u, &w);
+    return u == p.u[0] && w == p.w[0];
+}
+
+/* Open the search on the rays whose shell is not empty. */
+static void begin(const ground *f, const perturb *P, int n, const rays *x, const real *end, const int32_t *own, search *s)
+{
+    real t0[LANES], t1[LANES];
+    f->shell(f, n, x, end, P->Pmin, P->Pmax, t0, t1);
+    s->n = 0;
+    s->looks = 0;
+    for (int i = 0; i < n; i++) {
+        if (!(t0[i] <= t1[i]))
+            continue;
+        const int k = s->n++;
+        bs_vec3 r = lane_get(&x->r, i), d = lane_get(&x->s, i), far = lane_at(x, i, t1[i]);
+        /* the last digits of a place on the ray: of its coordinates, and of what they were summed from */
+        real size = real_sqrt(bs_dot(r, r)) + real_sqrt(bs_dot(far, far)) + real_abs(P->Pmax - P->Pmin);
+        s->lane[k] = i;
+        lane_set(&s->x.r, k, r);
+        lane_set(&s->x.s, k, d);
+        s->t[k] = t0[i];
+        s->end[k] = t1[i];
+        s->tolerance[k] = 8 * R(REAL_ROUNDING) * size;
+        s->shortest[k] = real_max((t1[i] - t0[i]) / (real)f->steps, s->tolerance[k] / real_sqrt(bs_dot(d, d)));
+        s->side[k] = 0;
+        /* one whose stretch begins farther on comes from what the shell leaves out */
+        s->own[k] = own && own[i] && t0[i] <= s->shortest[k];
+        s->left[k] = !s->own[k];
+        s->open[k] = 1;
+    }
+}
+
+/* The side on which a ray begins. Where the gap does not tell, because it is 0 there: a ray that starts on the surface is on the side
+ * that it leaves to, any other on the one that it comes from. */
+static real side_of(const search *s, int i, real slope)
+{
+    if (real_abs(s->gap[i]) > s->tolerance[i] && !s->own[i])
+        return s->gap[i] > 0 ? R(1) : R(-1);
+    return (slope > 0) == (s->own[i] != 0) ? R(1) : R(-1);
+}
+
+/* Where a ray starts on the surface, the gap is what rounding has made of 0: of sums, too, that are not known here, as of a camera far
+ * away. */
+static real tolerance_of(const search *s, int i)
+{
+    const real off = s->own[i] ? 2 * real_abs(s->gap[i]) : 0;
+    return real_max(s->tolerance[i], real_min(off, 8 * s->tolerance[i]));
+}
+
+long displace_search_over(const ground *f, const perturb *P, int n, const rays *x, const real *end, const int32_t *own, real *t,
+                          int32_t *found)
+{
+    search s;
+    real slope[LANES];
+    for (int i = 0; i < n; i++)
+        found[i] = DISPLACE_MISSED;
+    begin(f, P, n, x, end, own, &s);
+    for (int step = 0; step < f->steps && s.n; step++) {
+        look(f, P, &s, slope);
+        f->steep(f, s.n, s.lane, &s.x, &s.p, P->Pu_max, P->Pw_max, s.rate, s.reach);
+        for (int i = 0; i < s.n; i++) {
+            if (!s.open[i])
+                continue;
+            if (s.side[i] == 0) {
+                s.side[i] = side_of(&s, i, slope[i]);
+                s.tolerance[i] = tolerance_of(&s, i);
+            }
+            /* On its way from the surface itself a ray is on its side until it is clearly on the other. */
+            real least = s.own[i] ? s.tolerance[i] : 0;
+            real above = s.side[i] * s.gap[i];
+            /* A map's partials are not the slopes of its bilinear surface, so a ray can leave to the other side than they tell: it is
+             * there, and does not turn back. One that has come back to its start turns to it. */
+            if (!s.left[i] && above <= -least && s.side[i] * slope[i] > 0) {
+                s.side[i] = -s.side[i];
+                above = -above;
+            }
+            s.left[i] |= above > s.tolerance[i];
+            /* At the end of the shell, P = Pmin below it, rounding must not let the ray slip through. */
+            bool last = s.t[i] >= s.end[i], touches = last && above <= s.tolerance[i] && s.side[i] * slope[i] < 0;
+            if (above <= -least || (touches && s.left[i])) {
+                /* no step goes past a crossing by more than the shortest does */
+                real from = real_max(s.t[i] - s.shortest[i], 0), at;
+                displace_end end_of = refine(f, P, &s, i, from, s.t[i], &at);
+                if (counts(f, &s, i, at)) {
+                    t[s.lane[i]] = at;
+                    found[s.lane[i]] = (int32_t)end_of;
+                    s.open[i] = 0;
+                    continue;
+                }
+                s.side[i] = -s.side[i]; /* through what extends the surface, to its other side */
+                above = -above;
+            }
+            if (last) {
+                s.open[i] = 0;
+                continue;
+            }
+            /* from its start on the surface at first as far as the tolerance allows, then as far again */
+            real safe = real_min(above / s.rate[i], s.reach[i]), away = real_max(s.tolerance[i] / s.rate[i], s.t[i]);
+            safe = real_max(safe, s.left[i] ? s.shortest[i] : real_min(away, s.shortest[i]));
+            s.t[i] = real_min(s.t[i] + safe, s.end[i]);
+        }
+        if (step % COMPACT == COMPACT - 1)
+            compact(&s);
+    }
+    compact(&s);
+    for (int i = 0; i < s.n; i++)
+        if (counts(f, &s, i, s.t[i])) {
+            t[s.lane[i]] = s.t[i];
+            found[s.lane[i]] = DISPLACE_UNCERTAIN;
+        }
+    return s.looks;
+}
+
+/* ---- a part of a surface, the same for every lane ---- */
+
+typedef struct part_ground {
+    ground base;
+    const surface *f;
+    int part;
+} part_ground;
+
+static const part_ground *part_of(const ground *g) { return (const part_ground *)g; }
+
+static void part_shell(const ground *g, int n, const rays *x, const real *end, real Pmin, real Pmax, real *t0, real *t1)
+{
+    const part_ground *k = part_of(g);
+    k->f->is->shell(k->f, k->part, n, x, end, Pmin, Pmax, t0, t1);
+}
+
+static void part_foot(const ground *g, int n, const int32_t *lane, const rays *x, const real *t, feet *p)
+{
+    const part_ground *k = part_of(g);
+    (void)lane;
+    k->f->is->foot(k->f, k->part, n, x, t, p);
+}
+
+static void part_steep(const ground *g, int n, const int32_t *lane, const rays *x, const feet *p, real Pu_max, real Pw_max, real *rate,
+                       real *reach)
+{
+    const part_ground *k = part_of(g);
+    (void)lane;
+    k->f->is->steep(k->f, k->part, n, x, p, Pu_max, Pw_max, rate, reach);
+}
+
+static void part_within(const ground *g, int n, const int32_t *lane, const feet *p, real *u, real *w)
+{
+    const part_ground *k = part_of(g);
+    double U[2], W[2];
+    (void)lane;
+    k->f->is->extent(k->f, k->part, U, W);
+    for (int i = 0; i < n; i++) {
+        u[i] = real_min(real_max(p->u[i], (real)U[0]), (real)U[1]);
+        w[i] = real_min(real_max(p->w[i], (real)W[0]), (real)W[1]);
+    }
+}
+
+long displace_search(const surface *f, const perturb *P, int part, int n, const rays *x, const real *end, const int32_t *on, real *t,
+                     int32_t *found)
+{
+    const part_ground k = {{part_shell, part_foot, part_steep, part_within, f->is->loose, STEPS}, f, part};
+    int32_t own[LANES];
+    for (int i = 0; i < n; i++)
+        own[i] = on && on[i] == part;
+    return displace_search_over(&k.base, P, n, x, end, own, t, found);
+}
+
+static void keep_nearer(int n, int part, const real *t, const int32_t *found, int32_t id, hits *h, displace_counts *c)
+{
+    for (int i = 0; i < n; i++)
+        if (found[i] != DISPLACE_MISSED && t[i] > 0 && t[i] < h->t[i]) {
+            h->t[i] = t[i];
+            h->id[i] = id;
+            h->part[i] = part;
+            c->uncertain += found[i] == DISPLACE_UNCERTAIN;
+        }
+}
+
+void displace_hit(const surface *f, const perturb *P, int n, const rays *x, const starts *from, int32_t id, hits *h, displace_counts *c)
+{
+    real t[LANES];
+    int32_t found[LANES], on[LANES];
+    if (f->rough) {
+        f->rough->hit(f, P, n, x, from, id, h, c);
+        return;
+    }
+    for (int i = 0; from && i < n; i++)
+        on[i] = from->id[i] == id ? from->part[i] : -1;
+    for (int part = 0; part < f->is->parts; part++) {
+        c->heights += displace_search(f, P, part, n, x, h->t, from ? on : NULL, t, found);
+        keep_nearer(n, part, t, found, id, h, c);
+    }
+}
+
+void displace_occlude(const surface *f, const perturb *P, int n, const rays *x, const int32_t *on, real *lit,
+                      displace_counts *c)
+{
+    real t[LANES], end[LANES];
+    int32_t found[LANES];
+    if (f->rough) {
+        f->rough->occlude(f, P, n, x, on, lit, c);
+        return;
+    }
+    for (int i = 0; i < n; i++)
+        end[i] = lit[i] > 0 ? R(1) : R(-1); /* what is dark already need not be searched */
+    for (int part = 0; part < f->is->parts; part++) {
+        c->heights += displace_search(f, P, part, n, x, end, on, t, found);
+        for (int i = 0; i < n; i++)
+            if (found[i] != DISPLACE_MISSED) {
+                lit[i] = 0;
+                c->uncertain += found[i] == DISPLACE_UNCERTAIN;
+            }
+    }
+}
+
+/* The feet of a group's hits, each on its own part. */
+static void group_feet(const surface *f, const group *g, feet *all)
+{
+    f->is->foot(f, 0, g->n, &g->x, g->t, all);
+    for (int part = 1; part < f->is->parts; part++) {
+        feet p;
+        f->is->foot(f, part, g->n, &g->x, g->t, &p);
+        for (int i = 0; i < g->n; i++)
+            if (g->part[i] == part) {
+                all->u[i] = p.u[i];
+                all->w[i] = p.w[i];
+                lane_set(&all->gu, i, lane_get(&p.gu, i));
+                lane_set(&all->gw, i, lane_get(&p.gw, i));
+                lane_set(&all->gh, i, lane_get(&p.gh, i));
+            }
+    }
+}
+
+void displace_shape(const surface *f, const perturb *P, group *g)
+{
+    feet p;
+    if (f->rough)
+        f->rough->feet(f, P, g->n, &g->x, g->t, g->part, &p);
+    else
+        group_feet(f, g, &p);
+    memcpy(g->u, p.u, sizeof g->u);
+    memcpy(g->w, p.w, sizeof g->w);
+    P->is->eval(P, g->n, g->u, g->w, 1, &g->h);
+    f->is->eval(f, g->n, g->part, g->u, g->w, 1, &g->q);
+    /* the rough surface is where height - P = 0: its normal is the gradient of that */
+    for (int i = 0; i < g->n; i++) {
+        bs_vec3 h = lane_get(&p.gh, i), u = lane_get(&p.gu, i), w = lane_get(&p.gw, i);
+        bs_vec3 n = {h.x - g->h.Pu[i] * u.x - g->h.Pw[i] * w.x, h.y - g->h.Pu[i] * u.y - g->h.Pw[i] * w.y,
+                     h.z - g->h.Pu[i] * u.z - g->h.Pw[i] * w.z};
+        n = lane_unit(n);
+        lane_set(&g->n_smooth, i, n);
+        lane_set(&g->n_bump, i, n);
+        lane_set(&g->q.Q, i, lane_at(&g->x, i, g->t[i]));
+        g->tau[i] = 0;
+        g->order[i] = ORDER_EXACT;
+    }
+}
+
+void displace_shift(const surface *f, const perturb *P, group *g, displace_counts *c)
+{
+    hits h;
+    for (int i = 0; i < g->n; i++) {
+        h.t[i] = REAL_FAR;
+        h.id[i] = -1;
+    }
+    displace_hit(f, P, g->n, &g->x, NULL, 0, &h, c);
+    for (int i = 0; i < g->n; i++) {
+        bs_vec3 n = lane_get(&g->n_smooth, i), Qu = lane_get(&g->q.Qu, i), Qw = lane_get(&g->q.Qw, i);
+        bs_real sn = bs_dot(lane_get(&g->x.s, i), n) / real_sqrt(bs_dot(n, n));
+        bs_view v = {sn, 0, 0};
+        real order_0 = bs_regular(n, Qu, Qw) ? bs_tau0(v, g->h.P[i]) : 0;
+        g->tau[i] = h.id[i] == 0 ? h.t[i] - g->t[i] : order_0;
+        g->order[i] = h.id[i] == 0 ? ORDER_EXACT : 0;
+    }
+}
+
+bool displace_prepare(surface *f, const perturb *P) { return !f->rough || f->rough->prepare(f, P); }
+
+bool displace_possible(const perturb *P)
+{
+    return P->Pmax - P->Pmin < REAL_FAR && P->Pu_max < REAL_FAR && P->Pw_max < REAL_FAR;
+}

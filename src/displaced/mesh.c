@@ -1,0 +1,380 @@
+/* True displacement of a mesh: Q + P N over each triangle, N the unit of the normal between its corners. What stands over a triangle is a prism
+ * whose sides two neighbours share where their normals at the common corners are the same: then the rough surface has no gap. It has one at a crease,
+ * and at a seam of the texture where P differs.
+ *
+ * displace.c searches along a ray over each triangle whose prism the ray may pass, many pairs side by side. The foot of a place is
+ * that from which N leads to it, by Newton's iteration.
+ */
+#include "mesh/mesh.h"
+
+#include "displaced/march.h"
+#include "wave/lane.h"
+
+#include <stdlib.h>
+
+enum {
+    SEARCH = 1024, /* steps along a ray over one triangle: what is steeper than they tell apart is at a pole of the texture */
+    STEPS = 4,    /* of Newton's iteration: normals turn by less than a right angle over a triangle, and by far less on a fine mesh */
+};
+
+#define OVERLAP 1e-4 /* by how much of a triangle its rough surface goes on beyond it, so that no hit is between two */
+#define AIR 1e-5     /* of the boxes, against float */
+
+static inline vec3 get(const vec3s *v, int i) { return (vec3){(double)v->x[i], (double)v->y[i], (double)v->z[i]}; }
+static inline bs_vec3 to_real(vec3 v) { return (bs_vec3){(real)v.x, (real)v.y, (real)v.z}; }
+
+/* ---- a triangle's prism ---- */
+
+/* The mean of the normals, and by how much N may differ from what lies in a straight line between them. */
+static vec3 mean_normal(const mesh_triangle *x, double *bulge)
+{
+    const vec3 n = vec3_unit(vec3_add(x->normal[0], vec3_add(x->normal[1], x->normal[2])));
+    const double least = fmin(vec3_dot(n, x->normal[0]), fmin(vec3_dot(n, x->normal[1]), vec3_dot(n, x->normal[2])));
+    *bulge = 1 - fmax(least, 0);
+    return n;
+}
+
+static void rough_box(const mesh_triangle *x, double lo, double hi, double box[2][3])
+{
+    double bulge;
+    mean_normal(x, &bulge);
+    const double more = bulge * fmax(fabs(lo), fabs(hi));
+    for (int a = 0; a < 3; a++) {
+        box[0][a] = HUGE_VAL;
+        box[1][a] = -HUGE_VAL;
+        for (int k = 0; k < 6; k++) {
+            const vec3 p = vec3_add(x->at[k % 3], vec3_scale(x->normal[k % 3], k < 3 ? lo : hi));
+            const double c = a == 0 ? p.x : a == 1 ? p.y : p.z;
+            box[0][a] = fmin(box[0][a], c - more);
+            box[1][a] = fmax(box[1][a], c + more);
+        }
+    }
+}
+
+static bool rough_prepare(surface *base, const perturb *P)
+{
+    mesh *f = (mesh *)base;
+    if (f->rough && f->lowest <= (double)P->Pmin && f->highest >= (double)P->Pmax)
+        return true;
+    const double lo = f->lowest = fmin(f->lowest, (double)P->Pmin), hi = f->highest = fmax(f->highest, (double)P->Pmax);
+    f->height = fmax(fabs(lo), fabs(hi));
+    bvh_box *box = malloc(sizeof *box * (size_t)f->d.n);
+    const double air = AIR * (f->space.radius + f->height);
+    for (int i = 0; box && i < f->d.n; i++) {
+        const mesh_triangle x = mesh_triangle_of(f, i);
+        double b[2][3];
+        rough_box(&x, lo, hi, b);
+        for (int a = 0; a < 3; a++) {
+            b[0][a] -= air;
+            b[1][a] += air;
+        }
+        box[i] = bvh_box_in(&f->space, b[0], b[1]);
+    }
+    bvh_free(f->rough);
+    f->rough = box ? bvh_new(f->d.n, box) : NULL;
+    free(box);
+    return f->rough;
+}
+
+/* Narrow t0..t1 to where a + b t is in lo..hi. */
+static void narrow(double a, double b, double lo, double hi, double *t0, double *t1)
+{
+    const double x = (lo - a) / b, y = (hi - a) / b;
+    if (b == 0) {
+        *t1 = a < lo || a > hi ? -HUGE_VAL : *t1;
+        return;
+    }
+    *t0 = fmax(*t0, fmin(x, y));
+    *t1 = fmin(*t1, fmax(x, y));
+}
+
+/* Between what is lowest and highest of it along the mean normal, and not farther out past each side than the normals there lean. */
+static bool shell_of(const mesh_triangle *x, double air, vec3 r, vec3 s, double lo, double hi, double *from, double *to)
+{
+    double bulge, low = HUGE_VAL, high = -HUGE_VAL;
+    const vec3 n = mean_normal(x, &bulge);
+    const double most = fmax(fabs(lo), fabs(hi)), more = bulge * most + air;
+    for (int k = 0; k < 3; k++) {
+        const double at = vec3_dot(n, vec3_sub(x->at[k], x->at[0])), up = vec3_dot(n, x->normal[k]);
+        low = fmin(low, at + fmin(lo * up, hi * up));
+        high = fmax(high, at + fmax(lo * up, hi * up));
+    }
+    narrow(vec3_dot(n, vec3_sub(r, x->at[0])), vec3_dot(n, s), low - more, high + more, from, to);
+    for (int k = 0; k < 3; k++) {
+        const int l = (k + 1) % 3;
+        const vec3 side = vec3_sub(x->at[l], x->at[k]), out = vec3_unit(vec3_cross(side, n));
+        const double lean = most * fmax(fabs(vec3_dot(out, x->normal[k])), fabs(vec3_dot(out, x->normal[l])));
+        const double wide = OVERLAP * vec3_length(side);
+        narrow(vec3_dot(out, vec3_sub(r, x->at[k])), vec3_dot(out, s), -HUGE_VAL, lean + more + wide, from, to);
+    }
+    return *from <= *to;
+}
+
+/* ---- feet ---- */
+
+mesh_prism mesh_prism_at(const mesh_triangle *x, double b, double c, double h)
+{
+    const vec3 M = mesh_mix(x->normal, b, c), Mb = vec3_sub(x->normal[1], x->normal[0]), Mc = vec3_sub(x->normal[2], x->normal[0]);
+    const double length = vec3_length(M), k = h / length;
+    mesh_prism p;
+    p.N = vec3_scale(M, 1 / length);
+    p.Xb = vec3_add(vec3_sub(x->at[1], x->at[0]), vec3_scale(vec3_sub(Mb, vec3_scale(p.N, vec3_dot(Mb, p.N))), k));
+    p.Xc = vec3_add(vec3_sub(x->at[2], x->at[0]), vec3_scale(vec3_sub(Mc, vec3_scale(p.N, vec3_dot(Mc, p.N))), k));
+    p.place = vec3_add(mesh_mix(x->at, b, c), vec3_scale(p.N, h));
+    return p;
+}
+
+void mesh_gradients(const mesh_triangle *x, const mesh_prism *p, double det, vec3 *gu, vec3 *gw)
+{
+    const vec3 gb = vec3_scale(vec3_cross(p->Xc, p->N), 1 / det), gc = vec3_scale(vec3_cross(p->N, p->Xb), 1 / det);
+    *gu = vec3_add(vec3_scale(gb, x->u[1] - x->u[0]), vec3_scale(gc, x->u[2] - x->u[0]));
+    *gw = vec3_add(vec3_scale(gb, x->w[1] - x->w[0]), vec3_scale(gc, x->w[2] - x->w[0]));
+}
+
+/* Not farther beyond a triangle than it is wide: what lies there is another's. */
+static double near_triangle(double b) { return b < -1 ? -1 : b > 2 ? 2 : b; }
+
+static void foot_of(const mesh_triangle *x, vec3 at, feet *out, int lane)
+{
+    const vec3 n = vec3_cross(vec3_sub(x->at[1], x->at[0]), vec3_sub(x->at[2], x->at[0]));
+    double b = 1.0 / 3, c = 1.0 / 3, h = vec3_dot(vec3_sub(at, x->at[0]), n) / vec3_length(n);
+    double off = HUGE_VAL, area = vec3_length(n);
+    for (int step = 0; step < STEPS && off > 1e-16 * area; step++) { /* what is off by 1e-8 of the size, squared: the step was the last */
+        const mesh_prism p = mesh_prism_at(x, b, c, h);
+        const vec3 d = vec3_sub(at, p.place), up = vec3_cross(p.Xb, p.Xc);
+        const double det = vec3_dot(up, p.N), k = det > 0 ? 1 / det : 0; /* beyond where normals meet: stay */
+        b = near_triangle(b + k * vec3_dot(d, vec3_cross(p.Xc, p.N)));
+        c = near_triangle(c + k * vec3_dot(d, vec3_cross(p.N, p.Xb)));
+        h += k * vec3_dot(d, up);
+        off = vec3_dot(d, d);
+    }
+    const mesh_prism p = mesh_prism_at(x, b, c, h);
+    const vec3 up = vec3_cross(p.Xb, p.Xc);
+    const double det = fmax(vec3_dot(up, p.N), 1e-6 * area); /* beyond where normals meet: as steep as may be */
+    vec3 gu, gw;
+    mesh_gradients(x, &p, det, &gu, &gw);
+    out->u[lane] = (real)(x->u[0] + b * (x->u[1] - x->u[0]) + c * (x->u[2] - x->u[0]));
+    out->w[lane] = (real)(x->w[0] + b * (x->w[1] - x->w[0]) + c * (x->w[2] - x->w[0]));
+    out->h[lane] = (real)h;
+    lane_set(&out->gu, lane, to_real(gu));
+    lane_set(&out->gw, lane, to_real(gw));
+    lane_set(&out->gh, lane, to_real(vec3_scale(up, 1 / det)));
+}
+
+/* ---- triangles as the ground of a search ---- */
+
+typedef struct pieces {
+    ground base;
+    const mesh *f;
+    const mesh_triangle *x; /* of each lane */
+} pieces;
+
+static const mesh_triangle *piece(const ground *g, int32_t lane) { return &((const pieces *)g)->x[lane]; }
+
+static void pieces_shell(const ground *g, int n, const rays *x, const real *end, real Pmin, real Pmax, real *t0, real *t1)
+{
+    const double air = AIR * ((const pieces *)g)->f->space.radius;
+    for (int i = 0; i < n; i++) {
+        double from = 0, to = (double)end[i];
+        const bool some = shell_of(piece(g, i), air, get(&x->r, i), get(&x->s, i), (double)Pmin, (double)Pmax, &from, &to);
+        t0[i] = some ? (real)from : R(1);
+        t1[i] = some ? real_min((real)to, end[i]) : R(-1);
+    }
+}
+
+static void pieces_foot(const ground *g, int n, const int32_t *lane, const rays *x, const real *t, feet *p)
+{
+    for (int i = 0; i < n; i++)
+        foot_of(piece(g, lane[i]), vec3_add(get(&x->r, i), vec3_scale(get(&x->s, i), (double)t[i])), p, i);
+}
+
+/* By how much normals turn over a triangle for its shortest side says how far it is to where they meet; halfway there gradients at most double. */
+static void pieces_steep(const ground *g, int n, const int32_t *lane, const rays *x, const feet *p, real Pu_max, real Pw_max, real *rate,
+                         real *reach)
+{
+    const double height = ((const pieces *)g)->f->height;
+    for (int i = 0; i < n; i++) {
+        const mesh_triangle *f = piece(g, lane[i]);
+        double turn = 0, side = HUGE_VAL;
+        for (int k = 0; k < 3; k++) {
+            turn = fmax(turn, vec3_length(vec3_sub(f->normal[(k + 1) % 3], f->normal[k])));
+            side = fmin(side, vec3_length(vec3_sub(f->at[(k + 1) % 3], f->at[k])));
+        }
+        const double bend = side / fmax(turn, 1e-6), radius = fmax(bend - height, 0.1 * bend);
+        const bs_vec3 gu = lane_get(&p->gu, i), gw = lane_get(&p->gw, i), gh = lane_get(&p->gh, i), d = lane_get(&x->s, i);
+        const real s = real_sqrt(bs_dot(d, d));
+        const real k = 2 * (real_sqrt(bs_dot(gu, gu)) * Pu_max + real_sqrt(bs_dot(gw, gw)) * Pw_max);
+        const real up = (turn > 0 ? 2 : 1) * real_sqrt(bs_dot(gh, gh));
+        rate[i] = s * (up + k);
+        reach[i] = (real)(0.5 * radius) / s;
+    }
+}
+
+/* (u,w) of a place of the triangle, as far as it goes on, that is near the foot: the foot's own where it is one. So P goes on from there without
+ * a step, which a ray that comes by would cross. */
+static void pieces_within(const ground *g, int n, const int32_t *lane, const feet *p, real *u, real *w)
+{
+    for (int i = 0; i < n; i++) {
+        const mesh_triangle *x = piece(g, lane[i]);
+        double b, c;
+        mesh_shares(x, (double)p->u[i], (double)p->w[i], &b, &c);
+        u[i] = p->u[i];
+        w[i] = p->w[i];
+        if (b >= -OVERLAP && c >= -OVERLAP && b + c <= 1 + OVERLAP)
+            continue;
+        b = b > -OVERLAP ? b : -OVERLAP;
+        c = c > -OVERLAP ? c : -OVERLAP;
+        const double k = b + c > 1 + OVERLAP ? (1 + OVERLAP) / (b + c) : 1;
+        u[i] = (real)(x->u[0] + k * (b * (x->u[1] - x->u[0]) + c * (x->u[2] - x->u[0])));
+        w[i] = (real)(x->w[0] + k * (b * (x->w[1] - x->w[0]) + c * (x->w[2] - x->w[0])));
+    }
+}
+
+/* ---- rays and triangles ---- */
+
+typedef struct tour {
+    const mesh *f;
+    const perturb *P;
+    const rays *x;
+    real end[LANES];
+    bool own[LANES]; /* the ray starts on the rough surface */
+    displace_counts counts;
+    real *t; /* the nearest hits so far */
+    int32_t *index_hit;
+    int lane;
+    /* pairs that wait */
+    int n;
+    int32_t of[LANES], index[LANES]; /* lane and triangle */
+    mesh_triangle triangle[LANES];
+    rays y;
+} tour;
+
+/* Whether each ray starts on the rough surface of its triangle. */
+static void starts_on(tour *k, const pieces *g, int32_t *own)
+{
+    real zero[LANES] = {0}, u[LANES], w[LANES];
+    int32_t lane[LANES];
+    feet p;
+    heights h;
+    for (int i = 0; i < k->n; i++)
+        lane[i] = i;
+    pieces_foot(&g->base, k->n, lane, &k->y, zero, &p);
+    pieces_within(&g->base, k->n, lane, &p, u, w);
+    k->P->is->eval(k->P, k->n, u, w, 0, &h);
+    k->counts.heights += k->n;
+    for (int i = 0; i < k->n; i++) {
+        const double size = vec3_length(get(&k->y.r, i)) + k->f->height;
+        const bool in = u[i] == p.u[i] && w[i] == p.w[i];
+        own[i] = k->own[k->of[i]] && in && fabs((double)p.h[i] - (double)h.P[i]) <= 64 * REAL_ROUNDING * size;
+    }
+}
+
+/* Each search knows its ray and its triangle alone, so that nothing depends on the order. */
+static void search_all(tour *k)
+{
+    const pieces g = {{.shell = pieces_shell, .foot = pieces_foot, .steep = pieces_steep, .within = pieces_within, .loose = true, .steps = SEARCH},
+                      k->f, k->triangle};
+    real end[LANES], t[LANES];
+    int32_t found[LANES], own[LANES];
+    for (int i = 0; i < k->n; i++)
+        end[i] = k->end[k->of[i]];
+    starts_on(k, &g, own);
+    k->counts.heights += displace_search_over(&g.base, k->P, k->n, &k->y, end, own, t, found);
+    for (int i = 0; i < k->n; i++) {
+        const int at = k->of[i];
+        const bool nearer = found[i] != DISPLACE_MISSED && t[i] > 0 && (t[i] < k->t[at] || (t[i] == k->t[at] && k->index[i] < k->index_hit[at]));
+        if (!nearer)
+            continue;
+        k->t[at] = t[i];
+        k->index_hit[at] = k->index[i];
+        k->counts.uncertain += found[i] == DISPLACE_UNCERTAIN;
+    }
+    k->n = 0;
+}
+
+static void visit(void *user, int32_t index)
+{
+    tour *k = user;
+    const int i = k->n;
+    double from = 0, to = (double)k->end[k->lane];
+    k->triangle[i] = mesh_triangle_of(k->f, index);
+    if (!shell_of(&k->triangle[i], AIR * k->f->space.radius, get(&k->x->r, k->lane), get(&k->x->s, k->lane), (double)k->P->Pmin, (double)k->P->Pmax, &from, &to))
+        return;
+    k->n++;
+    k->of[i] = k->lane;
+    k->index[i] = index;
+    lane_set(&k->y.r, i, lane_get(&k->x->r, k->lane));
+    lane_set(&k->y.s, i, lane_get(&k->x->s, k->lane));
+    if (k->n == LANES)
+        search_all(k);
+}
+
+/* t[i] becomes the nearest hit with 0 < t < t[i], on the triangle index[i], which is -1 where there is none. k->own is set. */
+static void go_round(tour *k, int n, const rays *x, real *t, int32_t *index, displace_counts *c)
+{
+    k->x = x;
+    k->counts = (displace_counts){0};
+    k->t = t;
+    k->index_hit = index;
+    k->n = 0;
+    for (int i = 0; i < n; i++) {
+        double from = 0, to = (double)t[i];
+        float at[3], way[3], far;
+        k->end[i] = t[i];
+        index[i] = -1;
+        k->lane = i;
+        if (bvh_enter(&k->f->space, k->f->space.radius + k->f->height, get(&x->r, i), get(&x->s, i), &from, &to, at, way, &far))
+            bvh_along(k->f->rough, at, way, far, visit, k);
+    }
+    search_all(k);
+    c->heights += k->counts.heights;
+    c->uncertain += k->counts.uncertain;
+}
+
+static void rough_hit(const surface *base, const perturb *P, int n, const rays *x, const starts *from, int32_t id, hits *h,
+                      displace_counts *c)
+{
+    int32_t index[LANES];
+    tour k;
+    k.f = (const mesh *)base;
+    k.P = P;
+    for (int i = 0; i < n; i++)
+        k.own[i] = from && from->id[i] == id;
+    go_round(&k, n, x, h->t, index, c);
+    for (int i = 0; i < n; i++)
+        if (index[i] >= 0) {
+            h->id[i] = id;
+            h->part[i] = index[i];
+        }
+}
+
+static void rough_occlude(const surface *base, const perturb *P, int n, const rays *x, bool from_it, real *lit, displace_counts *c)
+{
+    int32_t index[LANES];
+    real t[LANES];
+    tour k;
+    k.f = (const mesh *)base;
+    k.P = P;
+    for (int i = 0; i < n; i++) {
+        t[i] = lit[i] > 0 ? R(1) : R(-1);
+        k.own[i] = from_it;
+    }
+    go_round(&k, n, x, t, index, c);
+    for (int i = 0; i < n; i++)
+        lit[i] = index[i] >= 0 ? 0 : lit[i];
+}
+
+/* The height changes along N there, whatever the triangle itself is like: so the rough surface is as smooth as the mesh is shown. */
+static void rough_feet(const surface *base, const perturb *P, int n, const rays *x, const real *t, int32_t *part, feet *p)
+{
+    (void)P;
+    for (int i = 0; i < n; i++) {
+        const mesh_triangle a = mesh_triangle_of((const mesh *)base, part[i]);
+        double b, c;
+        foot_of(&a, vec3_add(get(&x->r, i), vec3_scale(get(&x->s, i), (double)t[i])), p, i);
+        mesh_shares(&a, (double)p->u[i], (double)p->w[i], &b, &c);
+        lane_set(&p->gh, i, to_real(vec3_unit(mesh_mix(a.normal, b, c))));
+    }
+}
+
+const displaced mesh_displaced = {rough_prepare, rough_hit, rough_occlude, rough_feet};

@@ -1,0 +1,66 @@
+/* Functions of u and w, given as text: parsed once, then evaluated with their exact first and second
+ * partial derivatives, a batch of points at a time.
+ *
+ * The language (docs/scene.md): + - * / ^ and parentheses, the numbers, u, w, pi, and
+ * sin cos tan asin acos atan atan2 sinh cosh tanh exp log sqrt abs min max floor mod pow clamp select
+ * noise. Numbers are double in either build of kage: a perturbation is small against the scene, and one
+ * set of elementary functions (kmath.h) then serves both.
+ */
+#ifndef KAGE_EXPR_EXPR_H
+#define KAGE_EXPR_EXPR_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+enum { EXPR_BATCH = 64 };
+
+/* The value and the partials of an expression at up to EXPR_BATCH points. */
+typedef struct expr_jets {
+    double v[EXPR_BATCH], u[EXPR_BATCH], w[EXPR_BATCH], uu[EXPR_BATCH], uw[EXPR_BATCH], ww[EXPR_BATCH];
+} expr_jets;
+
+typedef struct expr expr;
+
+/* Where and why a text is no expression. */
+typedef struct expr_error {
+    size_t offset; /* byte in the text */
+    char message[160]; /* what is wrong, what was expected; without place or newline */
+} expr_error;
+
+/* The expression that `text` states; owned by the caller, expr_free. NULL on error, told in *error. */
+expr *expr_parse(const char *text, expr_error *error);
+
+/* Evaluate at n <= EXPR_BATCH points (u[i], w[i]). order 0 writes out->v, order 1 also u and w, order 2
+ * also uu, uw and ww; what is not asked for is left as it was. Reentrant; allocates nothing. Outside an
+ * operation's domain (log of a negative number, ...) the result is NaN or infinite, as in C. */
+void expr_eval(const expr *e, int n, const double *u, const double *w, int order, expr_jets *out);
+
+/* Bounds of the value over u0 <= u <= u1, w0 <= w <= w1 (infinite ends allowed), by interval arithmetic:
+ * lo <= e(u,w) <= hi wherever e is defined. The bounds hold always; they are not the tightest. Either may
+ * be infinite. */
+void expr_range(const expr *e, double u0, double u1, double w0, double w1, double *lo, double *hi);
+
+/* Least and greatest value, and partials along u and along w. */
+typedef struct expr_bounds {
+    double v[2], u[2], w[2];
+} expr_bounds;
+
+/* As expr_range, and bounds of the first partials: never NaN, infinite where none is known. With L the larger magnitude
+ * of u's and M that of w's, |e(p) - e(q)| <= L |pu - qu| + M |pw - qw| for all points p and q of the box at which e is
+ * defined, in exact arithmetic, with 0 infinity = 0. So at a kink (abs, min, max, clamp) they hold the slopes of both
+ * sides; and they are infinite along a direction in which a jump may lie in the box, its edge included (floor, mod,
+ * select unless its branches are the same, atan2's cut, poles), and where a slope is (sqrt, log, u^0.5 at 0; asin at 1).
+ * They also hold the partials of expr_eval, unless intermediate results underflow. */
+void expr_range_gradient(const expr *e, double u0, double u1, double w0, double w1, expr_bounds *out);
+
+/* Bounds of the second partials. */
+typedef struct expr_bends {
+    double uu[2], uw[2], ww[2];
+} expr_bends;
+
+/* The same, and bounds of the second partials: Lipschitz bounds of the first ones likewise, so infinite where a slope may jump. */
+void expr_range_bend(const expr *e, double u0, double u1, double w0, double w1, expr_bounds *out, expr_bends *second);
+
+void expr_free(expr *e);
+
+#endif

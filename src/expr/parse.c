@@ -1,0 +1,337 @@
+/* The parser: one function for each level of the grammar, which hands each operation to the emitter as soon
+ * as its operands are there.
+ *
+ *   sum      product { ("+" | "-") product }
+ *   product  signed { ("*" | "/") signed }
+ *   signed   { "+" | "-" } primary [ "^" signed ]      so -u^2 is -(u^2), and 2^u^w is 2^(u^w)
+ *   primary  number | "u" | "w" | "pi" | function "(" sum { "," sum } ")" | "(" sum ")"
+ */
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/errors.h"
+#include "expr/compile.h"
+
+enum { ANY_NUMBER = 1000, LONGEST_NAME = 24 };
+
+typedef struct function {
+    const char *name;
+    int least, most; /* arguments */
+    enum expr_op op; /* clamp is made of two */
+} function;
+
+static const function functions[] = {
+    {"sin", 1, 1, OP_SIN},     {"cos", 1, 1, OP_COS},          {"tan", 1, 1, OP_TAN},
+    {"asin", 1, 1, OP_ASIN},   {"acos", 1, 1, OP_ACOS},        {"atan", 1, 1, OP_ATAN},
+    {"sinh", 1, 1, OP_SINH},   {"cosh", 1, 1, OP_COSH},        {"tanh", 1, 1, OP_TANH},
+    {"exp", 1, 1, OP_EXP},     {"log", 1, 1, OP_LOG},          {"sqrt", 1, 1, OP_SQRT},
+    {"abs", 1, 1, OP_ABS},     {"floor", 1, 1, OP_FLOOR},      {"noise", 2, 2, OP_NOISE},
+    {"atan2", 2, 2, OP_ATAN2}, {"mod", 2, 2, OP_MOD},          {"pow", 2, 2, OP_POW},
+    {"min", 2, ANY_NUMBER, OP_MIN}, {"max", 2, ANY_NUMBER, OP_MAX},
+    {"clamp", 3, 3, OP_MIN},   {"select", 3, 4, OP_SELECT},
+};
+enum { FUNCTIONS = sizeof functions / sizeof functions[0] };
+
+typedef struct parser {
+    const char *text, *at; /* at: the first byte not yet read, never a blank between two calls */
+    int depth;
+    bool failed; /* the first error stands in *error */
+    expr_error *error;
+    emitter emitter;
+} parser;
+
+/* Characters by ASCII, whatever the locale is. */
+static bool is_digit(char c) { return c >= '0' && c <= '9'; }
+static bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
+static char lower(char c) { return c >= 'A' && c <= 'Z' ? (char)(c + 32) : c; }
+
+/* Record an error at `where`, unless there is one already, and let the parser see the end of the text. */
+static operand fail(parser *p, const char *where, const char *fmt, ...) KAGE_PRINTF(3, 4);
+static operand fail(parser *p, const char *where, const char *fmt, ...)
+{
+    if (!p->failed) {
+        va_list args;
+        va_start(args, fmt);
+        vsnprintf(p->error->message, sizeof p->error->message, fmt, args);
+        va_end(args);
+        p->error->offset = (size_t)(where - p->text);
+        p->failed = true;
+    }
+    p->at += strlen(p->at);
+    return emit_constant(0);
+}
+
+static void skip_blanks(parser *p) { p->at += strspn(p->at, " \t\r\n"); }
+
+static bool accept(parser *p, char c)
+{
+    if (*p->at != c)
+        return false;
+    p->at++;
+    skip_blanks(p);
+    return true;
+}
+
+/* What stands at `at`, for messages. */
+typedef struct found {
+    char text[LONGEST_NAME + 8];
+} found;
+
+static found found_at(const char *at)
+{
+    found f;
+    int n = 0;
+    while (n < LONGEST_NAME && (is_letter(at[n]) || is_digit(at[n])))
+        n++;
+    unsigned char c = (unsigned char)*at;
+    if (!c)
+        snprintf(f.text, sizeof f.text, "the end");
+    else if (c < 0x20 || c > 0x7e)
+        snprintf(f.text, sizeof f.text, "the byte 0x%02X", c);
+    else
+        snprintf(f.text, sizeof f.text, "'%.*s'", n ? n : 1, at);
+    return f;
+}
+
+static operand emit_op(parser *p, const char *where, enum expr_op op, int n, const operand *arg)
+{
+    if (p->failed)
+        return emit_constant(0);
+    operand z = emit(&p->emitter, op, n, arg);
+    return p->emitter.problem ? fail(p, where, "%s", p->emitter.problem) : z;
+}
+
+static operand parse_sum(parser *p);
+
+static operand parse_number(parser *p)
+{
+    const char *start = p->at;
+    size_t digits = strspn(p->at, "0123456789");
+    p->at += digits;
+    if (*p->at == '.') {
+        size_t fraction = strspn(++p->at, "0123456789");
+        p->at += fraction;
+        digits += fraction;
+    }
+    if (!digits)
+        return fail(p, start, "'.' without a digit, expected a number such as 0.5");
+    if (lower(*p->at) == 'e') {
+        p->at += p->at[1] == '+' || p->at[1] == '-' ? 2 : 1;
+        if (!is_digit(*p->at))
+            return fail(p, start, "number with an exponent that has no digits, expected one such as 1e-3");
+        p->at += strspn(p->at, "0123456789");
+    }
+    double k = strtod(start, NULL); /* reads as far: what it would take besides (0x, inf) is no number here */
+    if (!(k < HUGE_VAL))
+        return fail(p, start, "number out of range, expected at most 1.79e308");
+    skip_blanks(p);
+    return emit_constant(k);
+}
+
+/* How many characters must be inserted, left out or replaced to make a of b (Levenshtein), ignoring case. */
+static int distance(const char *a, const char *b)
+{
+    int row[LONGEST_NAME + 1], columns = (int)strlen(b);
+    for (int j = 0; j <= columns; j++)
+        row[j] = j;
+    for (int i = 1; a[i - 1]; i++) {
+        int diagonal = row[0];
+        row[0] = i;
+        for (int j = 1; j <= columns; j++) {
+            int replaced = diagonal + (lower(a[i - 1]) != lower(b[j - 1]));
+            int other = 1 + (row[j] < row[j - 1] ? row[j] : row[j - 1]);
+            diagonal = row[j];
+            row[j] = replaced < other ? replaced : other;
+        }
+    }
+    return row[columns];
+}
+
+static operand unknown_name(parser *p, const char *where, const char *name, bool called)
+{
+    const char *nearest = NULL;
+    int best = 3; /* more than two slips are another word */
+    for (int i = 0; i < FUNCTIONS; i++) {
+        int d = distance(name, functions[i].name);
+        if (d < best && d < (int)strlen(name) - 1) {
+            best = d;
+            nearest = functions[i].name;
+        }
+    }
+    const char *kind = called ? "function" : "name";
+    if (nearest)
+        return fail(p, where, "unknown %s '%s', did you mean '%s'?", kind, name, nearest);
+    if (called)
+        return fail(p, where, "unknown function '%s', expected one of those of the language", name);
+    return fail(p, where, "unknown name '%s', expected u, w, pi or a function", name);
+}
+
+static const char *arguments_of(const function *f)
+{
+    switch (f->most) {
+    case 1:
+        return "1 argument";
+    case 2:
+        return "2 arguments";
+    case 3:
+        return "3 arguments";
+    case 4:
+        return "3 or 4 arguments";
+    default:
+        return "2 or more arguments";
+    }
+}
+
+/* Something else stands where an expression could end. */
+static operand unexpected(parser *p, const char *expected)
+{
+    char c = *p->at;
+    const found here = found_at(p->at);
+    const char *what = here.text;
+    if (is_letter(c) || is_digit(c) || c == '.' || c == '(')
+        return fail(p, p->at, "missing operator before %s: a product is written with '*'", what);
+    return fail(p, p->at, "found %s, expected %s", what, expected);
+}
+
+/* f(...) after the name, with p->at on the parenthesis. Chains such as min(a,b,c,...) are folded as they
+ * are read. */
+static operand parse_call(parser *p, const char *where, const function *f)
+{
+    operand arg[4] = {{0}};
+    int n = 0;
+    accept(p, '(');
+    if (*p->at != ')')
+        do {
+            operand next = parse_sum(p);
+            if (n > 0 && f->most == ANY_NUMBER)
+                arg[0] = emit_op(p, where, f->op, 2, (operand[]){arg[0], next});
+            else if (n < 4)
+                arg[n] = next;
+            n++;
+        } while (accept(p, ','));
+    if (!accept(p, ')'))
+        return unexpected(p, "an operator, ',' or ')'");
+    if (n < f->least || n > f->most)
+        return fail(p, where, "'%s' takes %s, found %d", f->name, arguments_of(f), n);
+    if (f->most == ANY_NUMBER)
+        return arg[0];
+    if (strcmp(f->name, "clamp") == 0) {
+        operand raised = emit_op(p, where, OP_MAX, 2, arg);
+        return emit_op(p, where, OP_MIN, 2, (operand[]){raised, arg[2]});
+    }
+    return emit_op(p, where, n == 4 ? OP_SELECT4 : f->op, n, arg);
+}
+
+static operand parse_name(parser *p)
+{
+    const char *where = p->at;
+    char name[LONGEST_NAME + 1];
+    int n = 0;
+    for (; is_letter(*p->at) || is_digit(*p->at); p->at++)
+        if (n < LONGEST_NAME)
+            name[n++] = *p->at;
+    name[n] = 0;
+    skip_blanks(p);
+
+    if (strcmp(name, "u") == 0)
+        return emit_u();
+    if (strcmp(name, "w") == 0)
+        return emit_w();
+    if (strcmp(name, "pi") == 0)
+        return emit_constant(3.14159265358979323846);
+    for (int i = 0; i < FUNCTIONS; i++)
+        if (strcmp(name, functions[i].name) == 0) {
+            if (*p->at != '(')
+                return fail(p, p->at, "found %s, expected '(' after the function '%s'", found_at(p->at).text, name);
+            return parse_call(p, where, &functions[i]);
+        }
+    return unknown_name(p, where, name, *p->at == '(');
+}
+
+static operand parse_primary(parser *p)
+{
+    if (is_digit(*p->at) || *p->at == '.')
+        return parse_number(p);
+    if (is_letter(*p->at))
+        return parse_name(p);
+    if (accept(p, '(')) {
+        operand inner = parse_sum(p);
+        return accept(p, ')') ? inner : unexpected(p, "an operator or ')'");
+    }
+    return fail(p, p->at, "found %s, expected a number, a name or '('", found_at(p->at).text);
+}
+
+static operand parse_signed(parser *p)
+{
+    if (++p->depth > EXPR_MAX_DEPTH)
+        return fail(p, p->at, "nesting too deep, expected at most %d levels", (int)EXPR_MAX_DEPTH);
+    bool minus = false;
+    const char *where = p->at;
+    while (*p->at == '+' || *p->at == '-') {
+        minus ^= *p->at == '-';
+        accept(p, *p->at);
+    }
+    operand a = parse_primary(p);
+    const char *caret = p->at;
+    if (accept(p, '^')) {
+        operand exponent = parse_signed(p);
+        a = emit_op(p, caret, OP_POW, 2, (operand[]){a, exponent});
+    }
+    p->depth--;
+    return minus ? emit_op(p, where, OP_MUL, 2, (operand[]){emit_constant(-1), a}) : a;
+}
+
+static operand parse_product(parser *p)
+{
+    operand a = parse_signed(p);
+    while (*p->at == '*' || *p->at == '/') {
+        const char *where = p->at;
+        accept(p, *where);
+        operand b = parse_signed(p);
+        a = emit_op(p, where, *where == '*' ? OP_MUL : OP_DIV, 2, (operand[]){a, b});
+    }
+    return a;
+}
+
+static operand parse_sum(parser *p)
+{
+    operand a = parse_product(p);
+    while (*p->at == '+' || *p->at == '-') {
+        const char *where = p->at;
+        accept(p, *where);
+        operand b = parse_product(p);
+        a = emit_op(p, where, *where == '+' ? OP_ADD : OP_SUB, 2, (operand[]){a, b});
+    }
+    return a;
+}
+
+static operand parse_whole(parser *p)
+{
+    if (strnlen(p->text, EXPR_MAX_TEXT + 1) > EXPR_MAX_TEXT) {
+        p->at = p->text + EXPR_MAX_TEXT;
+        return fail(p, p->at, "text too long, expected at most %d bytes", (int)EXPR_MAX_TEXT);
+    }
+    skip_blanks(p);
+    if (!*p->at)
+        return fail(p, p->at, "empty expression, expected a function of u and w");
+    operand a = parse_sum(p);
+    if (*p->at == ')')
+        return fail(p, p->at, "')' without '('");
+    return *p->at ? unexpected(p, "an operator or the end") : a;
+}
+
+expr *expr_parse(const char *text, expr_error *error)
+{
+    parser p = {.text = text, .at = text, .error = error};
+    emitter_begin(&p.emitter);
+    operand result = parse_whole(&p);
+    if (p.failed)
+        return NULL;
+    expr *e = emitter_end(&p.emitter, result);
+    if (!e)
+        fail(&p, text, "out of memory");
+    return e;
+}

@@ -1,0 +1,66 @@
+/* What an expression is compiled to: a list of operations on slots, without jumps. Private to the expr_*
+ * files.
+ *
+ * A slot holds the value and the partials of an intermediate result. Slots 0 and 1 are u and w; an
+ * operation writes a slot that none of its operands uses. Which partials of a result can differ from 0 is
+ * known when it is compiled (6*u has no w, uu, uw, ww): only those are ever computed or read.
+ */
+#ifndef KAGE_EXPR_PROGRAM_H
+#define KAGE_EXPR_PROGRAM_H
+
+#include <stdint.h>
+
+#include "expr/expr.h"
+
+enum {
+    EXPR_MAX_TEXT = 4096, /* bytes */
+    EXPR_MAX_CODE = 1024, /* operations */
+    EXPR_MAX_DEPTH = 64,  /* of nesting, which is that of the parser's recursion */
+    EXPR_SLOTS = 32,      /* u, w, and 30 intermediate results at a time */
+    EXPR_MAX_POWER = 16   /* the largest exponent that is multiplied out */
+};
+
+enum expr_op {
+    OP_CONST, /* k */
+    /* one operand and a constant */
+    OP_ADDK, OP_MULK,
+    OP_POWI, /* a^k, k an integer in 2..EXPR_MAX_POWER */
+    /* one operand */
+    OP_SIN, OP_COS, OP_TAN, OP_ASIN, OP_ACOS, OP_ATAN, OP_SINH, OP_COSH, OP_TANH, OP_EXP, OP_LOG, OP_SQRT,
+    OP_ABS, OP_FLOOR,
+    /* two */
+    OP_ADD, OP_SUB, OP_MUL, OP_DIV, OP_MOD, OP_ATAN2, OP_POW, OP_NOISE, OP_MIN, OP_MAX,
+    /* three, four */
+    OP_SELECT, /* b where a < 0, else c */
+    OP_SELECT4 /* b where a < 0, c where a = 0, d where a > 0 */
+};
+
+/* The parts of a jet, and sets of them. */
+enum expr_part { PART_V, PART_U, PART_W, PART_UU, PART_UW, PART_WW, PARTS };
+enum {
+    HAS_V = 1 << PART_V,
+    HAS_U = 1 << PART_U,
+    HAS_W = 1 << PART_W,
+    HAS_UU = 1 << PART_UU,
+    HAS_UW = 1 << PART_UW,
+    HAS_WW = 1 << PART_WW,
+    HAS_FIRST = HAS_U | HAS_W
+};
+
+typedef struct expr_code {
+    uint8_t op;      /* enum expr_op */
+    uint8_t z;       /* slot of the result */
+    uint8_t arg[4];  /* slots of the operands */
+    uint8_t has[4];  /* their parts */
+    uint8_t has_z;
+    double k;
+} expr_code;
+
+struct expr {
+    int count;
+    int result; /* slot */
+    uint8_t has;
+    expr_code *code; /* owned */
+};
+
+#endif

@@ -1,0 +1,248 @@
+/* Box with sides along the axes: six faces, each a plane with its own (u,w). */
+#include "math/slab.h"
+#include "geometry/surface.h"
+
+#include <stdlib.h>
+
+typedef struct box {
+    surface base;
+    real lo[3], hi[3];
+} box;
+
+/* Where the line r + s t enters and leaves the box, in <= out where it meets it. A line in the plane of a face gives
+ * 0 * inf: it counts as inside or outside that slab, never as a hit at an undefined t. */
+static inline void box_crossing(const box *f, real rx, real ry, real rz, real sx, real sy, real sz, real *in, real *out)
+{
+    real ix = 1 / sx, iy = 1 / sy, iz = 1 / sz;
+    real ax = (f->lo[0] - rx) * ix, bx = (f->hi[0] - rx) * ix;
+    real ay = (f->lo[1] - ry) * iy, by = (f->hi[1] - ry) * iy;
+    real az = (f->lo[2] - rz) * iz, bz = (f->hi[2] - rz) * iz;
+    *in = real_max(real_max(real_min(ax, bx), real_min(ay, by)), real_min(az, bz));
+    *out = real_min(real_min(real_max(ax, bx), real_max(ay, by)), real_max(az, bz));
+}
+
+/* How far a ray from within goes until it passes the slab's other side; along the slab, beyond all measure. */
+static inline real box_exit(real r, real s, real lo, real hi)
+{
+    real t = ((s > 0 ? hi : lo) - r) / s;
+    return s == 0 ? REAL_FAR : t;
+}
+
+STAGE static void box_hit(const surface *base, int n, const rays *x, int32_t id, hits *h)
+{
+    const box f = *(const box *)base;
+    for (int i = 0; i < n; i++) {
+        real in, out;
+        box_crossing(&f, x->r.x[i], x->r.y[i], x->r.z[i], x->s.x[i], x->s.y[i], x->s.z[i], &in, &out);
+        real t = in > 0 ? in : out;
+        int take = (in <= out) & (t > 0) & (t < h->t[i]);
+        h->t[i] = take ? t : h->t[i];
+        h->id[i] = take ? id : h->id[i];
+    }
+}
+
+/* From a point of a face into the box, to where it is left through the first of the other five; out of it, nowhere. */
+STAGE static void box_hit_own(const surface *base, int n, const rays *x, const starts *from, int32_t id, hits *h)
+{
+    const box f = *(const box *)base;
+    for (int i = 0; i < n; i++) {
+        real in, out, sx = x->s.x[i], sy = x->s.y[i], sz = x->s.z[i];
+        box_crossing(&f, x->r.x[i], x->r.y[i], x->r.z[i], sx, sy, sz, &in, &out);
+        real near = in > 0 ? in : out;
+        real ex = box_exit(from->at.x[i], sx, f.lo[0], f.hi[0]), ey = box_exit(from->at.y[i], sy, f.lo[1], f.hi[1]);
+        real ez = box_exit(from->at.z[i], sz, f.lo[2], f.hi[2]), far = real_min(real_min(ex, ey), ez);
+        int part = from->part[i], k = part >> 1, high = part & 1, own = from->id[i] == id;
+        real along = k == 0 ? sx : k == 1 ? sy : sz, inward = high ? -along : along;
+        real t = own ? far : near;
+        int take = (own ? inward > 0 : in <= out) & (t > 0) & (t < h->t[i]);
+        h->t[i] = take ? t : h->t[i];
+        h->id[i] = take ? id : h->id[i];
+    }
+}
+
+/* On the face across axis k, u and w go along the two next axes (cyclic) on the high side, swapped on the low side, so
+ * that U x W points outward. */
+
+STAGE static void box_locate(const surface *base, int n, const rays *x, const real *restrict t, int32_t *restrict part,
+                             real *restrict u, real *restrict w)
+{
+    const box f = *(const box *)base;
+    const real dx = f.hi[0] - f.lo[0], dy = f.hi[1] - f.lo[1], dz = f.hi[2] - f.lo[2];
+    for (int i = 0; i < n; i++) {
+        real px = (x->r.x[i] + x->s.x[i] * t[i] - f.lo[0]) / dx;
+        real py = (x->r.y[i] + x->s.y[i] * t[i] - f.lo[1]) / dy;
+        real pz = (x->r.z[i] + x->s.z[i] * t[i] - f.lo[2]) / dz;
+        /* the face is the one that the hit is farthest out towards */
+        real ox = real_abs(px - R(0.5)), oy = real_abs(py - R(0.5)), oz = real_abs(pz - R(0.5));
+        int on_x = (ox >= oy) & (ox >= oz), on_y = (oy > ox) & (oy >= oz);
+        real out = on_x ? px : on_y ? py : pz;
+        int high = out > R(0.5);
+        real a = on_x ? py : on_y ? pz : px, b = on_x ? pz : on_y ? px : py;
+        part[i] = (on_x ? 0 : on_y ? 2 : 4) + high;
+        u[i] = high ? a : b;
+        w[i] = high ? b : a;
+    }
+}
+
+/* One coordinate of Q, Qu and Qw on a face across axis k: the coordinate along axis c of the box from lo to hi. */
+static inline real box_coordinate(int c, int k, int high, real u, real w, real lo, real hi, real *U, real *W)
+{
+    int across = k == c, by_w = (k == (c + 1) % 3) == high;
+    real d = across ? 0 : hi - lo;
+    *U = by_w ? 0 : d;
+    *W = by_w ? d : 0;
+    return (across & high ? hi : lo) + u * *U + w * *W;
+}
+
+STAGE static void box_eval(const surface *base, int n, const int32_t *restrict part, const real *restrict u,
+                           const real *restrict w, int order, partials *restrict q)
+{
+    const box f = *(const box *)base;
+    for (int i = 0; i < n; i++) {
+        int k = part[i] >> 1, high = part[i] & 1;
+        q->Q.x[i] = box_coordinate(0, k, high, u[i], w[i], f.lo[0], f.hi[0], &q->Qu.x[i], &q->Qw.x[i]);
+        q->Q.y[i] = box_coordinate(1, k, high, u[i], w[i], f.lo[1], f.hi[1], &q->Qu.y[i], &q->Qw.y[i]);
+        q->Q.z[i] = box_coordinate(2, k, high, u[i], w[i], f.lo[2], f.hi[2], &q->Qu.z[i], &q->Qw.z[i]);
+    }
+    if (order == 2) {
+        vec3s_fill(&q->Quu, n, 0, 0, 0);
+        vec3s_fill(&q->Quw, n, 0, 0, 0);
+        vec3s_fill(&q->Qww, n, 0, 0, 0);
+    }
+}
+
+STAGE static void box_occlude(const surface *base, int n, const rays *x, real *lit)
+{
+    const box f = *(const box *)base;
+    for (int i = 0; i < n; i++) {
+        real in, out;
+        box_crossing(&f, x->r.x[i], x->r.y[i], x->r.z[i], x->s.x[i], x->s.y[i], x->s.z[i], &in, &out);
+        int met = (in <= out) & (((in > 0) & (in < 1)) | ((out > 0) & (out < 1)));
+        lit[i] = met ? 0 : lit[i];
+    }
+}
+
+/* From a point of a face the box is entered here or not at all; entered, it is left through the first of the other
+ * five faces. */
+STAGE static void box_occlude_own(const surface *base, int n, const rays *x, const int32_t *restrict part,
+                                  real *restrict lit)
+{
+    const box f = *(const box *)base;
+    for (int i = 0; i < n; i++) {
+        real sx = x->s.x[i], sy = x->s.y[i], sz = x->s.z[i];
+        int k = part[i] >> 1, high = part[i] & 1;
+        real along = k == 0 ? sx : k == 1 ? sy : sz;
+        real away = high ? along : -along;
+        real out = real_min(real_min(box_exit(x->r.x[i], sx, f.lo[0], f.hi[0]), box_exit(x->r.y[i], sy, f.lo[1], f.hi[1])),
+                            box_exit(x->r.z[i], sz, f.lo[2], f.hi[2]));
+        lit[i] = ((away < 0) & (out < 1)) ? 0 : lit[i];
+    }
+}
+
+/* ---- for true displacement: each face by itself, as a rectangle; at the box's edges displaced faces part or cross ---- */
+
+/* A face: the axis across it and the place there, the axes of u and w, and the direction of n. */
+typedef struct face {
+    int k, a, b;
+    real at, side;
+} face;
+
+static face box_face(const box *f, int part)
+{
+    int k = part >> 1, high = part & 1;
+    face c = {k, (k + (high ? 1 : 2)) % 3, (k + (high ? 2 : 1)) % 3, high ? f->hi[k] : f->lo[k], high ? R(1) : R(-1)};
+    return c;
+}
+
+static const real *axis(const vec3s *v, int k) { return k == 0 ? v->x : k == 1 ? v->y : v->z; }
+static real *axis_of(vec3s *v, int k) { return k == 0 ? v->x : k == 1 ? v->y : v->z; }
+
+static void box_shell(const surface *base, int part, int n, const rays *x, const real *end, real Pmin, real Pmax, real *t0,
+                      real *t1)
+{
+    const box *f = (const box *)base;
+    const face c = box_face(f, part);
+    const real *r = axis(&x->r, c.k), *s = axis(&x->s, c.k), *ra = axis(&x->r, c.a), *sa = axis(&x->s, c.a);
+    const real *rb = axis(&x->r, c.b), *sb = axis(&x->s, c.b);
+    for (int i = 0; i < n; i++) {
+        real from = 0, to = end[i];
+        clip(c.side * (r[i] - c.at), c.side * s[i], Pmin, Pmax, &from, &to);
+        clip(ra[i], sa[i], f->lo[c.a], f->hi[c.a], &from, &to);
+        clip(rb[i], sb[i], f->lo[c.b], f->hi[c.b], &from, &to);
+        t0[i] = from;
+        t1[i] = to;
+    }
+}
+
+static void box_foot(const surface *base, int part, int n, const rays *x, const real *t, feet *p)
+{
+    const box *f = (const box *)base;
+    const face c = box_face(f, part);
+    const real *r = axis(&x->r, c.k), *s = axis(&x->s, c.k), *ra = axis(&x->r, c.a), *sa = axis(&x->s, c.a);
+    const real *rb = axis(&x->r, c.b), *sb = axis(&x->s, c.b);
+    const real iu = 1 / (f->hi[c.a] - f->lo[c.a]), iw = 1 / (f->hi[c.b] - f->lo[c.b]);
+    vec3s_fill(&p->gu, n, 0, 0, 0);
+    vec3s_fill(&p->gw, n, 0, 0, 0);
+    vec3s_fill(&p->gh, n, 0, 0, 0);
+    for (int i = 0; i < n; i++) {
+        p->h[i] = c.side * (r[i] + s[i] * t[i] - c.at);
+        p->u[i] = (ra[i] + sa[i] * t[i] - f->lo[c.a]) * iu;
+        p->w[i] = (rb[i] + sb[i] * t[i] - f->lo[c.b]) * iw;
+        axis_of(&p->gu, c.a)[i] = iu;
+        axis_of(&p->gw, c.b)[i] = iw;
+        axis_of(&p->gh, c.k)[i] = c.side;
+    }
+}
+
+static void box_steep(const surface *base, int part, int n, const rays *x, const feet *p, real Pu_max, real Pw_max, real *rate,
+                      real *reach)
+{
+    const box *f = (const box *)base;
+    const face c = box_face(f, part);
+    const real *s = axis(&x->s, c.k), *sa = axis(&x->s, c.a), *sb = axis(&x->s, c.b);
+    const real iu = 1 / (f->hi[c.a] - f->lo[c.a]), iw = 1 / (f->hi[c.b] - f->lo[c.b]);
+    (void)p;
+    for (int i = 0; i < n; i++) {
+        rate[i] = real_abs(s[i]) + real_abs(sa[i]) * iu * Pu_max + real_abs(sb[i]) * iw * Pw_max;
+        reach[i] = REAL_FAR;
+    }
+}
+
+static void box_extent(const surface *base, int part, double u[2], double w[2])
+{
+    (void)base;
+    (void)part;
+    u[0] = w[0] = 0;
+    u[1] = w[1] = 1;
+}
+
+static void box_box(const surface *base, double lo[3], double hi[3])
+{
+    const box *f = (const box *)base;
+    for (int k = 0; k < 3; k++) {
+        lo[k] = (double)f->lo[k];
+        hi[k] = (double)f->hi[k];
+    }
+}
+
+static const surface_methods box_methods = {
+    "box", box_hit,   box_hit_own, box_locate, box_eval,  box_occlude, box_occlude_own, box_extent, box_box,
+    6,     box_shell, box_foot,   box_steep,  false,
+};
+
+surface *box_new(vec3 from, vec3 to)
+{
+    double a[3] = {from.x, from.y, from.z}, b[3] = {to.x, to.y, to.z};
+    for (int k = 0; k < 3; k++)
+        if (!((real)a[k] != (real)b[k]))
+            return NULL;
+    box *f = calloc(1, sizeof *f);
+    if (!f)
+        return NULL;
+    f->base.is = &box_methods;
+    for (int k = 0; k < 3; k++) {
+        f->lo[k] = (real)(a[k] < b[k] ? a[k] : b[k]);
+        f->hi[k] = (real)(a[k] < b[k] ? b[k] : a[k]);
+    }
+    return &f->base;
+}

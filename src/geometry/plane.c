@@ -1,0 +1,356 @@
+/* Plane, rectangle and disc: Q(u,w) = O + u U + w W, also skewed or scaled. */
+#include "geometry/plane.h"
+
+#include "math/slab.h"
+#include "base/frame.h"
+
+#include <stdlib.h>
+
+/* Where the plane ends: a constant in each of the stages. */
+enum bounds { NOWHERE, AT_SIDES, AT_RIM };
+
+/* t of the crossing with the plane. A ray along the plane gives an infinite or undefined t, for which
+ * every comparison below is false. */
+static inline real plane_t(const plane *f, real rx, real ry, real rz, real sx, real sy, real sz)
+{
+    real d = (f->O[0] - rx) * f->N[0] + (f->O[1] - ry) * f->N[1] + (f->O[2] - rz) * f->N[2];
+    return d / (sx * f->N[0] + sy * f->N[1] + sz * f->N[2]);
+}
+
+static inline real plane_coord(const plane *f, const real *D, real px, real py, real pz)
+{
+    return (px - f->O[0]) * D[0] + (py - f->O[1]) * D[1] + (pz - f->O[2]) * D[2];
+}
+
+/* Whether r + s t is within the rectangle, or on the disc. */
+static inline int plane_inside(const plane *f, const rays *x, int i, enum bounds end, real t)
+{
+    real px = x->r.x[i] + x->s.x[i] * t, py = x->r.y[i] + x->s.y[i] * t, pz = x->r.z[i] + x->s.z[i] * t;
+    real u = plane_coord(f, f->Du, px, py, pz), w = plane_coord(f, f->Dw, px, py, pz);
+    return end == AT_RIM ? u * u + w * w <= f->R * f->R : (u >= 0) & (u <= 1) & (w >= 0) & (w <= 1);
+}
+
+/* t of the hit, by a ray with t in (0, last), and `last` without one. */
+static inline real plane_cut(const plane *f, const rays *x, int i, enum bounds end, real last)
+{
+    real t = plane_t(f, x->r.x[i], x->r.y[i], x->r.z[i], x->s.x[i], x->s.y[i], x->s.z[i]);
+    int in = end == NOWHERE ? 1 : plane_inside(f, x, i, end, t);
+    return (in & (t > 0) & (t < last)) ? t : last;
+}
+
+static inline void hit(const surface *base, enum bounds end, int n, const rays *x, int32_t id, hits *h)
+{
+    const plane f = *(const plane *)base;
+    for (int i = 0; i < n; i++) {
+        real t = plane_cut(&f, x, i, end, h->t[i]);
+        h->id[i] = t < h->t[i] ? id : h->id[i];
+        h->t[i] = t;
+    }
+}
+
+/* A ray from the plane does not come back to it. */
+static inline void hit_own(const surface *base, enum bounds end, int n, const rays *x, const starts *from, int32_t id, hits *h)
+{
+    const plane f = *(const plane *)base;
+    for (int i = 0; i < n; i++) {
+        real t = plane_t(&f, x->r.x[i], x->r.y[i], x->r.z[i], x->s.x[i], x->s.y[i], x->s.z[i]);
+        int in = end == NOWHERE ? 1 : plane_inside(&f, x, i, end, t), take = in & (from->id[i] != id) & (t > 0) & (t < h->t[i]);
+        h->t[i] = take ? t : h->t[i];
+        h->id[i] = take ? id : h->id[i];
+    }
+}
+
+STAGE static void plane_hit(const surface *base, int n, const rays *x, int32_t id, hits *h) { hit(base, NOWHERE, n, x, id, h); }
+
+STAGE static void rectangle_hit(const surface *base, int n, const rays *x, int32_t id, hits *h)
+{
+    hit(base, AT_SIDES, n, x, id, h);
+}
+
+STAGE static void disc_hit(const surface *base, int n, const rays *x, int32_t id, hits *h) { hit(base, AT_RIM, n, x, id, h); }
+
+STAGE static void plane_hit_own(const surface *base, int n, const rays *x, const starts *from, int32_t id, hits *h)
+{
+    hit_own(base, NOWHERE, n, x, from, id, h);
+}
+
+STAGE static void rectangle_hit_own(const surface *base, int n, const rays *x, const starts *from, int32_t id, hits *h)
+{
+    hit_own(base, AT_SIDES, n, x, from, id, h);
+}
+
+STAGE static void disc_hit_own(const surface *base, int n, const rays *x, const starts *from, int32_t id, hits *h)
+{
+    hit_own(base, AT_RIM, n, x, from, id, h);
+}
+
+STAGE static void plane_locate(const surface *base, int n, const rays *x, const real *t, int32_t *part, real *u,
+                               real *w)
+{
+    const plane f = *(const plane *)base;
+    for (int i = 0; i < n; i++) {
+        part[i] = 0;
+        real px = x->r.x[i] + x->s.x[i] * t[i], py = x->r.y[i] + x->s.y[i] * t[i], pz = x->r.z[i] + x->s.z[i] * t[i];
+        u[i] = plane_coord(&f, f.Du, px, py, pz);
+        w[i] = plane_coord(&f, f.Dw, px, py, pz);
+    }
+}
+
+STAGE static void plane_eval(const surface *base, int n, const int32_t *part, const real *u, const real *w, int order,
+                             partials *q)
+{
+    const plane f = *(const plane *)base;
+    (void)part;
+    for (int i = 0; i < n; i++) {
+        q->Q.x[i] = f.O[0] + u[i] * f.U[0] + w[i] * f.W[0];
+        q->Q.y[i] = f.O[1] + u[i] * f.U[1] + w[i] * f.W[1];
+        q->Q.z[i] = f.O[2] + u[i] * f.U[2] + w[i] * f.W[2];
+    }
+    vec3s_fill(&q->Qu, n, f.U[0], f.U[1], f.U[2]);
+    vec3s_fill(&q->Qw, n, f.W[0], f.W[1], f.W[2]);
+    if (order == 2) {
+        vec3s_fill(&q->Quu, n, 0, 0, 0);
+        vec3s_fill(&q->Quw, n, 0, 0, 0);
+        vec3s_fill(&q->Qww, n, 0, 0, 0);
+    }
+}
+
+static inline void occlude(const surface *base, enum bounds end, int n, const rays *x, real *lit)
+{
+    const plane f = *(const plane *)base;
+    for (int i = 0; i < n; i++)
+        lit[i] = plane_cut(&f, x, i, end, 1) < 1 ? 0 : lit[i];
+}
+
+STAGE static void plane_occlude(const surface *base, int n, const rays *x, real *lit) { occlude(base, NOWHERE, n, x, lit); }
+
+STAGE static void rectangle_occlude(const surface *base, int n, const rays *x, real *lit)
+{
+    occlude(base, AT_SIDES, n, x, lit);
+}
+
+STAGE static void disc_occlude(const surface *base, int n, const rays *x, real *lit) { occlude(base, AT_RIM, n, x, lit); }
+
+/* ---- for true displacement ---- */
+
+/* Narrow t0..t1 to where |(u,w) + t (du,dw)| <= rim: like a sphere's roots, from the foot of the perpendicular. */
+static inline void clip_rim(real u, real w, real du, real dw, real rim, real *t0, real *t1)
+{
+    real a = du * du + dw * dw, tc = -(u * du + w * dw) / a, fu = u + tc * du, fw = w + tc * dw;
+    real d = rim * rim - (fu * fu + fw * fw), h = real_sqrt(real_max(d, 0) / a);
+    real from = d >= 0 ? tc - h : R(1), to = d >= 0 ? tc + h : R(-1);
+    int in = u * u + w * w <= rim * rim; /* a = 0: along the normal all is inside, or nothing */
+    from = a > 0 ? from : in ? *t0 : R(1);
+    to = a > 0 ? to : in ? *t1 : R(-1);
+    *t0 = real_max(from, *t0);
+    *t1 = real_min(to, *t1);
+}
+
+static inline void shell(const surface *base, enum bounds bound, int n, const rays *x, const real *end, real Pmin, real Pmax,
+                         real *restrict t0, real *restrict t1)
+{
+    const plane f = *(const plane *)base;
+    for (int i = 0; i < n; i++) {
+        real rx = x->r.x[i] - f.O[0], ry = x->r.y[i] - f.O[1], rz = x->r.z[i] - f.O[2];
+        real sx = x->s.x[i], sy = x->s.y[i], sz = x->s.z[i];
+        real from = 0, to = end[i];
+        clip(rx * f.N[0] + ry * f.N[1] + rz * f.N[2], sx * f.N[0] + sy * f.N[1] + sz * f.N[2], Pmin, Pmax, &from, &to);
+        if (bound == AT_SIDES) {
+            clip(rx * f.Du[0] + ry * f.Du[1] + rz * f.Du[2], sx * f.Du[0] + sy * f.Du[1] + sz * f.Du[2], 0, 1, &from, &to);
+            clip(rx * f.Dw[0] + ry * f.Dw[1] + rz * f.Dw[2], sx * f.Dw[0] + sy * f.Dw[1] + sz * f.Dw[2], 0, 1, &from, &to);
+        }
+        if (bound == AT_RIM)
+            clip_rim(rx * f.Du[0] + ry * f.Du[1] + rz * f.Du[2], rx * f.Dw[0] + ry * f.Dw[1] + rz * f.Dw[2],
+                     sx * f.Du[0] + sy * f.Du[1] + sz * f.Du[2], sx * f.Dw[0] + sy * f.Dw[1] + sz * f.Dw[2], f.R, &from, &to);
+        t0[i] = from;
+        t1[i] = to;
+    }
+}
+
+static void plane_shell(const surface *base, int part, int n, const rays *x, const real *end, real Pmin, real Pmax, real *t0,
+                        real *t1)
+{
+    (void)part;
+    shell(base, NOWHERE, n, x, end, Pmin, Pmax, t0, t1);
+}
+
+static void rectangle_shell(const surface *base, int part, int n, const rays *x, const real *end, real Pmin, real Pmax,
+                            real *t0, real *t1)
+{
+    (void)part;
+    shell(base, AT_SIDES, n, x, end, Pmin, Pmax, t0, t1);
+}
+
+static void disc_shell(const surface *base, int part, int n, const rays *x, const real *end, real Pmin, real Pmax, real *t0,
+                       real *t1)
+{
+    (void)part;
+    shell(base, AT_RIM, n, x, end, Pmin, Pmax, t0, t1);
+}
+
+/* The dual basis is in the plane, so Du.(X - O) is u of the foot. */
+STAGE static void plane_foot(const surface *base, int part, int n, const rays *x, const real *restrict t, feet *restrict p)
+{
+    const plane f = *(const plane *)base;
+    (void)part;
+    for (int i = 0; i < n; i++) {
+        real px = x->r.x[i] + x->s.x[i] * t[i], py = x->r.y[i] + x->s.y[i] * t[i], pz = x->r.z[i] + x->s.z[i] * t[i];
+        p->u[i] = plane_coord(&f, f.Du, px, py, pz);
+        p->w[i] = plane_coord(&f, f.Dw, px, py, pz);
+        p->h[i] = plane_coord(&f, f.N, px, py, pz);
+    }
+    vec3s_fill(&p->gu, n, f.Du[0], f.Du[1], f.Du[2]);
+    vec3s_fill(&p->gw, n, f.Dw[0], f.Dw[1], f.Dw[2]);
+    vec3s_fill(&p->gh, n, f.N[0], f.N[1], f.N[2]);
+}
+
+/* u, w and the height are linear along a ray, so the rate holds for all of it. */
+STAGE static void plane_steep(const surface *base, int part, int n, const rays *x, const feet *p, real Pu_max, real Pw_max,
+                              real *restrict rate, real *restrict reach)
+{
+    const plane f = *(const plane *)base;
+    (void)part;
+    (void)p;
+    for (int i = 0; i < n; i++) {
+        real sx = x->s.x[i], sy = x->s.y[i], sz = x->s.z[i];
+        real u = sx * f.Du[0] + sy * f.Du[1] + sz * f.Du[2], w = sx * f.Dw[0] + sy * f.Dw[1] + sz * f.Dw[2];
+        rate[i] = real_abs(sx * f.N[0] + sy * f.N[1] + sz * f.N[2]) + real_abs(u) * Pu_max + real_abs(w) * Pw_max;
+        reach[i] = REAL_FAR;
+    }
+}
+
+static void plane_extent(const surface *base, int part, double u[2], double w[2])
+{
+    (void)base;
+    (void)part;
+    u[0] = w[0] = -HUGE_VAL;
+    u[1] = w[1] = HUGE_VAL;
+}
+
+static void rectangle_extent(const surface *base, int part, double u[2], double w[2])
+{
+    (void)base;
+    (void)part;
+    u[0] = w[0] = 0;
+    u[1] = w[1] = 1;
+}
+
+static void disc_extent(const surface *base, int part, double u[2], double w[2])
+{
+    const double R = (double)((const plane *)base)->R;
+    (void)part;
+    u[0] = w[0] = -R;
+    u[1] = w[1] = R;
+}
+
+static void plane_box(const surface *base, double lo[3], double hi[3])
+{
+    (void)base;
+    for (int k = 0; k < 3; k++) {
+        lo[k] = -HUGE_VAL;
+        hi[k] = HUGE_VAL;
+    }
+}
+
+static void rectangle_box(const surface *base, double lo[3], double hi[3])
+{
+    const plane *f = (const plane *)base;
+    for (int k = 0; k < 3; k++) {
+        const double O = (double)f->O[k], U = (double)f->U[k], W = (double)f->W[k];
+        lo[k] = O + fmin(U, 0) + fmin(W, 0);
+        hi[k] = O + fmax(U, 0) + fmax(W, 0);
+    }
+}
+
+/* U and W may be oblique, where a disc is an ellipse. */
+static void disc_box(const surface *base, double lo[3], double hi[3])
+{
+    const plane *f = (const plane *)base;
+    for (int k = 0; k < 3; k++) {
+        const double O = (double)f->O[k], U = (double)f->U[k], W = (double)f->W[k], r = (double)f->R * sqrt(U * U + W * W);
+        lo[k] = O - r;
+        hi[k] = O + r;
+    }
+}
+
+static const surface_methods plane_methods = {
+    "plane", plane_hit,   plane_hit_own, plane_locate, plane_eval, plane_occlude, NULL, plane_extent, plane_box,
+    1,       plane_shell, plane_foot,    plane_steep,  false,
+};
+
+static const surface_methods rectangle_methods = {
+    "rectangle", rectangle_hit,   rectangle_hit_own, plane_locate, plane_eval, rectangle_occlude, NULL, rectangle_extent, rectangle_box,
+    1,           rectangle_shell, plane_foot,        plane_steep,  false,
+};
+
+static const surface_methods disc_methods = {
+    "disc", disc_hit,   disc_hit_own, plane_locate, plane_eval, disc_occlude, NULL, disc_extent, disc_box,
+    1,      disc_shell, plane_foot,   plane_steep,  false,
+};
+
+static void store(real to[3], vec3 v)
+{
+    to[0] = (real)v.x;
+    to[1] = (real)v.y;
+    to[2] = (real)v.z;
+}
+
+bool plane_place(plane *f, vec3 origin, vec3 U, vec3 W)
+{
+    vec3 N = vec3_cross(U, W);
+    double n2 = vec3_dot(N, N), e2 = vec3_dot(U, U) * vec3_dot(W, W);
+    /* sin^2 of the angle between them: below this, float has no digit of N left */
+    if (!(n2 > 1e-12 * e2) || !(e2 < HUGE_VAL))
+        return false;
+    store(f->O, origin);
+    store(f->U, U);
+    store(f->W, W);
+    store(f->N, vec3_unit(N));
+    store(f->Du, vec3_scale(vec3_cross(W, N), 1 / n2));
+    store(f->Dw, vec3_scale(vec3_cross(N, U), 1 / n2));
+    return true;
+}
+
+surface *plane_new(vec3 origin, vec3 U, vec3 W, bool bounded)
+{
+    plane *f = calloc(1, sizeof *f);
+    if (!f || !plane_place(f, origin, U, W)) {
+        free(f);
+        return NULL;
+    }
+    f->base.is = bounded ? &rectangle_methods : &plane_methods;
+    return &f->base;
+}
+
+void rectangle_set(plane *f) { f->base.is = &rectangle_methods; }
+
+void disc_set(plane *f, vec3 centre, vec3 U, vec3 W, double radius)
+{
+    f->base.is = &disc_methods;
+    store(f->O, centre);
+    store(f->U, U);
+    store(f->W, W);
+    store(f->N, vec3_cross(U, W));
+    store(f->Du, U);
+    store(f->Dw, W);
+    f->R = (real)radius;
+}
+
+surface *disc_new(vec3 centre, vec3 normal, double radius)
+{
+    const double l = vec3_length(normal);
+    plane *f = l > 0 && l < HUGE_VAL && radius > 0 && radius < HUGE_VAL ? calloc(1, sizeof *f) : NULL;
+    if (!f)
+        return NULL;
+    const frame a = frame_about(normal);
+    disc_set(f, centre, a.x, vec3_scale(a.z, -1), radius);
+    return &f->base;
+}
+
+void surface_free(surface *f)
+{
+    if (f && f->free)
+        f->free(f);
+    else
+        free(f);
+}

@@ -1,0 +1,229 @@
+/* Sphere: Q(u,w) = C + R (sin w cos u, cos w, sin w sin u). */
+#include "math/kmath.h"
+#include "geometry/surface.h"
+
+#include <stdlib.h>
+
+typedef struct sphere {
+    surface base;
+    real C[3], R;
+} sphere;
+
+/* Both roots of |r + s t - C|^2 = R^2, t0 <= t1; 0 where there is none.
+ * The discriminant is taken from the foot of the perpendicular from C to the ray, |s|^2 R^2 - |s|^2 |foot|^2, which
+ * keeps the digits that b^2 - a c loses for a small sphere far away [Haines et al., Ray Tracing Gems, ch. 7]. */
+static inline int sphere_roots(const sphere *f, real rx, real ry, real rz, real sx, real sy, real sz, real *t0, real *t1)
+{
+    real ox = rx - f->C[0], oy = ry - f->C[1], oz = rz - f->C[2];
+    real a = sx * sx + sy * sy + sz * sz, tc = -(ox * sx + oy * sy + oz * sz) / a;
+    real fx = ox + tc * sx, fy = oy + tc * sy, fz = oz + tc * sz;
+    real d = f->R * f->R - (fx * fx + fy * fy + fz * fz);
+    real h = real_sqrt(real_max(d, 0) / a);
+    *t0 = tc - h;
+    *t1 = tc + h;
+    return d >= 0;
+}
+
+STAGE static void sphere_hit(const surface *base, int n, const rays *x, int32_t id, hits *h)
+{
+    const sphere f = *(const sphere *)base;
+    for (int i = 0; i < n; i++) {
+        real t0, t1;
+        int met = sphere_roots(&f, x->r.x[i], x->r.y[i], x->r.z[i], x->s.x[i], x->s.y[i], x->s.z[i], &t0, &t1);
+        real t = t0 > 0 ? t0 : t1;
+        int take = met & (t > 0) & (t < h->t[i]);
+        h->t[i] = take ? t : h->t[i];
+        h->id[i] = take ? id : h->id[i];
+    }
+}
+
+/* From a point of the sphere one root is 0; the other is -2 (r - C).s/|s|^2. */
+static inline real sphere_far(const sphere *f, real rx, real ry, real rz, real sx, real sy, real sz)
+{
+    return -2 * ((rx - f->C[0]) * sx + (ry - f->C[1]) * sy + (rz - f->C[2]) * sz) / (sx * sx + sy * sy + sz * sz);
+}
+
+STAGE static void sphere_hit_own(const surface *base, int n, const rays *x, const starts *from, int32_t id, hits *h)
+{
+    const sphere f = *(const sphere *)base;
+    for (int i = 0; i < n; i++) {
+        real t0, t1, sx = x->s.x[i], sy = x->s.y[i], sz = x->s.z[i];
+        real ax = from->at.x[i], ay = from->at.y[i], az = from->at.z[i];
+        int met = sphere_roots(&f, x->r.x[i], x->r.y[i], x->r.z[i], sx, sy, sz, &t0, &t1), own = from->id[i] == id;
+        real far = sphere_far(&f, ax, ay, az, sx, sy, sz), near = t0 > 0 ? t0 : t1, t = own ? far : near;
+        int take = (met | own) & (t > 0) & (t < h->t[i]);
+        h->t[i] = take ? t : h->t[i];
+        h->id[i] = take ? id : h->id[i];
+    }
+}
+
+STAGE static void sphere_locate(const surface *base, int n, const rays *x, const real *t, int32_t *part, real *u,
+                                real *w)
+{
+    const sphere f = *(const sphere *)base;
+    for (int i = 0; i < n; i++) {
+        part[i] = 0;
+        double px = (double)(x->r.x[i] + x->s.x[i] * t[i] - f.C[0]);
+        double py = (double)(x->r.y[i] + x->s.y[i] * t[i] - f.C[1]);
+        double pz = (double)(x->r.z[i] + x->s.z[i] * t[i] - f.C[2]);
+        u[i] = (real)km_atan2(pz, px);
+        w[i] = (real)km_atan2(sqrt(px * px + pz * pz), py);
+    }
+}
+
+STAGE static void sphere_eval(const surface *base, int n, const int32_t *part, const real *u, const real *w, int order,
+                              partials *q)
+{
+    const sphere f = *(const sphere *)base;
+    (void)part;
+    for (int i = 0; i < n; i++) {
+        real cu = (real)km_cos((double)u[i]), su = (real)km_sin((double)u[i]);
+        real cw = (real)km_cos((double)w[i]), sw = (real)km_sin((double)w[i]);
+        /* At a pole Qu is 0 and with it n. Its direction is kept by a circle of latitude that does not quite close;
+         * bs_regular still sees that there is no second direction. */
+        real rim = f.R * real_max(sw, R(1e-12)), r = f.R * sw, y = f.R * cw;
+        q->Q.x[i] = f.C[0] + r * cu;
+        q->Q.y[i] = f.C[1] + y;
+        q->Q.z[i] = f.C[2] + r * su;
+        q->Qu.x[i] = -rim * su;
+        q->Qu.y[i] = 0;
+        q->Qu.z[i] = rim * cu;
+        q->Qw.x[i] = y * cu;
+        q->Qw.y[i] = -r;
+        q->Qw.z[i] = y * su;
+    }
+    if (order < 2)
+        return;
+    for (int i = 0; i < n; i++) {
+        real cu = (real)km_cos((double)u[i]), su = (real)km_sin((double)u[i]);
+        real r = f.R * (real)km_sin((double)w[i]), y = f.R * (real)km_cos((double)w[i]);
+        q->Quu.x[i] = -r * cu;
+        q->Quu.y[i] = 0;
+        q->Quu.z[i] = -r * su;
+        q->Quw.x[i] = -y * su;
+        q->Quw.y[i] = 0;
+        q->Quw.z[i] = y * cu;
+        q->Qww.x[i] = -r * cu;
+        q->Qww.y[i] = -y;
+        q->Qww.z[i] = -r * su;
+    }
+}
+
+STAGE static void sphere_occlude(const surface *base, int n, const rays *x, real *lit)
+{
+    const sphere f = *(const sphere *)base;
+    for (int i = 0; i < n; i++) {
+        real t0, t1;
+        int met = sphere_roots(&f, x->r.x[i], x->r.y[i], x->r.z[i], x->s.x[i], x->s.y[i], x->s.z[i], &t0, &t1);
+        lit[i] = (met & (((t0 > 0) & (t0 < 1)) | ((t1 > 0) & (t1 < 1)))) ? 0 : lit[i];
+    }
+}
+
+STAGE static void sphere_occlude_own(const surface *base, int n, const rays *x, const int32_t *part, real *lit)
+{
+    const sphere f = *(const sphere *)base;
+    (void)part;
+    for (int i = 0; i < n; i++) {
+        real t = sphere_far(&f, x->r.x[i], x->r.y[i], x->r.z[i], x->s.x[i], x->s.y[i], x->s.z[i]);
+        lit[i] = ((t > 0) & (t < 1)) ? 0 : lit[i];
+    }
+}
+
+/* ---- for true displacement ---- */
+
+/* The outer sphere's stretch. From within the inner one it begins at that one's far side; all others go through it, as a ray that is below
+ * the rough surface already meets it on the far side only. */
+STAGE static void sphere_shell(const surface *base, int part, int n, const rays *x, const real *restrict end, real Pmin,
+                               real Pmax, real *restrict t0, real *restrict t1)
+{
+    sphere outer = *(const sphere *)base, inner = outer;
+    (void)part;
+    outer.R += Pmax;
+    inner.R = real_max(inner.R + Pmin, 0);
+    for (int i = 0; i < n; i++) {
+        real a, b, c, d, rx = x->r.x[i], ry = x->r.y[i], rz = x->r.z[i], sx = x->s.x[i], sy = x->s.y[i], sz = x->s.z[i];
+        int in = sphere_roots(&outer, rx, ry, rz, sx, sy, sz, &a, &b);
+        int core = sphere_roots(&inner, rx, ry, rz, sx, sy, sz, &c, &d);
+        real from = (core & (c <= 0) & (d > 0)) ? d : real_max(a, 0), to = real_min(b, end[i]);
+        t0[i] = in ? from : R(1);
+        t1[i] = in ? to : R(-1);
+    }
+}
+
+STAGE static void sphere_foot(const surface *base, int part, int n, const rays *x, const real *restrict t, feet *restrict p)
+{
+    const sphere f = *(const sphere *)base;
+    (void)part;
+    for (int i = 0; i < n; i++) {
+        real px = x->r.x[i] + x->s.x[i] * t[i] - f.C[0];
+        real py = x->r.y[i] + x->s.y[i] * t[i] - f.C[1];
+        real pz = x->r.z[i] + x->s.z[i] * t[i] - f.C[2];
+        real d2 = px * px + pz * pz, d = real_sqrt(d2), l = real_sqrt(d2 + py * py);
+        real id2 = 1 / real_max(d2, R(1e-30)), id = 1 / real_max(d, R(1e-15)), il = 1 / real_max(l, R(1e-15));
+        p->u[i] = (real)km_atan2((double)pz, (double)px);
+        p->w[i] = (real)km_atan2((double)d, (double)py);
+        p->h[i] = l - f.R;
+        p->gh.x[i] = px * il;
+        p->gh.y[i] = py * il;
+        p->gh.z[i] = pz * il;
+        p->gu.x[i] = -pz * id2;
+        p->gu.y[i] = 0;
+        p->gu.z[i] = px * id2;
+        p->gw.x[i] = py * px * id * il * il;
+        p->gw.y[i] = -d * il * il;
+        p->gw.z[i] = py * pz * id * il * il;
+    }
+}
+
+/* |grad u| is 1/(distance to the axis), |grad w| 1/(distance to the centre): within half of either they at most double. */
+STAGE static void sphere_steep(const surface *base, int part, int n, const rays *x, const feet *p, real Pu_max, real Pw_max,
+                               real *restrict rate, real *restrict reach)
+{
+    (void)base;
+    (void)part;
+    for (int i = 0; i < n; i++) {
+        real sx = x->s.x[i], sy = x->s.y[i], sz = x->s.z[i], s = real_sqrt(sx * sx + sy * sy + sz * sz);
+        real gu = real_sqrt(p->gu.x[i] * p->gu.x[i] + p->gu.z[i] * p->gu.z[i]);
+        real gw = real_sqrt(p->gw.x[i] * p->gw.x[i] + p->gw.y[i] * p->gw.y[i] + p->gw.z[i] * p->gw.z[i]);
+        rate[i] = s * (1 + 2 * (gu * Pu_max + gw * Pw_max));
+        reach[i] = R(0.5) / (real_max(gu, gw) * s);
+    }
+}
+
+static void sphere_extent(const surface *base, int part, double u[2], double w[2])
+{
+    const double pi = 3.14159265358979323846;
+    (void)base;
+    (void)part;
+    u[0] = -pi;
+    u[1] = pi;
+    w[0] = 0;
+    w[1] = pi;
+}
+
+static void sphere_box(const surface *base, double lo[3], double hi[3])
+{
+    const sphere *f = (const sphere *)base;
+    for (int k = 0; k < 3; k++) {
+        lo[k] = (double)f->C[k] - (double)f->R;
+        hi[k] = (double)f->C[k] + (double)f->R;
+    }
+}
+
+static const surface_methods sphere_methods = {
+    "sphere", sphere_hit,   sphere_hit_own, sphere_locate, sphere_eval, sphere_occlude, sphere_occlude_own, sphere_extent, sphere_box,
+    1,        sphere_shell, sphere_foot,    sphere_steep,  false,
+};
+
+surface *sphere_new(vec3 centre, double radius)
+{
+    sphere *f = radius > 0 && radius < HUGE_VAL ? calloc(1, sizeof *f) : NULL;
+    if (!f)
+        return NULL;
+    f->base.is = &sphere_methods;
+    f->C[0] = (real)centre.x;
+    f->C[1] = (real)centre.y;
+    f->C[2] = (real)centre.z;
+    f->R = (real)radius;
+    return &f->base;
+}

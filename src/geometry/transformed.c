@@ -1,0 +1,353 @@
+/* A surface under an affine map: rays are taken back into the space of the surface that is mapped, and what it tells is brought
+ * from there. Directions are not made unit vectors, so that t is the same in both.
+ *
+ * A map that mirrors would turn n = Qu x Qw inward; so there u runs the other way, and as seen from outside u goes to the right
+ * still where w goes down.
+ *
+ * Heights are in scene units along the normal of the image. The foot of a perpendicular stays one where angles stay right. Where they
+ * do not it is another, but on flat surfaces: their images are flat, and have their own. So planes become planes and have no
+ * need of all this, and for true displacement each face of a box becomes a rectangle. Stretched round ones have no feet.
+ */
+#include "base/affine.h"
+#include "wave/lane.h"
+#include "geometry/plane.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { FACES = 6 };
+
+typedef struct transformed {
+    surface base;
+    surface_methods methods; /* of this one; the others of what is mapped */
+    const surface *from;
+    real to[3][3], back[3][3]; /* images of the axes; the rows of the way back */
+    real o[3];                 /* the image of the origin */
+    real scale, over;          /* of all lengths, where it is one, and 1/scale */
+    real turn, ends;           /* u here is ends + turn u there */
+    plane face[FACES];         /* a box's */
+} transformed;
+
+static const transformed *of(const surface *f) { return (const transformed *)f; }
+
+/* ---- there and back ---- */
+
+STAGE static void places_back(const transformed *restrict base, int n, const vec3s *restrict r, vec3s *restrict to)
+{
+    const transformed f = *base;
+    for (int i = 0; i < n; i++) {
+        real rx = r->x[i] - f.o[0], ry = r->y[i] - f.o[1], rz = r->z[i] - f.o[2];
+        to->x[i] = f.back[0][0] * rx + f.back[0][1] * ry + f.back[0][2] * rz;
+        to->y[i] = f.back[1][0] * rx + f.back[1][1] * ry + f.back[1][2] * rz;
+        to->z[i] = f.back[2][0] * rx + f.back[2][1] * ry + f.back[2][2] * rz;
+    }
+}
+
+STAGE static void rays_back(const transformed *restrict base, int n, const rays *restrict x, rays *restrict y)
+{
+    const transformed f = *base;
+    for (int i = 0; i < n; i++) {
+        real rx = x->r.x[i] - f.o[0], ry = x->r.y[i] - f.o[1], rz = x->r.z[i] - f.o[2];
+        real sx = x->s.x[i], sy = x->s.y[i], sz = x->s.z[i];
+        y->r.x[i] = f.back[0][0] * rx + f.back[0][1] * ry + f.back[0][2] * rz;
+        y->r.y[i] = f.back[1][0] * rx + f.back[1][1] * ry + f.back[1][2] * rz;
+        y->r.z[i] = f.back[2][0] * rx + f.back[2][1] * ry + f.back[2][2] * rz;
+        y->s.x[i] = f.back[0][0] * sx + f.back[0][1] * sy + f.back[0][2] * sz;
+        y->s.y[i] = f.back[1][0] * sx + f.back[1][1] * sy + f.back[1][2] * sz;
+        y->s.z[i] = f.back[2][0] * sx + f.back[2][1] * sy + f.back[2][2] * sz;
+    }
+}
+
+/* v = k M v + o, by the columns of M. */
+static inline void apply(int n, const real M[3][3], real k, const real o[3], vec3s *v)
+{
+    const real xx = k * M[0][0], xy = k * M[0][1], xz = k * M[0][2], yx = k * M[1][0], yy = k * M[1][1], yz = k * M[1][2];
+    const real zx = k * M[2][0], zy = k * M[2][1], zz = k * M[2][2], ox = o[0], oy = o[1], oz = o[2];
+    for (int i = 0; i < n; i++) {
+        real x = v->x[i], y = v->y[i], z = v->z[i];
+        v->x[i] = x * xx + y * yx + z * zx + ox;
+        v->y[i] = x * xy + y * yy + z * zy + oy;
+        v->z[i] = x * xz + y * yz + z * zz + oz;
+    }
+}
+
+static const real nowhere[3] = {0, 0, 0};
+
+STAGE static void places_to(const transformed *f, int n, vec3s *v) { apply(n, f->to, 1, f->o, v); }
+STAGE static void vectors_to(const transformed *f, int n, real k, vec3s *v) { apply(n, f->to, k, nowhere, v); }
+
+/* Gradients go by the transpose of the way back. */
+STAGE static void gradients_to(const transformed *f, int n, real k, vec3s *v) { apply(n, f->back, k, nowhere, v); }
+
+/* And back by that of the way there. */
+STAGE static void gradients_back(const transformed *restrict base, int n, real k, const vec3s *restrict v, vec3s *restrict to)
+{
+    const transformed f = *base;
+    for (int i = 0; i < n; i++) {
+        real x = k * v->x[i], y = k * v->y[i], z = k * v->z[i];
+        to->x[i] = f.to[0][0] * x + f.to[0][1] * y + f.to[0][2] * z;
+        to->y[i] = f.to[1][0] * x + f.to[1][1] * y + f.to[1][2] * z;
+        to->z[i] = f.to[2][0] * x + f.to[2][1] * y + f.to[2][2] * z;
+    }
+}
+
+/* u there and u here are the same way apart in both directions. */
+STAGE static void turn_u(const transformed *f, int n, const real *u, real *to)
+{
+    const real turn = f->turn, ends = f->ends;
+    for (int i = 0; i < n; i++)
+        to[i] = ends + turn * u[i];
+}
+
+STAGE static void stretch(int n, real k, real *v)
+{
+    for (int i = 0; i < n; i++)
+        v[i] *= k;
+}
+
+/* ---- the surface ---- */
+
+static void transformed_hit(const surface *base, int n, const rays *x, int32_t id, hits *h)
+{
+    const transformed *f = of(base);
+    rays y;
+    rays_back(f, n, x, &y);
+    f->from->is->hit(f->from, n, &y, id, h);
+}
+
+static void transformed_hit_own(const surface *base, int n, const rays *x, const starts *from, int32_t id, hits *h)
+{
+    const transformed *f = of(base);
+    rays y;
+    starts there;
+    rays_back(f, n, x, &y);
+    memcpy(there.id, from->id, (size_t)n * sizeof *there.id);
+    memcpy(there.part, from->part, (size_t)n * sizeof *there.part);
+    places_back(f, n, &from->at, &there.at);
+    f->from->is->hit_own(f->from, n, &y, &there, id, h);
+}
+
+static void transformed_locate(const surface *base, int n, const rays *x, const real *t, int32_t *part, real *u, real *w)
+{
+    const transformed *f = of(base);
+    rays y;
+    rays_back(f, n, x, &y);
+    f->from->is->locate(f->from, n, &y, t, part, u, w);
+    turn_u(f, n, u, u);
+}
+
+static void transformed_eval(const surface *base, int n, const int32_t *part, const real *u, const real *w, int order, partials *q)
+{
+    const transformed *f = of(base);
+    real v[LANES];
+    turn_u(f, n, u, v);
+    f->from->is->eval(f->from, n, part, v, w, order, q);
+    places_to(f, n, &q->Q);
+    vectors_to(f, n, f->turn, &q->Qu);
+    vectors_to(f, n, 1, &q->Qw);
+    if (order < 2)
+        return;
+    vectors_to(f, n, 1, &q->Quu);
+    vectors_to(f, n, f->turn, &q->Quw);
+    vectors_to(f, n, 1, &q->Qww);
+}
+
+static void transformed_occlude(const surface *base, int n, const rays *x, real *lit)
+{
+    const transformed *f = of(base);
+    rays y;
+    rays_back(f, n, x, &y);
+    f->from->is->occlude(f->from, n, &y, lit);
+}
+
+static void transformed_occlude_own(const surface *base, int n, const rays *x, const int32_t *part, real *lit)
+{
+    const transformed *f = of(base);
+    rays y;
+    rays_back(f, n, x, &y);
+    f->from->is->occlude_own(f->from, n, &y, part, lit);
+}
+
+/* As u turns about the middle of its extent this stays the same. */
+static void transformed_extent(const surface *base, int part, double u[2], double w[2])
+{
+    of(base)->from->is->extent(of(base)->from, part, u, w);
+}
+
+/* ---- for true displacement, by maps that keep angles ---- */
+
+static void similar_shell(const surface *base, int part, int n, const rays *x, const real *end, real Pmin, real Pmax, real *t0,
+                          real *t1)
+{
+    const transformed *f = of(base);
+    rays y;
+    rays_back(f, n, x, &y);
+    f->from->is->shell(f->from, part, n, &y, end, Pmin * f->over, Pmax * f->over, t0, t1);
+}
+
+static void similar_foot(const surface *base, int part, int n, const rays *x, const real *t, feet *p)
+{
+    const transformed *f = of(base);
+    rays y;
+    rays_back(f, n, x, &y);
+    f->from->is->foot(f->from, part, n, &y, t, p);
+    turn_u(f, n, p->u, p->u);
+    stretch(n, f->scale, p->h);
+    gradients_to(f, n, f->turn, &p->gu);
+    gradients_to(f, n, 1, &p->gw);
+    gradients_to(f, n, f->scale, &p->gh);
+}
+
+static void similar_steep(const surface *base, int part, int n, const rays *x, const feet *p, real Pu_max, real Pw_max, real *rate,
+                          real *reach)
+{
+    const transformed *f = of(base);
+    rays y;
+    feet q;
+    rays_back(f, n, x, &y);
+    turn_u(f, n, p->u, q.u);
+    memcpy(q.w, p->w, (size_t)n * sizeof *q.w);
+    memcpy(q.h, p->h, (size_t)n * sizeof *q.h);
+    stretch(n, f->over, q.h);
+    gradients_back(f, n, f->turn, &p->gu, &q.gu);
+    gradients_back(f, n, 1, &p->gw, &q.gw);
+    gradients_back(f, n, f->over, &p->gh, &q.gh);
+    f->from->is->steep(f->from, part, n, &y, &q, Pu_max * f->over, Pw_max * f->over, rate, reach);
+    stretch(n, f->scale, rate);
+}
+
+/* ---- the same on a box, by any map ---- */
+
+static void faces_shell(const surface *base, int part, int n, const rays *x, const real *end, real Pmin, real Pmax, real *t0,
+                        real *t1)
+{
+    const surface *face = &of(base)->face[part].base;
+    face->is->shell(face, 0, n, x, end, Pmin, Pmax, t0, t1);
+}
+
+static void faces_foot(const surface *base, int part, int n, const rays *x, const real *t, feet *p)
+{
+    const surface *face = &of(base)->face[part].base;
+    face->is->foot(face, 0, n, x, t, p);
+}
+
+static void faces_steep(const surface *base, int part, int n, const rays *x, const feet *p, real Pu_max, real Pw_max, real *rate,
+                        real *reach)
+{
+    const surface *face = &of(base)->face[part].base;
+    face->is->steep(face, 0, n, x, p, Pu_max, Pw_max, rate, reach);
+}
+
+/* The image of the box of what is mapped. */
+static void transformed_box(const surface *base, double lo[3], double hi[3])
+{
+    const transformed *f = of(base);
+    double a[3], b[3];
+    f->from->is->box(f->from, a, b);
+    for (int k = 0; k < 3; k++) {
+        lo[k] = hi[k] = (double)f->o[k];
+        for (int j = 0; j < 3; j++) {
+            const double x = (double)f->to[j][k] * a[j], y = (double)f->to[j][k] * b[j];
+            lo[k] += fmin(x, y);
+            hi[k] += fmax(x, y);
+        }
+    }
+}
+
+/* ---- making them ---- */
+
+static bool is(const surface *f, const char *kind) { return strcmp(f->is->kind, kind) == 0; }
+
+static vec3 lane(const vec3s *v) { return (vec3){(double)v->x[0], (double)v->y[0], (double)v->z[0]}; }
+
+/* Put a plane, or a rectangle, where a flat part of a surface goes. */
+static bool flat_image(plane *to, const surface *f, int part, const affine *m, double turn, double ends)
+{
+    const int32_t p = part;
+    const real u = (real)ends, w = 0;
+    partials q;
+    f->is->eval(f, 1, &p, &u, &w, 1, &q);
+    return plane_place(to, affine_point(m, lane(&q.Q)), vec3_scale(affine_vector(m, lane(&q.Qu)), turn), affine_vector(m, lane(&q.Qw)));
+}
+
+static surface *plane_image(const surface *f, const affine *m, double turn, double ends)
+{
+    plane *p = malloc(sizeof *p);
+    if (p)
+        *p = *(const plane *)f;
+    if (p && flat_image(p, f, 0, m, turn, ends))
+        return &p->base;
+    free(p);
+    return NULL;
+}
+
+static bool box_image(transformed *f, const affine *m)
+{
+    bool good = true;
+    for (int part = 0; part < FACES; part++) {
+        rectangle_set(&f->face[part]);
+        good = flat_image(&f->face[part], f->from, part, m, (double)f->turn, (double)f->ends) && good;
+    }
+    f->methods.shell = faces_shell;
+    f->methods.foot = faces_foot;
+    f->methods.steep = faces_steep;
+    return good;
+}
+
+static void store(real to[3], vec3 v)
+{
+    to[0] = (real)v.x;
+    to[1] = (real)v.y;
+    to[2] = (real)v.z;
+}
+
+static void choose_methods(transformed *f, double scale)
+{
+    f->base.is = &f->methods;
+    f->methods = *f->from->is;
+    f->methods.hit = transformed_hit;
+    f->methods.hit_own = transformed_hit_own;
+    f->methods.locate = transformed_locate;
+    f->methods.eval = transformed_eval;
+    f->methods.occlude = transformed_occlude;
+    f->methods.occlude_own = f->from->is->occlude_own ? transformed_occlude_own : NULL;
+    f->methods.extent = transformed_extent;
+    f->methods.box = transformed_box;
+    f->methods.shell = scale > 0 ? similar_shell : NULL;
+    f->methods.foot = scale > 0 ? similar_foot : NULL;
+    f->methods.steep = scale > 0 ? similar_steep : NULL;
+}
+
+surface *surface_transformed(const surface *from, const affine *m)
+{
+    const double volume = affine_volume(m), scale = affine_scale(m);
+    double u[2], w[2];
+    if (!(fabs(volume) > 0) || !(fabs(volume) < HUGE_VAL))
+        return NULL;
+    from->is->extent(from, 0, u, w);
+    const double turn = volume < 0 ? -1 : 1, ends = volume < 0 && u[1] < HUGE_VAL ? u[0] + u[1] : 0;
+    if (is(from, "plane") || is(from, "rectangle") || is(from, "disc"))
+        return plane_image(from, m, turn, ends);
+    transformed *f = calloc(1, sizeof *f);
+    if (!f)
+        return NULL;
+    f->from = from;
+    f->turn = (real)turn;
+    f->ends = (real)ends;
+    const affine back = affine_back(m);
+    store(f->to[0], m->x);
+    store(f->to[1], m->y);
+    store(f->to[2], m->z);
+    store(f->back[0], back.x);
+    store(f->back[1], back.y);
+    store(f->back[2], back.z);
+    store(f->o, m->o);
+    f->scale = (real)scale;
+    f->over = scale > 0 ? (real)(1 / scale) : 0;
+    choose_methods(f, scale);
+    if (is(from, "box") && !box_image(f, m)) {
+        free(f);
+        return NULL;
+    }
+    return &f->base;
+}

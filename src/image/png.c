@@ -1,0 +1,278 @@
+#include <errno.h>
+#include <png.h>
+#include <setjmp.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/file_writer.h"
+#include "image/srgb.h"
+
+/* libpng tells an error by a call that must not return. All that is alive when it comes lives here, in the
+ * caller's frame, so the function with setjmp has no variable of its own that a longjmp could spoil. */
+typedef struct png_job {
+    jmp_buf jump;
+    char *why; /* IMAGE_WHY */
+    png_structp png;
+    png_infop info;
+} png_job;
+
+static void on_error(png_structp png, png_const_charp message)
+{
+    png_job *job = png_get_error_ptr(png);
+    snprintf(job->why, IMAGE_WHY, "libpng: %s", message);
+    longjmp(job->jump, 1);
+}
+
+/* Warnings are about chunks that no sample depends on. */
+static void on_warning(png_structp png, png_const_charp message)
+{
+    (void)png, (void)message;
+}
+
+static bool refuse(png_job *job, const char *why)
+{
+    snprintf(job->why, IMAGE_WHY, "%s", why);
+    return false;
+}
+
+/* ------------------------------------------------------------------------------------------------ reading */
+
+static void read_bytes(png_structp png, png_bytep data, size_t size)
+{
+    FILE *file = png_get_io_ptr(png);
+    if (fread(data, 1, size, file) != size)
+        png_error(png, ferror(file) ? strerror(errno) : "the file ends too early");
+}
+
+/* The samples of a row, big-endian integers of 1 or 2 bytes at its beginning, become floats in place. From the
+ * last to the first, since each needs as much room or more than it had. */
+static void row_to_float(float *row, int width, int bytes)
+{
+    const unsigned char *from = (const unsigned char *)row;
+    for (int x = width - 1; x >= 0; x--) {
+        if (bytes == 2)
+            row[x] = (float)(from[2 * x] << 8 | from[2 * x + 1]) / 65535.0f;
+        else
+            row[x] = (float)from[x] / 255.0f;
+    }
+}
+
+/* Every kind of PNG as red, green, blue and alpha of 8 or 16 bits. */
+static void expand_to_color(png_job *job, int colour)
+{
+    if (colour == PNG_COLOR_TYPE_PALETTE)
+        png_set_palette_to_rgb(job->png);
+    if (colour == PNG_COLOR_TYPE_GRAY || colour == PNG_COLOR_TYPE_GRAY_ALPHA) {
+        png_set_expand_gray_1_2_4_to_8(job->png);
+        png_set_gray_to_rgb(job->png);
+    }
+    if (png_get_valid(job->png, job->info, PNG_INFO_tRNS))
+        png_set_tRNS_to_alpha(job->png);
+    png_set_add_alpha(job->png, 0xffff, PNG_FILLER_AFTER); /* where there is none */
+}
+
+static bool decode(png_job *job, FILE *file, bool color, image *out)
+{
+    if (setjmp(job->jump))
+        return false;
+    job->png = png_create_read_struct(PNG_LIBPNG_VER_STRING, job, on_error, on_warning);
+    job->info = job->png ? png_create_info_struct(job->png) : NULL;
+    if (!job->info)
+        return refuse(job, "libpng does not start");
+    png_set_read_fn(job->png, file, read_bytes);
+    png_set_sig_bytes(job->png, 8);
+    png_set_user_limits(job->png, PNG_UINT_31_MAX, PNG_UINT_31_MAX); /* image_alloc has the limits */
+    /* Samples are numbers: gamma, colour profiles, texts and the like are not even looked at. */
+    png_set_keep_unknown_chunks(job->png, PNG_HANDLE_CHUNK_NEVER, NULL, -1);
+    png_read_info(job->png, job->info);
+
+    int colour = png_get_color_type(job->png, job->info);
+    if (!color && colour != PNG_COLOR_TYPE_GRAY && colour != PNG_COLOR_TYPE_GRAY_ALPHA)
+        return refuse(job, colour == PNG_COLOR_TYPE_PALETTE
+                               ? "the PNG has a palette; a grey one is expected, of 8 or 16 bits"
+                               : "the PNG is in colour; a grey one is expected, of 8 or 16 bits");
+    const int values = color ? 4 : 1;
+    const char *why = image_alloc(out, png_get_image_width(job->png, job->info), png_get_image_height(job->png, job->info), values);
+    if (why)
+        return refuse(job, why);
+    const int bytes = png_get_bit_depth(job->png, job->info) == 16 ? 2 : 1;
+    if (color)
+        expand_to_color(job, colour);
+    else {
+        png_set_expand_gray_1_2_4_to_8(job->png); /* x 255, 85, 17: sample / maximum stays what it was */
+        png_set_strip_alpha(job->png);
+    }
+    const int passes = png_set_interlace_handling(job->png);
+    png_read_update_info(job->png, job->info);
+    const size_t row = (size_t)out->width * (size_t)values;
+    if (png_get_rowbytes(job->png, job->info) != row * (size_t)bytes)
+        return refuse(job, "libpng: unexpected size of a row");
+    for (int pass = 0; pass < passes; pass++)
+        for (int y = 0; y < out->height; y++)
+            png_read_row(job->png, (png_bytep)(out->v + (size_t)y * row), NULL);
+    png_read_end(job->png, NULL);
+    for (int y = 0; y < out->height; y++)
+        row_to_float(out->v + (size_t)y * row, (int)row, bytes);
+    return true;
+}
+
+bool image_read_png(FILE *file, bool color, image *out, char *why)
+{
+    png_job job = {.why = why};
+    bool ok = decode(&job, file, color, out);
+    png_destroy_read_struct(&job.png, &job.info, NULL);
+    if (!ok) {
+        free(out->v);
+        *out = (image){0};
+    }
+    return ok;
+}
+
+/* NULL: there is no such text. */
+static const char *find_text(const png_job *job, const char *key)
+{
+    png_textp text = NULL;
+    const int n = png_get_text(job->png, job->info, &text, NULL);
+    for (int k = 0; k < n; k++)
+        if (strcmp(text[k].key, key) == 0)
+            return text[k].text;
+    return NULL;
+}
+
+/* The text Software; NULL: none before the samples. The job's. */
+static const char *software(png_job *job, FILE *file)
+{
+    if (setjmp(job->jump))
+        return NULL;
+    job->png = png_create_read_struct(PNG_LIBPNG_VER_STRING, job, on_error, on_warning);
+    job->info = job->png ? png_create_info_struct(job->png) : NULL;
+    if (!job->info)
+        return NULL;
+    png_set_read_fn(job->png, file, read_bytes);
+    png_set_user_limits(job->png, PNG_UINT_31_MAX, PNG_UINT_31_MAX);
+    png_read_info(job->png, job->info);
+    return find_text(job, "Software");
+}
+
+bool image_png_is_from(const char *path, const char *program)
+{
+    char why[IMAGE_WHY];
+    png_job job = {.why = why};
+    FILE *file = fopen(path, "rb");
+    if (!file)
+        return false;
+    const char *text = software(&job, file);
+    const size_t n = strlen(program);
+    const bool is = text && strncmp(text, program, n) == 0 && text[n] == ' ';
+    png_destroy_read_struct(&job.png, &job.info, NULL);
+    fclose(file);
+    return is;
+}
+
+/* ------------------------------------------------------------------------------------------------ writing */
+
+typedef struct png_out {
+    image_file file;
+    uint64_t size; /* so far */
+    srgb *curve;
+    uint16_t *code;  /* of a row, one channel */
+    png_bytep row;
+    png_textp text;
+} png_out;
+
+static void write_bytes(png_structp png, png_bytep data, size_t size)
+{
+    png_out *o = png_get_io_ptr(png);
+    if (!image_file_write(&o->file, data, size, o->size))
+        png_error(png, "the file cannot be written");
+    o->size += size;
+}
+
+static void flush_nothing(png_structp png)
+{
+    (void)png;
+}
+
+static bool is_ascii(const char *s)
+{
+    while (*s > 0)
+        s++;
+    return !*s;
+}
+
+/* tEXt holds Latin-1; other text is UTF-8, which goes into iTXt. */
+static void put_texts(png_job *job, png_out *o, int texts, const image_text *text)
+{
+    for (int i = 0; i < texts; i++) {
+        png_textp t = &o->text[i];
+        t->compression = is_ascii(text[i].value) ? PNG_TEXT_COMPRESSION_NONE : PNG_ITXT_COMPRESSION_NONE;
+        t->key = (png_charp)text[i].key; /* not const by libpng's history only */
+        t->text = (png_charp)text[i].value;
+    }
+    png_set_text(job->png, job->info, o->text, texts);
+}
+
+static void put_row(png_out *o, int width, int bits, const float *const plane[3], size_t start)
+{
+    for (int c = 0; c < 3; c++) {
+        srgb_encode(o->curve, width, plane[c] + start, o->code);
+        if (bits == 8) {
+            for (int x = 0; x < width; x++)
+                o->row[3 * x + c] = (png_byte)o->code[x];
+        } else {
+            for (int x = 0; x < width; x++) {
+                o->row[6 * x + 2 * c] = (png_byte)(o->code[x] >> 8);
+                o->row[6 * x + 2 * c + 1] = (png_byte)(o->code[x] & 255);
+            }
+        }
+    }
+}
+
+static bool encode(png_job *job, png_out *o, int width, int height, int bits, const float *const plane[3], int texts,
+                   const image_text *text)
+{
+    if (setjmp(job->jump))
+        return false;
+    job->png = png_create_write_struct(PNG_LIBPNG_VER_STRING, job, on_error, on_warning);
+    job->info = job->png ? png_create_info_struct(job->png) : NULL;
+    o->curve = srgb_create(bits);
+    o->code = malloc((size_t)width * sizeof *o->code);
+    o->row = malloc((size_t)width * 3 * (size_t)(bits / 8));
+    o->text = calloc((size_t)texts + 1, sizeof *o->text);
+    if (!job->info || !o->curve || !o->code || !o->row || !o->text)
+        return refuse(job, "there is not enough memory");
+    png_set_write_fn(job->png, o, write_bytes, flush_nothing);
+    png_set_compression_level(job->png, 2); /* with one filter: a third of the usual time, a fifth more bytes */
+    png_set_filter(job->png, PNG_FILTER_TYPE_BASE, PNG_FILTER_SUB);
+    png_set_IHDR(job->png, job->info, (png_uint_32)width, (png_uint_32)height, bits, PNG_COLOR_TYPE_RGB,
+                 PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+    png_set_sRGB(job->png, job->info, PNG_sRGB_INTENT_PERCEPTUAL);
+    put_texts(job, o, texts, text);
+    png_write_info(job->png, job->info);
+    for (int y = 0; y < height; y++) {
+        put_row(o, width, bits, plane, (size_t)y * (size_t)width);
+        png_write_row(job->png, o->row);
+    }
+    png_write_end(job->png, NULL);
+    return true;
+}
+
+bool image_write_png(const char *path, int width, int height, int bits, const float *r, const float *g,
+                     const float *b, int texts, const image_text *text, errors *e)
+{
+    const char *refused = image_refuse_size(width, height);
+    if (refused || (bits != 8 && bits != 16))
+        return errors_add(e, "%s: cannot be written: %s", path, refused ? refused : "a PNG has 8 or 16 bits");
+    char why[IMAGE_WHY];
+    png_job job = {.why = why};
+    png_out o = {0};
+    if (!image_file_open(&o.file, path, e))
+        return false;
+    bool ok = encode(&job, &o, width, height, bits, (const float *const[3]){r, g, b}, texts, text);
+    png_destroy_write_struct(&job.png, &job.info);
+    free(o.curve);
+    free(o.code);
+    free(o.row);
+    free(o.text);
+    return image_file_close(&o.file, ok ? NULL : why, e);
+}

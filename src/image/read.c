@@ -1,0 +1,96 @@
+#include "image/image.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/file_writer.h"
+#include "image/srgb.h"
+
+const char *image_refuse_size(int64_t width, int64_t height)
+{
+    if (width < 1 || height < 1)
+        return "the image has no samples";
+    if (width > IMAGE_MAX_SIDE || height > IMAGE_MAX_SIDE || width * height > IMAGE_MAX_PIXELS)
+        return "the image is too large: the limits are 65536 samples a side and 2^28 in all";
+    return NULL;
+}
+
+const char *image_alloc(image *out, int64_t width, int64_t height, int values)
+{
+    const char *why = image_refuse_size(width, height);
+    if (why)
+        return why;
+    float *v = malloc((size_t)(width * height) * (size_t)values * sizeof *v);
+    if (!v)
+        return "there is not enough memory for the image";
+    *out = (image){(int)width, (int)height, v};
+    return NULL;
+}
+
+static bool read_any(FILE *file, const char *channel, bool color, image *out, bool *is_exr, char *why)
+{
+    static const unsigned char exr[4] = {0x76, 0x2f, 0x31, 0x01};
+    static const unsigned char png[8] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
+    unsigned char first[8] = {0};
+    errno = 0;
+    size_t n = fread(first, 1, sizeof first, file);
+    if (ferror(file)) {
+        snprintf(why, IMAGE_WHY, "%s", strerror(errno));
+        return false;
+    }
+    *is_exr = n >= sizeof exr && memcmp(first, exr, sizeof exr) == 0;
+    if (*is_exr)
+        return image_read_exr(file, channel, color, out, why);
+    if (n < sizeof png || memcmp(first, png, sizeof png) != 0) {
+        snprintf(why, IMAGE_WHY, n ? "its first bytes are those of neither a PNG nor an OpenEXR file"
+                                   : "the file is empty");
+        return false;
+    }
+    if (channel) {
+        snprintf(why, IMAGE_WHY, "there is no channel '%s': a PNG file has no named channels", channel);
+        return false;
+    }
+    return image_read_png(file, color, out, why);
+}
+
+static bool read_file(const char *path, const char *channel, bool color, image *out, bool *is_exr, errors *e)
+{
+    *out = (image){0};
+    FILE *file = fopen(path, "rb");
+    if (!file)
+        return errors_add(e, "%s", strerror(errno));
+    char why[IMAGE_WHY] = "";
+    bool ok = read_any(file, channel, color, out, is_exr, why);
+    fclose(file);
+    return ok || errors_add(e, "%s", why);
+}
+
+bool image_read(const char *path, const char *channel, image *out, errors *e)
+{
+    bool is_exr;
+    return read_file(path, channel, false, out, &is_exr, e);
+}
+
+static bool all_opaque(const image *m, errors *e)
+{
+    for (int y = 0; y < m->height; y++)
+        for (int x = 0; x < m->width; x++)
+            if (m->v[4 * ((size_t)y * (size_t)m->width + (size_t)x) + 3] != 1)
+                return errors_add(e, "the pixel in column %d of row %d (both from 0) is transparent; an opaque image is expected", x, y);
+    return true;
+}
+
+bool image_read_color(const char *path, image_encoding encoding, image *out, bool *is_exr, errors *e)
+{
+    bool ok = read_file(path, NULL, true, out, is_exr, e) && all_opaque(out, e);
+    if (ok && *is_exr && encoding == IMAGE_SRGB)
+        ok = errors_add(e, "an OpenEXR file is linear; srgb is for PNG");
+    if (ok && !*is_exr && encoding != IMAGE_LINEAR)
+        ok = srgb_decode((size_t)out->width * (size_t)out->height, out->v) || errors_add(e, "there is not enough memory for the image");
+    if (!ok) {
+        free(out->v);
+        *out = (image){0};
+    }
+    return ok;
+}

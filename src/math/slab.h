@@ -1,0 +1,17 @@
+/* A ray against a slab: for the shells of flat surfaces. */
+#ifndef KAGE_MATH_SLAB_H
+#define KAGE_MATH_SLAB_H
+
+#include "base/real.h"
+
+/* Narrow t0..t1 to where a + b t lies in lo..hi. */
+static inline void clip(real a, real b, real lo, real hi, real *t0, real *t1)
+{
+    real x = (lo - a) / b, y = (hi - a) / b; /* b = 0: infinite, or NaN where a is lo or hi, and that is inside */
+    real from = x < y ? x : y, to = x < y ? y : x;
+    *t0 = from > *t0 ? from : *t0;
+    *t1 = to < *t1 ? to : *t1;
+    *t1 = (b == 0) & ((a < lo) | (a > hi)) ? R(-1) : *t1;
+}
+
+#endif

@@ -1,0 +1,264 @@
+/* From what a file says to triangles that can be relied on. */
+#include "mesh/mesh_data.h"
+
+#include "math/kmath.h"
+#include "base/vec3.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define FLAT 1e-10   /* a triangle that is lower than this share of its longest side has no direction */
+#define FACING 0.05  /* a corner's normal is on the triangle's side by this at least */
+#define TEXTURE 1e6  /* no texture coordinate is farther */
+enum { FAN = 512 };  /* triangles about a vertex; beyond that the mean over all stands for every corner, so that time stays linear */
+
+static vec3 wide(const float v[3]) { return (vec3){(double)v[0], (double)v[1], (double)v[2]}; }
+
+static void narrow(vec3 v, float to[3])
+{
+    to[0] = (float)v.x;
+    to[1] = (float)v.y;
+    to[2] = (float)v.z;
+}
+
+/* (b - a) x (c - a) */
+static vec3 area_of(const float at[3][3])
+{
+    const vec3 a = wide(at[0]);
+    return vec3_cross(vec3_sub(wide(at[1]), a), vec3_sub(wide(at[2]), a));
+}
+
+static bool is_flat(const float at[3][3], vec3 area)
+{
+    double longest = 0;
+    for (int k = 0; k < 3; k++) {
+        const vec3 side = vec3_sub(wide(at[(k + 1) % 3]), wide(at[k]));
+        longest = fmax(longest, vec3_dot(side, side));
+    }
+    return !(vec3_length(area) > FLAT * longest);
+}
+
+/* ---- numbers ---- */
+
+static bool check_numbers(const mesh_data *d, double most, char why[MESH_WHY])
+{
+    for (int k = 0; k < d->n; k++)
+        for (int i = 0; i < 9; i++) {
+            const double x = (double)d->at[k][i / 3][i % 3];
+            if (!(fabs(x) <= most)) {
+                snprintf(why, MESH_WHY, "a vertex has the coordinate %g, expected -%g to %g", x, most, most);
+                return false;
+            }
+        }
+    for (int k = 0; k < d->n; k++)
+        for (int i = 0; i < 6; i++) {
+            const double x = (double)d->skin[k].uv[i / 2][i % 2];
+            if (fabs(x) > TEXTURE) { /* NaN: none is given */
+                snprintf(why, MESH_WHY, "a texture coordinate is %g, expected -%g to %g", x, TEXTURE, TEXTURE);
+                return false;
+            }
+        }
+    return true;
+}
+
+static void drop_flat(mesh_data *d)
+{
+    int n = 0;
+    for (int k = 0; k < d->n; k++) {
+        if (is_flat((const float (*)[3])d->at[k], area_of((const float (*)[3])d->at[k])))
+            continue;
+        memmove(d->at[n], d->at[k], sizeof d->at[n]);
+        d->skin[n++] = d->skin[k];
+    }
+    d->notes.flat = d->n - n;
+    d->n = n;
+}
+
+static void count_bare(mesh_data *d)
+{
+    for (int k = 0; k < d->n; k++) {
+        bool bare = false;
+        for (int i = 0; i < 6; i++)
+            bare |= !(d->skin[k].uv[i / 2][i % 2] < HUGE_VALF);
+        d->notes.bare += bare;
+    }
+}
+
+/* ---- normals ---- */
+
+/* Which corners are at one place: corner[first[k]] to corner[first[k + 1] - 1] for each place k. */
+typedef struct places {
+    int32_t *of;     /* of each corner */
+    int32_t *first, *corner;
+    int n;
+} places;
+
+static void free_places(places *p)
+{
+    free(p->of);
+    free(p->first);
+    free(p->corner);
+}
+
+static uint32_t hash_of(const float at[3])
+{
+    uint32_t h = 2166136261u, word[3];
+    memcpy(word, at, sizeof word);
+    for (int k = 0; k < 3; k++)
+        h = (h ^ (word[k] == 0x80000000u ? 0 : word[k])) * 16777619u, h ^= h >> 15;
+    return h;
+}
+
+static bool same(const float a[3], const float b[3]) { return a[0] == b[0] && a[1] == b[1] && a[2] == b[2]; }
+
+static bool find_places(const mesh_data *d, places *p)
+{
+    const int corners = 3 * d->n;
+    uint32_t size = 16;
+    while (size < 2 * (uint32_t)corners)
+        size *= 2;
+    int32_t *table = malloc(sizeof *table * size); /* a corner of each place, -1: free */
+    *p = (places){malloc(sizeof(int32_t) * (size_t)corners), NULL, malloc(sizeof(int32_t) * (size_t)corners), 0};
+    if (table && p->of)
+        memset(table, 0xff, sizeof *table * size);
+    for (int i = 0; table && p->of && i < corners; i++) {
+        const float *at = d->at[i / 3][i % 3];
+        uint32_t k = hash_of(at) & (size - 1);
+        while (table[k] >= 0 && !same(d->at[table[k] / 3][table[k] % 3], at))
+            k = (k + 1) & (size - 1);
+        if (table[k] < 0) {
+            table[k] = i;
+            p->of[i] = p->n++;
+        } else
+            p->of[i] = p->of[table[k]];
+    }
+    free(table);
+    p->first = calloc((size_t)p->n + 2, sizeof *p->first);
+    if (!table || !p->of || !p->corner || !p->first)
+        return false;
+    for (int i = 0; i < corners; i++)
+        p->first[p->of[i] + 2]++;
+    for (int k = 0; k < p->n; k++)
+        p->first[k + 2] += p->first[k + 1];
+    for (int i = 0; i < corners; i++) /* first[k + 1] goes to where it belongs */
+        p->corner[p->first[p->of[i] + 1]++] = i;
+    return true;
+}
+
+/* The triangle's unit normal times the angle at that corner: what does not depend on how a flat face is cut. */
+static vec3 weighed(const mesh_data *d, int corner)
+{
+    const float (*at)[3] = (const float (*)[3])d->at[corner / 3];
+    const vec3 a = wide(at[corner % 3]);
+    const vec3 b = vec3_sub(wide(at[(corner + 1) % 3]), a), c = vec3_sub(wide(at[(corner + 2) % 3]), a);
+    const double cosine = vec3_dot(b, c) / (vec3_length(b) * vec3_length(c));
+    return vec3_scale(vec3_unit(area_of(at)), km_acos(fmin(1, fmax(-1, cosine))));
+}
+
+static void smooth_place(mesh_data *d, const int32_t *corner, int n, double least)
+{
+    vec3 all = {0, 0, 0};
+    for (int i = 0; n > FAN && i < n; i++)
+        all = vec3_add(all, weighed(d, corner[i]));
+    for (int i = 0; i < n; i++) {
+        const vec3 own = vec3_unit(area_of((const float (*)[3])d->at[corner[i] / 3]));
+        vec3 sum = all;
+        float *to = d->skin[corner[i] / 3].normal[corner[i] % 3];
+        if (to[0] != 0 || to[1] != 0 || to[2] != 0)
+            continue;
+        for (int j = 0; n <= FAN && j < n; j++) {
+            const vec3 one = vec3_unit(area_of((const float (*)[3])d->at[corner[j] / 3]));
+            if (i == j || vec3_dot(own, one) >= least)
+                sum = vec3_add(sum, weighed(d, corner[j]));
+        }
+        const double length = vec3_length(sum);
+        narrow(length > 1e-6 ? vec3_scale(sum, 1 / length) : own, to);
+    }
+}
+
+static bool smooth(mesh_data *d, double crease)
+{
+    places p;
+    const bool good = find_places(d, &p);
+    const double least = km_cos(crease * (3.14159265358979323846 / 180)) - 1e-6; /* float's coordinates do not tell it closer */
+    for (int k = 0; good && k < p.n; k++)
+        smooth_place(d, p.corner + p.first[k], p.first[k + 1] - p.first[k], least);
+    free_places(&p);
+    return good;
+}
+
+/* Unit length, or none where there is no direction. */
+static bool take_given(mesh_data *d, mesh_normals normals)
+{
+    bool all = true;
+    for (int k = 0; k < d->n; k++)
+        for (int i = 0; i < 3; i++) {
+            float *to = d->skin[k].normal[i];
+            const vec3 n = wide(to);
+            const double length = vec3_length(n);
+            const bool good = normals == MESH_NORMALS_FILE && length > 1e-6 && length < 1e6;
+            narrow(good ? vec3_scale(n, 1 / length) : (vec3){0, 0, 0}, to);
+            all &= good;
+        }
+    return all;
+}
+
+static void exchange(float *a, float *b, size_t bytes)
+{
+    float x[3];
+    memcpy(x, a, bytes);
+    memcpy(a, b, bytes);
+    memcpy(b, x, bytes);
+}
+
+/* Where the file's normals are all on the other side of a triangle, they are right and the order of its corners is not. */
+static void turn_round(mesh_data *d)
+{
+    for (int k = 0; k < d->n; k++) {
+        const vec3 n = area_of((const float (*)[3])d->at[k]);
+        mesh_skin *x = &d->skin[k];
+        if (!(vec3_dot(n, wide(x->normal[0])) < 0 && vec3_dot(n, wide(x->normal[1])) < 0 && vec3_dot(n, wide(x->normal[2])) < 0))
+            continue;
+        exchange(d->at[k][1], d->at[k][2], sizeof d->at[k][1]);
+        exchange(x->normal[1], x->normal[2], sizeof x->normal[1]);
+        exchange(x->uv[1], x->uv[2], sizeof x->uv[1]);
+        d->notes.turned++;
+    }
+}
+
+/* No normal is turned away from its triangle: what is in between is not either, then. */
+static void bend_back(mesh_data *d)
+{
+    for (int k = 0; k < d->n; k++) {
+        const vec3 n = vec3_unit(area_of((const float (*)[3])d->at[k]));
+        for (int i = 0; i < 3; i++)
+            if (!(vec3_dot(n, wide(d->skin[k].normal[i])) >= FACING)) {
+                narrow(n, d->skin[k].normal[i]);
+                d->notes.bent++;
+            }
+    }
+}
+
+bool mesh_clean(mesh_data *d, mesh_normals normals, double crease, double most, char why[MESH_WHY])
+{
+    if (!check_numbers(d, most, why))
+        return false;
+    d->notes = (mesh_notes){0};
+    drop_flat(d);
+    if (d->n == 0) {
+        snprintf(why, MESH_WHY, "no triangles%s, expected at least one", d->notes.flat ? " with an area" : "");
+        return false;
+    }
+    count_bare(d);
+    const bool given = take_given(d, normals);
+    turn_round(d);
+    if (!given && normals != MESH_NORMALS_FLAT && !smooth(d, crease)) {
+        snprintf(why, MESH_WHY, "out of memory");
+        return false;
+    }
+    bend_back(d);
+    if (normals == MESH_NORMALS_FLAT) /* none was there */
+        d->notes.bent = 0;
+    return true;
+}

@@ -1,0 +1,60 @@
+/* A mesh as plain arrays of triangles, and how it gets from a file to what the surface (mesh.h) can rely on.
+ *
+ * Coordinates are kage's, left-handed; a triangle's corners follow each other so that (b - a) x (c - a) points outward.
+ */
+#ifndef KAGE_MESH_MESH_DATA_H
+#define KAGE_MESH_MESH_DATA_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "base/files.h"
+#include "base/progress.h"
+
+enum { MESH_MOST = 1 << 24, MESH_WHY = 200 }; /* triangles; bytes of a message */
+
+/* What of a triangle does not matter to whether a ray meets it. */
+typedef struct mesh_skin {
+    float normal[3][3]; /* of each corner, unit; 0: none is given */
+    float uv[3][2];     /* NaN: none are given */
+} mesh_skin;
+
+/* What was found in a file and what was done about it. */
+typedef struct mesh_notes {
+    int flat;   /* triangles without an area, left out */
+    int turned; /* triangles whose normals all said that they face the other way, and which do so now */
+    int bent;   /* corners whose normal was turned away from the triangle, and is the triangle's own now */
+    int bare;   /* triangles without texture coordinates */
+    int folded; /* triangles whose texture is mirrored */
+    int spread; /* triangles on which the texture has no area */
+} mesh_notes;
+
+typedef struct mesh_data {
+    int n;
+    float (*at)[3][3]; /* owned */
+    mesh_skin *skin;   /* owned */
+    mesh_notes notes;
+} mesh_data;
+
+void mesh_data_free(mesh_data *d);
+
+typedef enum mesh_normals { MESH_NORMALS_FILE, MESH_NORMALS_SMOOTH, MESH_NORMALS_FLAT } mesh_normals;
+
+/* Read a file of a model; it and those that it names are added to *opened. False, and why not in one line.
+ * (mesh_file.c) */
+bool mesh_file_read(const char *path, const watch *w, files *opened, mesh_data *out, char why[MESH_WHY]);
+
+/* The importer itself, as it runs in a process of its own. What it tells: each file that it opens, and the share that
+ * has been read. (mesh_import.c) */
+typedef struct mesh_listener {
+    void (*open)(void *user, file_id id);
+    void (*read)(void *user, double share);
+    void *user;
+} mesh_listener;
+bool mesh_import(const char *path, const mesh_listener *to, mesh_data *out, char why[MESH_WHY]);
+
+/* Check the numbers, leave out triangles without an area, and find a normal for every corner: the file's where it is usable, otherwise the mean over
+ * the triangles about the vertex that are within `crease` degrees of this one. `most`: no coordinate is farther. (mesh_clean.c) */
+bool mesh_clean(mesh_data *d, mesh_normals normals, double crease, double most, char why[MESH_WHY]);
+
+#endif

@@ -1,0 +1,229 @@
+/* The method's stages. The formulas are in bumpshadow.h; here they meet the waves. */
+#include "method/shift.h"
+
+#include "wave/lane.h"
+
+STAGE static void normals_smooth(group *restrict g)
+{
+    for (int i = 0; i < g->n; i++) {
+        bs_vec3 n = bs_normal(lane_get(&g->q.Qu, i), lane_get(&g->q.Qw, i));
+        lane_set(&g->n_smooth, i, n);
+        lane_set(&g->n_bump, i, lane_unit(n));
+    }
+}
+
+STAGE static void normals_bump(group *restrict g)
+{
+    for (int i = 0; i < g->n; i++) {
+        bs_vec3 Qu = lane_get(&g->q.Qu, i), Qw = lane_get(&g->q.Qw, i), n = bs_normal(Qu, Qw);
+        bs_vec3 np = bs_perturbed_normal(n, Qu, Qw, g->h.Pu[i], g->h.Pw[i]);
+        int regular = bs_regular(n, Qu, Qw);
+        np.x = regular ? np.x : n.x;
+        np.y = regular ? np.y : n.y;
+        np.z = regular ? np.z : n.z;
+        lane_set(&g->n_smooth, i, n);
+        lane_set(&g->n_bump, i, lane_unit(np));
+    }
+}
+
+void shift_normals(group *g, const perturb *bump)
+{
+    if (bump)
+        normals_bump(g);
+    else
+        normals_smooth(g);
+}
+
+static inline bs_view view(const group *g, int i)
+{
+    return bs_view_of(lane_get(&g->x.s, i), lane_get(&g->n_smooth, i), lane_get(&g->q.Qu, i), lane_get(&g->q.Qw, i));
+}
+
+static inline real curvature(const group *g, int i, bs_view v)
+{
+    return bs_curvature(v, lane_get(&g->n_smooth, i), lane_get(&g->q.Quu, i), lane_get(&g->q.Quw, i),
+                        lane_get(&g->q.Qww, i));
+}
+
+/* Where the surface has no two directions the shift is 0, by order none. After the loops of the methods, not in them: there
+ * the choice would become a branch, and keep them from being vectorised. */
+STAGE static void drop_irregular(group *restrict g)
+{
+    for (int i = 0; i < g->n; i++) {
+        int regular = bs_regular(lane_get(&g->n_smooth, i), lane_get(&g->q.Qu, i), lane_get(&g->q.Qw, i));
+        real tau = g->tau[i];
+        int32_t order = g->order[i];
+        g->tau[i] = regular ? tau : 0;
+        g->order[i] = regular ? order : -1;
+    }
+}
+
+/* One lane by an order that is constant in each of the loops below; so no derivative is loaded that it does not use. */
+static inline void by_order(group *g, int i, int order, int guard, real Pmin, real Pmax)
+{
+    bs_view v = view(g, i);
+    bs_bump p = {g->h.P[i], order >= 1 ? g->h.Pu[i] : 0,  order >= 1 ? g->h.Pw[i] : 0,
+                 order >= 2 ? g->h.Puu[i] : 0, order == 3 ? g->h.Puw[i] : 0, order >= 2 ? g->h.Pww[i] : 0};
+    bs_shift s = bs_shift_of(order, guard, v, order == 3 ? curvature(g, i, v) : 0, p, bs_slab_of(v, Pmin, Pmax));
+    g->tau[i] = s.tau;
+    g->order[i] = s.order;
+}
+
+#define BY_ORDER(name, order, guard)                                          \
+    STAGE static void name(group *restrict g, real Pmin, real Pmax)           \
+    {                                                                         \
+        for (int i = 0; i < g->n; i++)                                        \
+            by_order(g, i, order, guard, Pmin, Pmax);                         \
+    }
+
+BY_ORDER(order_0, 0, 0)
+BY_ORDER(order_1, 1, 1)
+BY_ORDER(order_2, 2, 1)
+BY_ORDER(order_2_plus, 3, 1)
+BY_ORDER(order_1_bare, 1, 0)
+BY_ORDER(order_2_bare, 2, 0) /* alone not vectorised: gcc 12 finds no vector for its choice between 1 and 2 */
+BY_ORDER(order_2_plus_bare, 3, 0)
+
+typedef void by_order_stage(group *restrict g, real Pmin, real Pmax);
+static by_order_stage *const by_orders[2][4] = {
+    {order_0, order_1_bare, order_2_bare, order_2_plus_bare},
+    {order_0, order_1, order_2, order_2_plus},
+};
+
+/* The places of the look-ups and the ray's way past the surface, for the methods that look P up again. */
+typedef struct walk {
+    real sn[LANES], a[LANES], b[LANES], curvature[LANES];
+    real tau[LANES], u[LANES], w[LANES];
+    heights h;
+} walk;
+
+STAGE static void walk_start(const group *restrict g, walk *restrict k)
+{
+    for (int i = 0; i < g->n; i++) {
+        bs_view v = view(g, i);
+        k->sn[i] = v.sn;
+        k->a[i] = v.a;
+        k->b[i] = v.b;
+        k->curvature[i] = curvature(g, i, v);
+    }
+}
+
+/* P at (u0 + a tau, w0 + b tau). */
+STAGE static void walk_place(const group *restrict g, walk *restrict k)
+{
+    for (int i = 0; i < g->n; i++) {
+        k->u[i] = g->u[i] + k->a[i] * k->tau[i];
+        k->w[i] = g->w[i] + k->b[i] * k->tau[i];
+    }
+}
+
+static void walk_look_up(const group *g, walk *k, const perturb *bump)
+{
+    walk_place(g, k);
+    bump->is->eval(bump, g->n, k->u, k->w, 0, &k->h);
+}
+
+STAGE static void iter_step(int n, walk *restrict k, const real *restrict P)
+{
+    for (int i = 0; i < n; i++) {
+        bs_view v = {k->sn[i], 0, 0};
+        k->tau[i] = bs_tau0(v, P[i]);
+    }
+}
+
+static long iterate(group *g, const perturb *bump, method m)
+{
+    walk k;
+    walk_start(g, &k);
+    iter_step(g->n, &k, g->h.P); /* the first look-up is the one that shading has made */
+    for (int step = 1; step < m.n; step++) {
+        walk_look_up(g, &k, bump);
+        iter_step(g->n, &k, k.h.P);
+    }
+    for (int i = 0; i < g->n; i++) {
+        g->tau[i] = k.tau[i];
+        g->order[i] = method_code(m);
+    }
+    return (long)(m.n - 1) * g->n;
+}
+
+typedef struct march_lanes {
+    real tau[LANES], gap[LANES];
+    int32_t found[LANES];
+} march_lanes;
+
+STAGE static void march_start(int n, const walk *restrict k, real Pmin, real Pmax, march_lanes *restrict m)
+{
+    for (int i = 0; i < n; i++) {
+        bs_view v = {k->sn[i], k->a[i], k->b[i]};
+        bs_march s = bs_march_start(bs_slab_of(v, Pmin, Pmax));
+        m->tau[i] = s.tau;
+        m->gap[i] = s.gap;
+        m->found[i] = s.found;
+    }
+}
+
+STAGE static void march_place(int n, walk *restrict k, real Pmin, real Pmax, int step, int steps)
+{
+    for (int i = 0; i < n; i++) {
+        bs_view v = {k->sn[i], k->a[i], k->b[i]};
+        k->tau[i] = bs_march_tau(bs_slab_of(v, Pmin, Pmax), step, steps);
+    }
+}
+
+STAGE static void march_step(int n, const walk *restrict k, march_lanes *restrict m)
+{
+    for (int i = 0; i < n; i++) {
+        bs_view v = {k->sn[i], k->a[i], k->b[i]};
+        bs_march s = {m->tau[i], m->gap[i], m->found[i]};
+        s = bs_march_step(s, k->tau[i], bs_gap(v, k->curvature[i], k->tau[i], k->h.P[i]), v);
+        m->tau[i] = s.tau;
+        m->gap[i] = s.gap;
+        m->found[i] = s.found;
+    }
+}
+
+static long march(group *g, const perturb *bump, method m)
+{
+    walk k;
+    march_lanes x;
+    walk_start(g, &k);
+    march_start(g->n, &k, bump->Pmin, bump->Pmax, &x);
+    for (int step = 0; step <= m.n; step++) {
+        march_place(g->n, &k, bump->Pmin, bump->Pmax, step, m.n);
+        walk_look_up(g, &k, bump);
+        march_step(g->n, &k, &x);
+    }
+    for (int i = 0; i < g->n; i++) {
+        bs_view v = {k.sn[i], 0, 0};
+        g->tau[i] = x.found[i] ? x.tau[i] : bs_tau0(v, g->h.P[i]);
+        g->order[i] = x.found[i] ? method_code(m) : 0;
+    }
+    return (long)(m.n + 1) * g->n;
+}
+
+long shift_group(group *g, const perturb *bump, method m, bool guard)
+{
+    long looks = 0;
+    if (!bump || m.kind == METHOD_NONE) {
+        for (int i = 0; i < g->n; i++) {
+            g->tau[i] = 0;
+            g->order[i] = -1;
+        }
+        return 0;
+    }
+    if (m.kind == METHOD_ORDER)
+        by_orders[guard][m.n](g, bump->Pmin, bump->Pmax);
+    else
+        looks = (m.kind == METHOD_ITER ? iterate : march)(g, bump, m);
+    drop_irregular(g);
+    return looks;
+}
+
+STAGE static void within(int n, const real *restrict t, real *restrict tau)
+{
+    for (int i = 0; i < n; i++)
+        tau[i] = real_max(tau[i], -t[i]);
+}
+
+void shift_within(group *g) { within(g->n, g->t, g->tau); }

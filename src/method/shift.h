@@ -1,0 +1,19 @@
+/* Stage: how far the origin of the shadow rays is shifted along the viewing ray, by every method. */
+#ifndef KAGE_METHOD_SHIFT_H
+#define KAGE_METHOD_SHIFT_H
+
+#include "wave/hit_group.h"
+#include "method/method.h"
+#include "texture/bump.h"
+
+/* n and n' of a group from the partials of Q, and of P where `bump` is not NULL: g->n_smooth, g->n_bump. */
+void shift_normals(group *g, const perturb *bump);
+
+/* g->tau and g->order, from all that is in g before them. Where the surface has no two directions (bs_regular) the
+ * order is none. Returns the number of heights that were looked up on the way. */
+long shift_group(group *g, const perturb *bump, method m, bool guard);
+
+/* A secondary ray starts amid the scene; the shifted place is not before its start. */
+void shift_within(group *g);
+
+#endif

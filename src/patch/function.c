@@ -1,0 +1,54 @@
+/* Q(u,w) from three expressions, with exact partials by forward-mode differentiation (expr.h). */
+#include "patch/patch.h"
+
+#include <stdlib.h>
+
+typedef struct function {
+    sheet base;
+    expr *axis[3]; /* x, y, z */
+} function;
+
+static void function_eval(const sheet *base, int n, const int32_t *part, const double *u, const double *w, int order,
+                          sheet_jets *out)
+{
+    const function *q = (const function *)base;
+    (void)part;
+    for (int k = 0; k < 3; k++)
+        expr_eval(q->axis[k], n, u, w, order, &out->axis[k]);
+}
+
+static void function_bound(const sheet *base, int part, const double u[2], const double w[2], sheet_bounds *out, sheet_bends *second)
+{
+    const function *q = (const function *)base;
+    (void)part;
+    for (int k = 0; k < 3; k++)
+        if (second)
+            expr_range_bend(q->axis[k], u[0], u[1], w[0], w[1], &out->axis[k], &second->axis[k]);
+        else
+            expr_range_gradient(q->axis[k], u[0], u[1], w[0], w[1], &out->axis[k]);
+}
+
+static void function_free(sheet *base)
+{
+    function *q = (function *)base;
+    for (int k = 0; k < 3; k++)
+        expr_free(q->axis[k]);
+    free(q);
+}
+
+static const sheet_methods function_methods = {function_eval, function_bound, function_free};
+
+sheet *sheet_function(const char *kind, expr *const xyz[3], const double u[2], const double w[2])
+{
+    function *q = calloc(1, sizeof *q);
+    for (int k = 0; k < 3; k++) {
+        if (q)
+            q->axis[k] = xyz[k];
+        else
+            expr_free(xyz[k]);
+    }
+    if (!q)
+        return NULL;
+    q->base = (sheet){&function_methods, kind, 1, {u[0], u[1]}, {w[0], w[1]}};
+    return &q->base;
+}

@@ -1,0 +1,296 @@
+/* Where a ray meets a sheet: Q(u,w) = r + s t.
+ *
+ * The hierarchy tells which leaves the ray may meet, and for each pair of ray and leaf there is a proof that they miss each other, or
+ * that they meet once at the most (leaf_meets); otherwise, where the ray grazes, the leaf is halved. So no hit is lost, and none
+ * depends on how fine the leaves are. What is left are pairs with one root each, which Newton's iteration finds in three or four
+ * steps, many pairs side by side.
+ *
+ * The first of a ray's roots does not depend on the order in which the hierarchy tells leaves, nor on what it tells too many: the
+ * pictures are the same on every processor.
+ */
+#include "patch/surface.h"
+
+#include "base/real.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+enum {
+    STEPS = 24,    /* of Newton's iteration */
+    DEPTH = 128,   /* of halvings; each takes one place of the stack */
+    HALVINGS = 4096, /* of one leaf for one ray: what has not been told apart then is tried, or no hit */
+    QUEUE = 1024,    /* leaves that wait to be halved */
+};
+
+#define SETTLED 1e-6  /* a step of this share of the range: the next would be of its square */
+#define BESIDE 1e-5   /* by how much of its range a leaf's root may lie beside it: the neighbour finds the same one */
+#define BEYOND 1e-9   /* and at the end of the sheet, where there is no neighbour, or the seam; of the sheet's range */
+#define ROUNDING 1e-14 /* of u and w, likewise: pieces can be so small that it counts */
+#define SHRED (1 / 4096.) /* a piece of this share of the range, of which nothing is proved, is tried */
+#define TINY 1e-10    /* a piece of this share of the sheet's size and place is not halved any more: it is a point */
+
+/* Pairs of a ray and a range that are waiting to be solved, side by side. */
+typedef struct pairs {
+    int n;
+    int32_t lane[SHEET_BATCH], part[SHEET_BATCH];
+    double u[SHEET_BATCH], w[SHEET_BATCH], t[SHEET_BATCH];
+    double mu[SHEET_BATCH], mw[SHEET_BATCH], hu[SHEET_BATCH], hw[SHEET_BATCH]; /* the range: its middle and half its width */
+    double close_u, close_w; /* steps that are none but for rounding */
+    double rx[SHEET_BATCH], ry[SHEET_BATCH], rz[SHEET_BATCH], sx[SHEET_BATCH], sy[SHEET_BATCH], sz[SHEET_BATCH];
+    double open[SHEET_BATCH]; /* 1: under way; 0: settled; -1: has left its range for good */
+    bool tried[SHEET_BATCH];  /* that the root is the only one is not proved */
+} pairs;
+
+/* One step of Newton's iteration for each: Qu du + Qw dw - s dt = r + s t - Q, by Cramer's rule. */
+STAGE static void newton_step(pairs *restrict p, const sheet_jets *restrict q)
+{
+    const double close_u = p->close_u, close_w = p->close_w;
+    for (int i = 0; i < p->n; i++) {
+        const double ux = q->axis[0].u[i], uy = q->axis[1].u[i], uz = q->axis[2].u[i];
+        const double wx = q->axis[0].w[i], wy = q->axis[1].w[i], wz = q->axis[2].w[i];
+        const double sx = p->sx[i], sy = p->sy[i], sz = p->sz[i];
+        const double dx = p->rx[i] + sx * p->t[i] - q->axis[0].v[i];
+        const double dy = p->ry[i] + sy * p->t[i] - q->axis[1].v[i];
+        const double dz = p->rz[i] + sz * p->t[i] - q->axis[2].v[i];
+        const double ax = wy * sz - wz * sy, ay = wz * sx - wx * sz, az = wx * sy - wy * sx; /* Qw x s */
+        const double bx = sy * uz - sz * uy, by = sz * ux - sx * uz, bz = sx * uy - sy * ux; /* s x Qu */
+        const double nx = uy * wz - uz * wy, ny = uz * wx - ux * wz, nz = ux * wy - uy * wx; /* Qu x Qw */
+        const double k = 1 / (ux * ax + uy * ay + uz * az);
+        const double du = k * (dx * ax + dy * ay + dz * az), dw = k * (dx * bx + dy * by + dz * bz);
+        const double dt = -k * (dx * nx + dy * ny + dz * nz);
+        const double on = p->open[i] > 0 ? 1 : 0, u = p->u[i] + du, w = p->w[i] + dw;
+        const double far_u = fabs(u - p->mu[i]) / p->hu[i], far_w = fabs(w - p->mw[i]) / p->hw[i];
+        const int settled = (fabs(du) <= SETTLED * p->hu[i] + close_u) & (fabs(dw) <= SETTLED * p->hw[i] + close_w);
+        const int in = (far_u < 4) & (far_w < 4); /* not NaN either */
+        double state = settled ? 0 : 1;
+        state = in ? state : -1;
+        p->u[i] = on > 0 ? u : p->u[i];
+        p->w[i] = on > 0 ? w : p->w[i];
+        p->t[i] = on > 0 ? p->t[i] + dt : p->t[i];
+        p->open[i] = on > 0 ? state : p->open[i];
+    }
+}
+
+static bool any_open(const pairs *p)
+{
+    for (int i = 0; i < p->n; i++)
+        if (p->open[i] > 0)
+            return true;
+    return false;
+}
+
+/* Whether a root at x counts for a range, which may end where the sheet does. */
+static bool within(double x, double middle, double half, const double sheet_range[2])
+{
+    const double out = fabs(x - middle) - half, beyond = fmax(sheet_range[0] - x, x - sheet_range[1]);
+    const double all = sheet_range[1] - sheet_range[0];
+    return out <= BESIDE * half + ROUNDING * all && beyond <= BEYOND * all;
+}
+
+/* A leaf that a ray may meet more than once. */
+typedef struct doubtful {
+    int32_t lane, index;
+    double near; /* t from where on it can be met */
+} doubtful;
+
+typedef struct hunt {
+    quest *k;
+    pairs p;
+    int lane; /* whose ray is in the hierarchy */
+    int waiting;
+    doubtful queue[QUEUE];
+} hunt;
+
+static void solve(hunt *h)
+{
+    const sheet *q = h->k->f->q;
+    pairs *p = &h->p;
+    sheet_jets j;
+    for (int step = 0; step < STEPS && any_open(p); step++) {
+        q->is->eval(q, p->n, p->part, p->u, p->w, 1, &j);
+        newton_step(p, &j);
+        h->k->looks += p->n;
+    }
+    for (int i = 0; i < p->n; i++) {
+        quest *k = h->k;
+        const int lane = p->lane[i];
+        const bool in = within(p->u[i], p->mu[i], p->hu[i], q->u) && within(p->w[i], p->mw[i], p->hw[i], q->w);
+        if (p->open[i] == 0 && in && p->t[i] > k->from[lane] && p->t[i] < k->to[lane]) {
+            k->to[lane] = p->t[i];
+            k->found[lane] = true;
+            k->unsure[lane] = p->tried[i];
+            if (k->any) /* nothing else needs to be met */
+                k->to[lane] = -HUGE_VAL;
+        }
+    }
+    p->n = 0;
+}
+
+static void wait(hunt *h, int lane, const leaf *f, double a, double b, bool tried)
+{
+    pairs *p = &h->p;
+    const int i = p->n++;
+    p->tried[i] = tried;
+    const vec3 r = h->k->r[lane], s = h->k->s[lane];
+    p->lane[i] = lane;
+    p->part[i] = f->part;
+    p->hu[i] = 0.5 * (f->u[1] - f->u[0]);
+    p->hw[i] = 0.5 * (f->w[1] - f->w[0]);
+    p->mu[i] = f->u[0] + p->hu[i];
+    p->mw[i] = f->w[0] + p->hw[i];
+    p->u[i] = p->mu[i] + a * p->hu[i];
+    p->w[i] = p->mw[i] + b * p->hw[i];
+    p->t[i] = 0; /* the equation is linear in it: the first step finds it */
+    p->rx[i] = r.x, p->ry[i] = r.y, p->rz[i] = r.z;
+    p->sx[i] = s.x, p->sy[i] = s.y, p->sz[i] = s.z;
+    p->open[i] = 1;
+    if (p->n == SHEET_BATCH)
+        solve(h);
+}
+
+/* A piece that is a point, and still does not tell: at a pole, on an edge, where a ray just touches. It is met. What is no farther than
+ * its own size from where the ray begins to count may be just the start. */
+static void take_point(quest *k, int lane, const leaf *f)
+{
+    const vec3 s = k->s[lane];
+    const double s2 = vec3_dot(s, s), t = vec3_dot(vec3_sub(f->c, k->r[lane]), s) / s2;
+    if (t - leaf_size(f) / sqrt(s2) > k->from[lane] && t < k->to[lane]) {
+        k->to[lane] = k->any ? -HUGE_VAL : t;
+        k->found[lane] = true;
+        k->unsure[lane] = false;
+    }
+}
+
+/* Nothing is known of a piece that is so small. */
+static bool is_broken(const searched *f, const leaf *piece)
+{
+    return f->broken && piece->ea + piece->eb == HUGE_VAL && piece->u[1] - piece->u[0] < SHRED * (f->q->u[1] - f->q->u[0]) &&
+           piece->w[1] - piece->w[0] < SHRED * (f->q->w[1] - f->q->w[0]);
+}
+
+/* A leaf that the ray may meet more than once: its halves, until each tells. */
+static void descend(hunt *h, int lane, const leaf *whole)
+{
+    const searched *f = h->k->f;
+    quest *k = h->k;
+    const double point = TINY * (f->l.radius + 0.1 * vec3_length(f->l.centre));
+    leaf open[DEPTH];
+    int n = 1;
+    open[0] = *whole;
+    for (int halvings = 0; n && halvings < HALVINGS; halvings++) {
+        const leaf one = open[--n];
+        for (int which = 0; which < 2; which++) {
+            double a, b;
+            const leaf half = leaf_half(f->q, &one, which);
+            const leaf_answer answer = leaf_meets(&half, k->r[lane], k->s[lane], k->from[lane], k->to[lane], &a, &b);
+            if (answer == LEAF_ONCE)
+                wait(h, lane, &half, a, b, false);
+            else if (answer == LEAF_OPEN && is_broken(f, &half))
+                wait(h, lane, &half, 0, 0, true);
+            else if (answer == LEAF_OPEN && n < DEPTH - 1 && leaf_size(&half) > point)
+                open[n++] = half;
+            else if (answer == LEAF_OPEN)
+                take_point(k, lane, &half);
+        }
+    }
+    while (f->broken && n)
+        wait(h, lane, &open[--n], 0, 0, true);
+}
+
+static int by_lane_and_near(const void *a, const void *b)
+{
+    const doubtful *x = a, *y = b;
+    if (x->lane != y->lane)
+        return x->lane < y->lane ? -1 : 1;
+    return x->near < y->near ? -1 : x->near > y->near;
+}
+
+/* The leaves that wait: of each ray the nearest first, then the next ones as far as no root is nearer. */
+static void halve_all(hunt *h)
+{
+    const quest *k = h->k;
+    const int n = h->waiting;
+    int start[LANES + 1], lanes = 0;
+    solve(h);
+    qsort(h->queue, (size_t)n, sizeof *h->queue, by_lane_and_near);
+    for (int i = 0; i < n; i++)
+        if (i == 0 || h->queue[i].lane != h->queue[i - 1].lane)
+            start[lanes++] = i;
+    start[lanes] = n;
+    for (int round = 0, left = n; left; round++) {
+        left = 0;
+        for (int i = 0; i < lanes; i++) {
+            const doubtful *d = &h->queue[start[i] + round];
+            if (start[i] + round >= start[i + 1] || !(d->near < k->to[d->lane]))
+                continue;
+            descend(h, d->lane, &k->f->l.leaf[d->index]);
+            left++;
+        }
+        solve(h);
+    }
+    h->waiting = 0;
+}
+
+static double near_end(const leaf *f, vec3 r, vec3 s)
+{
+    const double s2 = vec3_dot(s, s), reach = fabs(vec3_dot(f->A, s)) + fabs(vec3_dot(f->B, s)) + f->e * sqrt(s2);
+    return (vec3_dot(vec3_sub(f->c, r), s) - reach) / s2;
+}
+
+static void visit(void *user, int32_t index)
+{
+    hunt *h = user;
+    const quest *k = h->k;
+    const leaf *f = &k->f->l.leaf[index];
+    double a, b;
+    switch (leaf_meets(f, k->r[h->lane], k->s[h->lane], k->from[h->lane], k->to[h->lane], &a, &b)) {
+    case LEAF_ONCE:
+        wait(h, h->lane, f, a, b, false);
+        break;
+    case LEAF_OPEN:
+        h->queue[h->waiting++] = (doubtful){h->lane, index, near_end(f, k->r[h->lane], k->s[h->lane])};
+        if (h->waiting == QUEUE)
+            halve_all(h);
+        break;
+    case LEAF_MISSED:
+        break;
+    }
+}
+
+void quest_begin(quest *k, const searched *f, bool any)
+{
+    k->f = f;
+    k->any = any;
+    k->looks = 0;
+}
+
+void quest_add(quest *k, int i, vec3 r, vec3 s, double from, double to)
+{
+    const vec3 o = vec3_sub(r, k->f->l.centre);
+    const double start = -vec3_dot(o, s) / vec3_dot(s, s);
+    k->r[i] = vec3_add(r, vec3_scale(s, start));
+    k->s[i] = s;
+    k->start[i] = start;
+    k->from[i] = from - start;
+    k->to[i] = to - start;
+    k->found[i] = k->unsure[i] = false;
+}
+
+void quest_run(quest *k, int n)
+{
+    const searched *f = k->f;
+    const bvh_space space = {f->l.centre, f->l.radius};
+    hunt h;
+    h.k = k;
+    h.p.n = h.waiting = 0;
+    h.p.close_u = ROUNDING * (f->q->u[1] - f->q->u[0]);
+    h.p.close_w = ROUNDING * (f->q->w[1] - f->q->w[0]);
+    for (int i = 0; i < n; i++) {
+        float r[3], s[3], end;
+        double from = k->from[i], to = k->to[i];
+        h.lane = i;
+        if (bvh_enter(&space, space.radius, k->r[i], k->s[i], &from, &to, r, s, &end))
+            bvh_along(f->tree, r, s, end, visit, &h);
+    }
+    halve_all(&h);
+}

@@ -1,0 +1,167 @@
+#include "patch/piece.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+enum {
+    AT_FIRST = 64,     /* leaves of any sheet, before its size is known well */
+    AT_MOST = 1 << 16, /* and in all, but for one halving each of the last */
+};
+
+#define LARGEST (1 / 20.) /* of the sheet's radius */
+#define SMALLEST (1 / 300.)
+#define AIR 1e-12 /* more than the roundings in e, as a share of the leaf's place and size */
+
+static double length3(const double v[3]) { return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
+
+leaf leaf_of(const sheet *q, int32_t part, const double u[2], const double w[2])
+{
+    const double hu = 0.5 * (u[1] - u[0]), hw = 0.5 * (w[1] - w[0]), mu = u[0] + hu, mw = w[0] + hw;
+    leaf f = {.part = part, .u = {u[0], u[1]}, .w = {w[0], w[1]}};
+    sheet_bounds b;
+    sheet_jets q0;
+    double A[3], B[3], ra[3], rb[3], c[3], far[3];
+    q->is->bound(q, part, u, w, &b, NULL);
+    q->is->eval(q, 1, &part, &mu, &mw, 0, &q0);
+    for (int k = 0; k < 3; k++) {
+        const expr_bounds *z = &b.axis[k];
+        const bool known = z->u[1] - z->u[0] < HUGE_VAL && z->w[1] - z->w[0] < HUGE_VAL;
+        c[k] = q0.axis[k].v[0];
+        A[k] = known ? 0.5 * hu * (z->u[0] + z->u[1]) : 0;
+        B[k] = known ? 0.5 * hw * (z->w[0] + z->w[1]) : 0;
+        ra[k] = known ? 0.5 * hu * (z->u[1] - z->u[0]) : HUGE_VAL;
+        rb[k] = known ? 0.5 * hw * (z->w[1] - z->w[0]) : HUGE_VAL;
+        const double out = fabs(A[k]) + fabs(B[k]) + ra[k] + rb[k];
+        f.box[0][k] = greater(z->v[0], c[k] - out);
+        f.box[1][k] = lesser(z->v[1], c[k] + out);
+        far[k] = greater(z->v[1] - c[k], c[k] - z->v[0]) + fabs(A[k]) + fabs(B[k]);
+    }
+    f.c = (vec3){c[0], c[1], c[2]};
+    f.A = (vec3){A[0], A[1], A[2]};
+    f.B = (vec3){B[0], B[1], B[2]};
+    f.ea = length3(ra);
+    f.eb = length3(rb);
+    f.e = lesser(f.ea + f.eb, length3(far));
+    f.e += AIR * (vec3_length(f.c) + vec3_length(f.A) + vec3_length(f.B));
+    return f;
+}
+
+leaf leaf_half(const sheet *q, const leaf *f, int which)
+{
+    const double lu = vec3_length(f->A) + f->ea, lw = vec3_length(f->B) + f->eb;
+    const double share_u = (f->u[1] - f->u[0]) / (q->u[1] - q->u[0]), share_w = (f->w[1] - f->w[0]) / (q->w[1] - q->w[0]);
+    const bool known = lu < HUGE_VAL || lw < HUGE_VAL, along_u = known ? lu >= lw : share_u >= share_w;
+    double u[2] = {f->u[0], f->u[1]}, w[2] = {f->w[0], f->w[1]};
+    double *x = along_u ? u : w;
+    const double middle = x[0] + 0.5 * (x[1] - x[0]);
+    x[1 - which] = middle;
+    return leaf_of(q, f->part, u, w);
+}
+
+double leaf_size(const leaf *f) { return vec3_length(f->A) + vec3_length(f->B) + f->e; }
+
+/* ---- the whole sheet ---- */
+
+static void measure(leaves *l)
+{
+    double lo[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, hi[3] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}, size[3];
+    for (int i = 0; i < l->n; i++)
+        for (int k = 0; k < 3; k++) {
+            lo[k] = lesser(lo[k], l->leaf[i].box[0][k]);
+            hi[k] = greater(hi[k], l->leaf[i].box[1][k]);
+        }
+    for (int k = 0; k < 3; k++)
+        size[k] = 0.5 * (hi[k] - lo[k]);
+    l->centre = (vec3){lo[0] + size[0], lo[1] + size[1], lo[2] + size[2]};
+    l->radius = length3(size);
+}
+
+static bool wants_halving(const leaves *l, double flat, const leaf *f)
+{
+    const double size = leaf_size(f);
+    if (l->n < AT_FIRST || !(size <= LARGEST * l->radius))
+        return true;
+    return size > SMALLEST * l->radius && (f->ea > flat * vec3_length(f->A) || f->eb > flat * vec3_length(f->B));
+}
+
+/* One halving for each leaf that wants it. False: out of memory; *any: there was one. */
+static bool halve(const sheet *q, double flat, leaves *l, bool *any)
+{
+    const int n = l->n;
+    leaf *more = realloc(l->leaf, sizeof *more * (size_t)(2 * n));
+    *any = false;
+    if (!more)
+        return false;
+    l->leaf = more;
+    int32_t *whose = malloc(sizeof *whose * (size_t)n); /* which leaf is halved */
+    if (!whose)
+        return false;
+    int halved = 0;
+    for (int i = 0; i < n; i++)
+        if (wants_halving(l, flat, &more[i]))
+            whose[halved++] = i;
+#pragma omp parallel for schedule(static) if (halved > AT_FIRST)
+    for (int k = 0; k < halved; k++) {
+        const leaf whole = more[whose[k]];
+        more[whose[k]] = leaf_half(q, &whole, 0);
+        more[n + k] = leaf_half(q, &whole, 1);
+    }
+    free(whose);
+    l->n = n + halved;
+    *any = halved > 0;
+    return true;
+}
+
+static bool has_bounds(const leaves *l)
+{
+    for (int i = 0; i < l->n; i++)
+        if (!(vec3_length(l->leaf[i].c) < HUGE_VAL))
+            return false;
+    /* what is all in one place has but its roundings for a size */
+    return l->radius > 1e-10 * vec3_length(l->centre) && l->radius < HUGE_VAL;
+}
+
+bool leaves_of(const sheet *q, double flat, leaves *l)
+{
+    *l = (leaves){.leaf = malloc(sizeof *l->leaf * (size_t)q->parts)};
+    bool good = l->leaf, any = true;
+    for (int part = 0; good && part < q->parts; part++)
+        l->leaf[l->n++] = leaf_of(q, part, q->u, q->w);
+    while (good && any && l->n < AT_MOST) {
+        measure(l);
+        good = halve(q, flat, l, &any);
+    }
+    if (good) {
+        measure(l);
+        l->n = has_bounds(l) ? l->n : 0;
+        good = l->n > 0;
+    }
+    return good;
+}
+
+void leaves_free(leaves *l)
+{
+    free(l->leaf);
+    *l = (leaves){0};
+}
+
+/* ---- a ray ---- */
+
+leaf_answer leaf_meets(const leaf *f, vec3 r, vec3 s, double lo, double hi, double *a, double *b)
+{
+    /* Where it meets the parallelogram moved by some d, |d| <= e: c + a A + b B + d = r + s t. Cramer's rule. */
+    const vec3 o = vec3_sub(r, f->c), Bs = vec3_cross(f->B, s), sA = vec3_cross(s, f->A);
+    const double det = vec3_dot(f->A, Bs), lBs = vec3_length(Bs), lsA = vec3_length(sA), s2 = vec3_dot(s, s);
+    const double across = vec3_dot(o, Bs), down = vec3_dot(o, sA);
+    if (fabs(across) > fabs(det) + f->e * lBs || fabs(down) > fabs(det) + f->e * lsA)
+        return LEAF_MISSED;
+    const double middle = -vec3_dot(o, s), reach = fabs(vec3_dot(f->A, s)) + fabs(vec3_dot(f->B, s)) + f->e * sqrt(s2);
+    if (middle + reach < lo * s2 || middle - reach > hi * s2)
+        return LEAF_MISSED;
+    *a = *b = 0;
+    if (!(fabs(det) > 2 * (f->ea * lBs + f->eb * lsA + f->ea * f->eb * sqrt(s2))))
+        return LEAF_OPEN;
+    *a = lesser(greater(across / det, -1), 1);
+    *b = lesser(greater(down / det, -1), 1);
+    return LEAF_ONCE;
+}

@@ -1,0 +1,143 @@
+/* The place of a sheet that is nearest to a place in space: Gauss and Newton's iteration on each leaf that is near, the best of them
+ * taken. The places are on the sheet but for a rounding, so that the iteration converges as Newton's does. */
+#include "patch/surface.h"
+
+#include "base/real.h"
+
+#include <math.h>
+
+enum { STEPS = 16 };
+
+#define SETTLED 1e-9
+#define DAMPING 1e-14 /* where Qu or Qw is 0, as at the pole of a sphere, u or w stays as it is */
+
+typedef struct pairs {
+    int n;
+    int32_t lane[SHEET_BATCH], part[SHEET_BATCH];
+    double u[SHEET_BATCH], w[SHEET_BATCH], step[SHEET_BATCH];
+    double u0[SHEET_BATCH], u1[SHEET_BATCH], w0[SHEET_BATCH], w1[SHEET_BATCH];
+    double x[SHEET_BATCH], y[SHEET_BATCH], z[SHEET_BATCH], off[SHEET_BATCH];
+} pairs;
+
+typedef struct errand {
+    const searched *f;
+    const int32_t *only;
+    spots *s;
+    double best[LANES]; /* how far off, squared */
+    int lane;
+    pairs p;
+} errand;
+
+/* One step within each range, and how far the place was off before it, squared. */
+STAGE static void settle_step(pairs *restrict p, const sheet_jets *restrict q)
+{
+    for (int i = 0; i < p->n; i++) {
+        const double ux = q->axis[0].u[i], uy = q->axis[1].u[i], uz = q->axis[2].u[i];
+        const double wx = q->axis[0].w[i], wy = q->axis[1].w[i], wz = q->axis[2].w[i];
+        const double dx = p->x[i] - q->axis[0].v[i], dy = p->y[i] - q->axis[1].v[i], dz = p->z[i] - q->axis[2].v[i];
+        double uu = ux * ux + uy * uy + uz * uz, ww = wx * wx + wy * wy + wz * wz;
+        const double uw = ux * wx + uy * wy + uz * wz, more = DAMPING * (uu + ww) + 1e-300;
+        const double du = dx * ux + dy * uy + dz * uz, dw = dx * wx + dy * wy + dz * wz;
+        uu += more;
+        ww += more;
+        const double k = 1 / (uu * ww - uw * uw);
+        double u = p->u[i] + k * (ww * du - uw * dw), w = p->w[i] + k * (uu * dw - uw * du);
+        u = u > p->u0[i] ? u : p->u0[i];
+        u = u < p->u1[i] ? u : p->u1[i];
+        w = w > p->w0[i] ? w : p->w0[i];
+        w = w < p->w1[i] ? w : p->w1[i];
+        const double a = fabs(u - p->u[i]) / (p->u1[i] - p->u0[i]), b = fabs(w - p->w[i]) / (p->w1[i] - p->w0[i]);
+        p->step[i] = a > b ? a : b;
+        p->off[i] = dx * dx + dy * dy + dz * dz;
+        p->u[i] = u;
+        p->w[i] = w;
+    }
+}
+
+static bool any_open(const pairs *p)
+{
+    for (int i = 0; i < p->n; i++)
+        if (p->step[i] > SETTLED)
+            return true;
+    return false;
+}
+
+/* Of two that are as near, the lower: what the hierarchy's order was must not tell. */
+static bool better(const errand *e, int i, int lane)
+{
+    const pairs *p = &e->p;
+    const spots *s = e->s;
+    if (p->off[i] != e->best[lane])
+        return p->off[i] < e->best[lane];
+    if (p->part[i] != s->part[lane])
+        return p->part[i] < s->part[lane];
+    return p->u[i] != s->u[lane] ? p->u[i] < s->u[lane] : p->w[i] < s->w[lane];
+}
+
+static void solve(errand *e)
+{
+    const sheet *q = e->f->q;
+    pairs *p = &e->p;
+    sheet_jets j;
+    for (int step = 0; step < STEPS && any_open(p); step++) {
+        q->is->eval(q, p->n, p->part, p->u, p->w, 1, &j);
+        settle_step(p, &j);
+    }
+    for (int i = 0; i < p->n; i++) {
+        const int lane = p->lane[i];
+        if (better(e, i, lane)) {
+            e->best[lane] = p->off[i];
+            e->s->part[lane] = p->part[i];
+            e->s->u[lane] = p->u[i];
+            e->s->w[lane] = p->w[i];
+        }
+    }
+    p->n = 0;
+}
+
+static void visit(void *user, int32_t index)
+{
+    errand *e = user;
+    const leaf *f = &e->f->l.leaf[index];
+    const int lane = e->lane;
+    const vec3 at = e->s->place[lane], d = vec3_sub(at, f->c);
+    if ((e->only && e->only[lane] != f->part) || vec3_length(d) > leaf_size(f) + e->s->off[lane])
+        return;
+    pairs *p = &e->p;
+    const int i = p->n++;
+    p->lane[i] = lane;
+    p->part[i] = f->part;
+    p->u0[i] = f->u[0];
+    p->u1[i] = f->u[1];
+    p->w0[i] = f->w[0];
+    p->w1[i] = f->w[1];
+    p->u[i] = f->u[0] + 0.5 * (f->u[1] - f->u[0]);
+    p->w[i] = f->w[0] + 0.5 * (f->w[1] - f->w[0]);
+    p->x[i] = at.x;
+    p->y[i] = at.y;
+    p->z[i] = at.z;
+    p->step[i] = 1;
+    if (p->n == SHEET_BATCH)
+        solve(e);
+}
+
+void settle(const searched *f, int n, const int32_t *only, spots *s)
+{
+    errand e;
+    e.f = f;
+    e.only = only;
+    e.s = s;
+    e.p.n = 0;
+    for (int i = 0; i < n; i++) {
+        e.best[i] = HUGE_VAL;
+        s->part[i] = only ? only[i] : 0;
+        s->u[i] = 0.5 * (f->q->u[0] + f->q->u[1]);
+        s->w[i] = 0.5 * (f->q->w[0] + f->q->w[1]);
+        const vec3 at = vec3_scale(vec3_sub(s->place[i], f->l.centre), 1 / f->l.radius);
+        const float p[3] = {(float)at.x, (float)at.y, (float)at.z};
+        e.lane = i;
+        if (vec3_dot(at, at) < 4) /* what is nowhere near, or NaN, has no place there */
+            bvh_around(f->tree, p, (float)(s->off[i] / f->l.radius) + 1e-6f, visit, &e);
+    }
+    solve(&e);
+}

@@ -1,0 +1,269 @@
+/* Displaced objects as isosurfaces: height over the smooth surface less P is 0 on the rough one.
+ *
+ * max_gradient is a bound, not a guess: from P's Lipschitz constants, on a sphere from interval arithmetic. POV-Ray
+ * drops a stretch of a ray in which the function could not reach 0 by this bound, so too low a one makes holes.
+ */
+#include "povray/parts.h"
+
+#include "povray/expr.h"
+#include "base/frame.h"
+
+#include <stdlib.h>
+
+#define STEEPEST 30.0 /* a bound above this makes an isosurface slower than a mesh */
+
+bool pov_function(pov_text *t, const object *o, const char *name)
+{
+    expr_error wrong;
+    expr *e = expr_parse(o->bump_said.function, &wrong);
+    char *text = e ? expr_pov(e) : NULL;
+    expr_free(e);
+    if (text && o->bump_said.scale == 1)
+        pov_print(t, "#declare %s = function(u, w) { %s }\n", name, text);
+    else if (text)
+        pov_print(t, "#declare %s = function(u, w) { %s*(%s) }\n", name, pov_exact(o->bump_said.scale).text, text);
+    free(text);
+    return text;
+}
+
+/* ---- the bound of the gradient ---- */
+
+static double of_flat(const object *o, int part)
+{
+    pov_flat p = pov_flat_of(o, part);
+    double x = (double)o->bump->Pu_max / vec3_length(p.U), z = (double)o->bump->Pw_max / vec3_length(p.W);
+    return sqrt(1 + x * x + z * z);
+}
+
+/* The steepest place between two latitudes: |grad u| = 1/(r sin w), |grad w| = 1/r. */
+static double of_zone(const expr *e, double scale, double r, double w0, double w1)
+{
+    enum { CELLS = 64 };
+    const double pi = 3.14159265358979323846, sine = fmin(sin(w0), sin(w1));
+    double worst = 0;
+    for (int i = 0; i < CELLS; i++) {
+        expr_bounds b;
+        expr_range_gradient(e, pi * (2.0 * i / CELLS - 1), pi * (2.0 * (i + 1) / CELLS - 1), w0, w1, &b);
+        double x = fmax(fabs(b.u[0]), fabs(b.u[1])) / (r * sine), z = fmax(fabs(b.w[0]), fabs(b.w[1])) / r;
+        worst = fmax(worst, sqrt(1 + scale * scale * (x * x + z * z)));
+    }
+    return worst;
+}
+
+/* Rays also come to where angles turn without bound: in glass, through a torus' hole, from an eye within. So a round one's function is
+ * level from this share of the way on that leads from the nearest rough place to there. */
+#define LEVEL 0.25
+
+/* How far from such a place the rough surface stays: a sphere's centre, a cylinder's axis or a torus' tube; a torus' own axis. */
+static double least_within(const object *o)
+{
+    const shape_spec f = pov_sized(o);
+    return f.radius[f.kind == SHAPE_TORUS] + (double)o->bump->Pmin;
+}
+
+static double least_hole(const object *o)
+{
+    const shape_spec f = pov_sized(o);
+    return f.radius[0] - f.radius[1] - (double)o->bump->Pmax;
+}
+
+/* u turns about the poles ever faster, and the gradient is infinite there unless P does not depend on u. Zones that narrow
+ * towards the poles bound it up to a cap of CAP radians, which is left out: a thousandth of the radius is less than a pixel. */
+static double of_sphere(const object *o)
+{
+    const double CAP = 1e-3, GROWTH = 1.05, WIDEST = 0.05, half = 3.14159265358979323846 / 2;
+    const double r = (1 - LEVEL) * least_within(o), scale = fabs(o->bump_said.scale);
+    double worst = 0;
+    expr_error wrong;
+    expr *e = r > 0 ? expr_parse(o->bump_said.function, &wrong) : NULL;
+    if (!e)
+        return HUGE_VAL;
+    for (double w = CAP; w < half && worst < STEEPEST;) {
+        double next = fmin(fmin(w * GROWTH, w + WIDEST), half);
+        worst = fmax(worst, fmax(of_zone(e, scale, r, w, next), of_zone(e, scale, r, 2 * half - next, 2 * half - w)));
+        w = next;
+    }
+    expr_free(e);
+    return worst;
+}
+
+/* How fast P can change with an angle about a place to which the rough surface keeps a distance r. */
+static double turning(double slope, double r) { return r > 0 ? slope / ((1 - LEVEL) * r) : HUGE_VAL; }
+
+/* The directions of height, u and w are at right angles. */
+static double of_cylinder(const object *o)
+{
+    double u = turning((double)o->bump->Pu_max, least_within(o)), w = (double)o->bump->Pw_max / pov_scale(o);
+    return sqrt(1 + u * u + w * w);
+}
+
+static double of_torus(const object *o)
+{
+    double u = turning((double)o->bump->Pu_max, least_hole(o)), w = turning((double)o->bump->Pw_max, least_within(o));
+    return sqrt(1 + u * u + w * w);
+}
+
+static double of_part(const object *o, int part)
+{
+    const shape_spec *f = &o->shape_said;
+    if (pov_is_flat(f, part))
+        return of_flat(o, part);
+    if (f->kind == SHAPE_SPHERE)
+        return of_sphere(o);
+    if (f->kind == SHAPE_TORUS)
+        return of_torus(o);
+    return f->radius[0] == f->radius[1] ? of_cylinder(o) : HUGE_VAL; /* a displaced cone ends on cones, which no container does */
+}
+
+double pov_isosurface_gradient(const object *o, int part)
+{
+    if (!o->bump_said.function)
+        return HUGE_VAL;
+    double g = of_part(o, part);
+    return g < STEEPEST ? g * (1 + 1e-6) : HUGE_VAL;
+}
+
+/* ---- writing ---- */
+
+/* Mirrors and glass multiply what a hit is off. */
+static double accuracy(const scene *s, const object *o)
+{
+    return (material_sends(&s->material[o->material]) ? 2e-9 : 1e-7) * vec3_length(vec3_sub(s->view.at, s->camera.from));
+}
+
+static void put_over(pov_text *t, const char *x, double length)
+{
+    pov_print(t, length == 1 ? "%s" : "%s/%s", x, pov_exact(length).text);
+}
+
+static void put_flat(pov_text *t, const scene *s, const object *o, int part, const char *name)
+{
+    const pov_flat p = pov_flat_of(o, part);
+    const double lu = vec3_length(p.U), lw = vec3_length(p.W);
+    double u[2] = {0, 1}, w[2] = {0, 1}, y[2];
+    pov_levels(o, y);
+    const double rim = pov_rim(&o->shape_said, part);
+    if (rim >= 0) {
+        u[0] = w[0] = -rim;
+        u[1] = w[1] = rim;
+    }
+    if (o->shape_said.kind == SHAPE_PLANE) {
+        pov_plane_region(s, o, u, w);
+        pov_print(t, "// The plane has no end; here it is cut to what the camera sees and what can shade that.\n");
+    }
+    pov_print(t, "isosurface {\n  function { y - %s(", name);
+    put_over(t, "x", lu);
+    pov_print(t, ", ");
+    put_over(t, "z", lw);
+    pov_print(t, ") }\n  contained_by { box { <%g, %g, %g>, <%g, %g, %g> } }\n", u[0] * lu, y[0], w[0] * lw, u[1] * lu, y[1],
+              w[1] * lw);
+    pov_print(t, "  open\n  accuracy %g\n  max_gradient %g // a bound: none is steeper\n", accuracy(s, o),
+              pov_isosurface_gradient(o, part));
+    pov_matrix(t, p.x, p.y, p.z, p.O);
+    pov_print(t, " // x along u, y the height, z along w, origin\n");
+    if (rim >= 0)
+        pov_clip_rim(t, o, part);
+}
+
+/* Its own space into the scene's, but for the size, which pov_sized has. */
+static void put_motion(pov_text *t, const object *o)
+{
+    const double k = 1 / pov_scale(o);
+    if (!o->moved)
+        return;
+    pov_matrix(t, vec3_scale(o->placed.x, k), vec3_scale(o->placed.y, k), vec3_scale(o->placed.z, k), o->placed.o);
+    pov_print(t, " // the object's transform\n");
+}
+
+/* A round one's function begins, and ends. */
+static void begin_function(pov_text *t, const object *o)
+{
+    pov_print(t, "isosurface {\n  function {\n    %smax(", o->shape_said.kind == SHAPE_TORUS ? "min(" : "");
+}
+
+static void end_function(pov_text *t, const object *o)
+{
+    pov_print(t, ", -%s)", pov_exact(LEVEL * least_within(o)).text);
+    if (o->shape_said.kind == SHAPE_TORUS)
+        pov_print(t, ", %s)", pov_exact(LEVEL * least_hole(o)).text);
+    pov_print(t, "\n  }\n");
+}
+
+static void put_sphere(pov_text *t, const scene *s, const object *o, const char *name)
+{
+    const shape_spec f = pov_sized(o);
+    double y[2], radius = f.radius[0];
+    pov_levels(o, y);
+    begin_function(t, o);
+    pov_print(t, "sqrt(x*x + y*y + z*z) - %s\n    - %s(%s, atan2(sqrt(x*x + z*z), y))", pov_exact(radius).text, name, pov_around(o));
+    end_function(t, o);
+    pov_print(t, "  contained_by { sphere { 0, %g } }\n  accuracy %g\n", radius + y[1], accuracy(s, o));
+    pov_print(t, "  max_gradient %g // a bound but for 0.001 radians around the poles\n  translate %v\n",
+              pov_isosurface_gradient(o, 0), f.a);
+    put_motion(t, o);
+}
+
+/* The side of a cylinder; y is its axis. */
+static void put_side(pov_text *t, const scene *s, const object *o, const char *name)
+{
+    const shape_spec f = pov_sized(o);
+    const vec3 axis = vec3_sub(f.u, f.a);
+    const frame a = frame_about(axis);
+    double y[2], radius = f.radius[0], length = vec3_length(axis);
+    pov_levels(o, y);
+    begin_function(t, o);
+    pov_print(t, "sqrt(x*x + z*z) - %s\n    - %s(%s, ", pov_exact(radius).text, name, pov_around(o));
+    pov_print(t, pov_scale(o) == 1 ? "%s - y" : "(%s - y)", pov_exact(length).text);
+    put_over(t, "", pov_scale(o));
+    pov_print(t, ")");
+    end_function(t, o);
+    pov_print(t, "  contained_by { box { <%g, 0, %g>, <%g, %g, %g> } }\n", -radius - y[1], -radius - y[1], radius + y[1], length,
+              radius + y[1]);
+    pov_print(t, "  open\n  accuracy %g\n  max_gradient %g // a bound: none is steeper\n", accuracy(s, o),
+              pov_isosurface_gradient(o, 0));
+    pov_matrix(t, a.x, a.y, a.z, f.a);
+    pov_print(t, " // y is the axis\n");
+    put_motion(t, o);
+}
+
+static void put_torus(pov_text *t, const scene *s, const object *o, const char *name)
+{
+    const shape_spec f = pov_sized(o);
+    const frame a = frame_about(f.u);
+    double y[2];
+    pov_levels(o, y);
+    const double wide = f.radius[0] + f.radius[1] + y[1], high = f.radius[1] + y[1];
+    const pov_digits major = pov_exact(f.radius[0]);
+    begin_function(t, o);
+    pov_print(t, "sqrt(pow(sqrt(x*x + z*z) - %s, 2) + y*y) - %s\n", major.text, pov_exact(f.radius[1]).text);
+    pov_print(t, "    - %s(%s, atan2(-y, sqrt(x*x + z*z) - %s))", name, pov_around(o), major.text);
+    end_function(t, o);
+    pov_print(t, "  contained_by { box { <%g, %g, %g>, <%g, %g, %g> } }\n", -wide, -high, -wide, wide, high, wide);
+    pov_print(t, "  accuracy %g\n  max_gradient %g // a bound: none is steeper\n", accuracy(s, o), pov_isosurface_gradient(o, 0));
+    pov_matrix(t, a.x, a.y, a.z, f.a);
+    pov_print(t, " // y is the axis\n");
+    put_motion(t, o);
+}
+
+static void put_part(pov_text *t, const scene *s, const object *o, int part, const char *name)
+{
+    const shape_kind kind = o->shape_said.kind;
+    if (pov_is_flat(&o->shape_said, part))
+        put_flat(t, s, o, part, name);
+    else
+        (kind == SHAPE_SPHERE ? put_sphere : kind == SHAPE_TORUS ? put_torus : put_side)(t, s, o, name);
+}
+
+void pov_isosurface(pov_text *t, const scene *s, const object *o, const char *name)
+{
+    const int parts = o->shape->is->parts;
+    if (parts > 1)
+        pov_print(t, "union {\n");
+    for (int part = 0; part < parts; part++) {
+        put_part(t, s, o, part, name);
+        if (pov_by_parts(s, o))
+            pov_texture(t, s, o, part);
+        if (parts > 1)
+            pov_print(t, "}\n");
+    }
+}

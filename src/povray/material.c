@@ -1,0 +1,245 @@
+/* Materials for the POV-Ray writer. A colour that is not constant becomes a pigment in the surface's own (u,w): on a flat surface in its
+ * frame, on a round one by a warp of POV-Ray's, about y, whose x is u/2pi in 0..1, and on a mesh that says them by its vertices' (u,w).
+ */
+#include "povray/parts.h"
+
+#include "base/frame.h"
+
+#include <string.h>
+
+#define PI 3.14159265358979323846
+
+/* ---- what has to do ---- */
+
+/* Whether all of the surface is on the image. */
+static bool covers(const object *o)
+{
+    double u[2], w[2];
+    const map_layout *l = &o->color_layout;
+    o->shape->is->extent(o->shape, 0, u, w);
+    return l->offset[0] <= u[0] && l->offset[0] + l->size[0] >= u[1] && l->offset[1] <= w[0] && l->offset[1] + l->size[1] >= w[1];
+}
+
+bool pov_possible(const scene *s, errors *e)
+{
+    bool good = true;
+    for (int k = 0; k < s->objects; k++) {
+        const object *o = &s->object[k];
+        const material *m = &s->material[o->material];
+        if (m->pattern == PATTERN_IMAGE && m->layout.wrap != MAP_REPEAT && !(m->layout.wrap == MAP_CLAMP && m->nearest && covers(o)))
+            good = errors_add(e, "%s: object %s: POV-Ray's images repeat and do nothing else, expected 'wrap: repeat' in material %s%s", s->path,
+                              o->name, m->name,
+                              m->layout.wrap == MAP_CLAMP ? ", or 'interpolation: nearest' on an image as large as the surface" : "");
+    }
+    return good;
+}
+
+/* ---- materials ---- */
+
+static void put_color(pov_text *t, const material *m, vec3 color)
+{
+    if (material_clear(m))
+        pov_print(t, "color rgb %v filter %g transmit %g", color, m->filter, m->transmit);
+    else
+        pov_print(t, "color rgb %v", color);
+}
+
+static void put_finish(pov_text *t, const material *m, const char *in)
+{
+    pov_print(t, "%sfinish {\n%s  ambient %g\n%s  diffuse %g\n%s  phong %g phong_size %g\n%s  specular %g roughness %g\n", in, in,
+              m->ambient, in, m->diffuse, in, m->phong, m->phong_size, in, m->specular, m->roughness);
+    if (material_mirrors(m))
+        pov_print(t, "%s  reflection { rgb %v }\n", in, m->reflection);
+    pov_print(t, "%s}\n", in);
+}
+
+static void put_plain(pov_text *t, const material *m, const char *name)
+{
+    pov_print(t, "#declare %s = texture {\n  pigment { ", name);
+    put_color(t, m, m->color);
+    pov_print(t, " }\n");
+}
+
+void pov_materials(pov_text *t, const scene *s)
+{
+    bool checkers = false;
+    for (int k = 0; k < s->materials; k++) {
+        const material *m = &s->material[k];
+        checkers |= m->pattern == PATTERN_CHECKER;
+        if (m->pattern)
+            pov_print(t, "#declare %s =\n", pov_identify("Finish", m->name, k).text);
+        else
+            put_plain(t, m, pov_identify("Material", m->name, k).text);
+        put_finish(t, m, "  ");
+        pov_print(t, m->pattern ? "\n" : "}\n\n");
+    }
+    if (checkers)
+        pov_print(t, "// 0 on the even fields, 1/2 on the odd ones\n"
+                     "#declare Checker = function(u, w) { 0.5*(floor(u) + floor(w)) - floor(0.5*(floor(u) + floor(w))) }\n\n");
+}
+
+/* ---- (u,w) on round surfaces ---- */
+
+/* In a frame about y, u is an angle from x to z, or, where a transform mirrors, from z to x. */
+typedef struct winding {
+    char w[160]; /* as a function of x, y and z */
+    char warp[80];
+    double low, rate; /* the warp's y is low + rate w */
+    frame axes;
+} winding;
+
+static winding winding_of(const object *o)
+{
+    const shape_spec *f = &o->shape_said;
+    const vec3 up = {0, 1, 0};
+    winding a;
+    if (f->kind == SHAPE_SPHERE) {
+        snprintf(a.w, sizeof a.w, "atan2(sqrt(x*x + z*z), y)");
+        snprintf(a.warp, sizeof a.warp, "spherical");
+        a.low = 1;
+        a.rate = -1 / PI;
+        a.axes = frame_about(up);
+    } else if (f->kind == SHAPE_TORUS) {
+        const pov_digits major = pov_exact(f->radius[0]);
+        snprintf(a.w, sizeof a.w, "atan2(-y, sqrt(x*x + z*z) - %s)", major.text);
+        snprintf(a.warp, sizeof a.warp, "toroidal major_radius %s", major.text);
+        a.low = 0.5;
+        a.rate = -0.5 / PI;
+        a.axes = frame_about(f->u);
+    } else { /* the side of a cylinder or cone: w is the way down it */
+        const vec3 axis = vec3_sub(f->u, f->a);
+        const double high = vec3_length(axis), slant = hypot(high, f->radius[1] - f->radius[0]) / high;
+        if (slant > 1)
+            snprintf(a.w, sizeof a.w, "%s*(%s - y)", pov_exact(slant).text, pov_exact(high).text);
+        else
+            snprintf(a.w, sizeof a.w, "%s - y", pov_exact(high).text);
+        snprintf(a.warp, sizeof a.warp, "cylindrical");
+        a.low = high;
+        a.rate = -1 / slant;
+        a.axes = frame_about(axis);
+    }
+    return a;
+}
+
+/* ---- pigments ---- */
+
+static void put_checker(pov_text *t, const material *m, const map_layout *l, const char *u, const char *w)
+{
+    pov_print(t, "    function { Checker((%s - %s)/%s, ", u, pov_exact(l->offset[0]).text, pov_exact(l->size[0]).text);
+    pov_print(t, "(%s - %s)/%s) }\n", w, pov_exact(l->offset[1]).text, pov_exact(l->size[1]).text);
+    pov_print(t, "    color_map { [0.25 ");
+    put_color(t, m, m->field[0]);
+    pov_print(t, "] [0.25 ");
+    put_color(t, m, m->field[1]);
+    pov_print(t, "] }\n");
+}
+
+static void put_image_map(pov_text *t, const material *m)
+{
+    pov_print(t, "image_map { %s \"", m->exr ? "exr" : "png");
+    for (const char *c = m->file; *c; c++)
+        pov_print(t, *c == '"' || *c == '\\' ? "\\%s" : "%s", (char[2]){*c, 0});
+    pov_print(t, "\"%s", m->exr ? "" : m->linear ? " gamma 1" : " gamma srgb");
+    if (material_clear(m))
+        pov_print(t, " filter all %g transmit all %g", m->filter, m->transmit);
+    pov_print(t, "%s }", m->nearest ? "" : " interpolate 2");
+}
+
+/* In POV-Ray an image's lower left corner is in the origin. */
+static void put_flat_image(pov_text *t, const material *m, const map_layout *l)
+{
+    pov_print(t, "    ");
+    put_image_map(t, m);
+    pov_print(t, "\n    scale <1, -1, 1> translate y // its first row at the lowest w\n");
+    pov_print(t, "    scale <%g, %g, 1> translate <%g, %g, 0>\n", l->size[0], l->size[1], l->offset[0], l->offset[1]);
+}
+
+/* `turns`: 1 for angles below 0. */
+static void put_wound_image(pov_text *t, const object *o, const material *m, const winding *a, int turns)
+{
+    const map_layout *l = &o->color_layout;
+    const double around = (pov_mirrored(o) ? -0.5 : 0.5) / PI;
+    put_image_map(t, m);
+    pov_print(t, "\n      scale <%g, %g, 1> translate <%g, %g, 0> warp { %s orientation z dist_exp 0 }\n", l->size[0] * around,
+              -l->size[1] * a->rate, l->offset[0] * around + turns, a->low + a->rate * (l->offset[1] + l->size[1]), a->warp);
+}
+
+/* An image that does not close around the surface has its seam at u = pi, where z changes its sign behind the axis. */
+static void put_round_image(pov_text *t, const object *o, const material *m, const winding *a)
+{
+    const double times = 2 * PI / o->color_layout.size[0];
+    if (fabs(times - floor(times + 0.5)) < 1e-9) {
+        pov_print(t, "      ");
+        put_wound_image(t, o, m, a, 0);
+        return;
+    }
+    pov_print(t, "    function { select(z, 0, 1) }\n    pigment_map {\n      [0.5 ");
+    put_wound_image(t, o, m, a, 1);
+    pov_print(t, "      ]\n      [0.5 ");
+    put_wound_image(t, o, m, a, 0);
+    pov_print(t, "      ]\n    }\n");
+}
+
+/* Where x is u and y is w. */
+static void put_plane_pigment(pov_text *t, const object *o, const material *m)
+{
+    if (m->pattern == PATTERN_CHECKER)
+        put_checker(t, m, &o->color_layout, "x", "y");
+    else
+        put_flat_image(t, m, &o->color_layout);
+}
+
+static void put_flat_pigment(pov_text *t, const object *o, const material *m, int part)
+{
+    const pov_flat p = pov_flat_of(o, part);
+    put_plane_pigment(t, o, m);
+    pov_print(t, "  ");
+    pov_matrix(t, p.U, p.W, p.y, p.O);
+    pov_print(t, "\n");
+}
+
+static void put_round_pigment(pov_text *t, const object *o, const material *m)
+{
+    const winding a = winding_of(o);
+    if (m->pattern == PATTERN_CHECKER)
+        put_checker(t, m, &o->color_layout, pov_around(o), a.w);
+    else
+        put_round_image(t, o, m, &a);
+    pov_print(t, "  ");
+    pov_matrix(t, a.axes.x, a.axes.y, a.axes.z, o->shape_said.a);
+    pov_print(t, " // y is the axis\n");
+    if (o->moved) {
+        pov_print(t, "  ");
+        pov_matrix(t, o->placed.x, o->placed.y, o->placed.z, o->placed.o);
+        pov_print(t, "\n");
+    }
+}
+
+void pov_texture(pov_text *t, const scene *s, const object *o, int part)
+{
+    const material *m = &s->material[o->material];
+    if (!m->pattern) {
+        pov_print(t, "  texture { %s }\n", pov_identify("Material", m->name, o->material).text);
+        return;
+    }
+    /* said of the texture: said of the pigment, shadows would not know */
+    pov_print(t, "  texture {\n%s    pigment { // in (u, w)\n", pov_by_uv(s, o) ? "    uv_mapping\n" : "");
+    if (pov_by_uv(s, o))
+        put_plane_pigment(t, o, m);
+    else if (pov_is_flat(&o->shape_said, part))
+        put_flat_pigment(t, o, m, part);
+    else
+        put_round_pigment(t, o, m);
+    pov_print(t, "    }\n    finish { %s }\n  }\n", pov_identify("Finish", m->name, o->material).text);
+}
+
+bool pov_by_uv(const scene *s, const object *o)
+{
+    const bool cone = o->shape_said.kind == SHAPE_CONE && s->displaced && o->bump; /* by no warp: its w is that of the foot */
+    return s->material[o->material].pattern && (cone || pov_is_sheet(s, o) || o->shape_said.kind == SHAPE_MESH);
+}
+
+bool pov_by_parts(const scene *s, const object *o)
+{
+    return s->material[o->material].pattern && o->shape->is->parts > 1 && !pov_by_uv(s, o);
+}

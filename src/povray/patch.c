@@ -1,0 +1,186 @@
+/* Surfaces that POV-Ray has no shape for, smooth or displaced: one mesh2 with a vertex at each line of a grid over (u,w), the same on
+ * every part, so that parts that join have the same vertices there. Its normals are the surface's own.
+ */
+#include "povray/parts.h"
+
+#include "displaced/offset.h"
+#include "povray/vertices.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST_TRIANGLES = 1500000, PROBES = 64, LEAST = 8, FINEST = 4096 };
+
+#define PIXELS 3.0  /* a cell's side on the screen: what is bent less than TURN has no corner there */
+#define TURN 0.012  /* between the normals of neighbours, radians: a facet that shades its neighbour does so where light counts for
+                       less than a step of 1/255 */
+
+typedef struct grid {
+    const scene *s;
+    const object *o;
+    bool rough;
+    int n[2]; /* cells along u and along w */
+} grid;
+
+static double line(const double range[2], int i, int n) { return i == n ? range[1] : range[0] + (range[1] - range[0]) * i / n; }
+
+static void put_lane(float to[3], bs_vec3 x)
+{
+    to[0] = (float)x.x;
+    to[1] = (float)x.y;
+    to[2] = (float)x.z;
+}
+
+/* A line of the grid along u: n[0] + 1 vertices. */
+static void evaluate(const grid *g, int part, int row, pov_vertex *out)
+{
+    double U[2], W[2];
+    const surface *f = g->o->shape;
+    f->is->extent(f, part, U, W);
+    for (int first = 0; first <= g->n[0]; first += LANES) {
+        const int n = g->n[0] + 1 - first < LANES ? g->n[0] + 1 - first : LANES;
+        real u[LANES], w[LANES];
+        int32_t parts[LANES];
+        partials q;
+        heights h;
+        for (int i = 0; i < n; i++) {
+            u[i] = (real)line(U, first + i, g->n[0]);
+            w[i] = (real)line(W, row, g->n[1]);
+            parts[i] = part;
+            h.P[i] = h.Pu[i] = h.Pw[i] = 0;
+        }
+        f->is->eval(f, n, parts, u, w, 2, &q);
+        if (g->rough)
+            g->o->bump->is->eval(g->o->bump, n, u, w, 1, &h);
+        for (int i = 0; i < n; i++) {
+            const bs_vec3 Qu = lane_get(&q.Qu, i), Qw = lane_get(&q.Qw, i);
+            const offset o = offset_of(Qu, Qw, lane_get(&q.Quu, i), lane_get(&q.Quw, i), lane_get(&q.Qww, i), h.P[i]);
+            put_lane(out[first + i].at, offset_mix(lane_get(&q.Q, i), h.P[i], o.n));
+            put_lane(out[first + i].normal, bs_regular(bs_normal(Qu, Qw), Qu, Qw) ? offset_normal(o, h.Pu[i], h.Pw[i]) : o.n);
+            out[first + i].uv[0] = (float)u[i];
+            out[first + i].uv[1] = (float)w[i];
+        }
+    }
+}
+
+/* ---- how fine ---- */
+
+static double pixels_between(const scene *s, const float a[3], const float b[3])
+{
+    const camera *c = &s->camera;
+    vec3 d = {(double)b[0] - (double)a[0], (double)b[1] - (double)a[1], (double)b[2] - (double)a[2]};
+    vec3 to = vec3_sub((vec3){(double)a[0], (double)a[1], (double)a[2]}, c->from);
+    const double depth = vec3_dot(to, c->forward), step = vec3_length(d);
+    return depth > step ? step / depth * s->width / (2 * vec3_length(c->right)) : PIXELS;
+}
+
+static double turn_between(const float a[3], const float b[3])
+{
+    const double x = (double)b[0] - (double)a[0], y = (double)b[1] - (double)a[1], z = (double)b[2] - (double)a[2];
+    const double turn = sqrt(x * x + y * y + z * z);
+    return turn < HUGE_VAL ? turn : 0; /* where there is no normal */
+}
+
+static void probe(const pov_vertex *a, const pov_vertex *b, const grid *g, double *most)
+{
+    *most = fmax(*most, fmax(pixels_between(g->s, a->at, b->at) / PIXELS, turn_between(a->normal, b->normal) / TURN));
+}
+
+/* So many cells along u and w that the coarsest of them is fine enough, by a grid of probes on each part. */
+static bool measure(grid *g)
+{
+    const int parts = g->o->shape->is->parts;
+    pov_vertex *row = malloc(sizeof *row * 2 * (PROBES + 1)), *last = row + PROBES + 1;
+    double most[2] = {0, 0};
+    if (!row)
+        return false;
+    g->n[0] = g->n[1] = PROBES;
+    for (int part = 0; part < parts; part++)
+        for (int j = 0; j <= PROBES; j++) {
+            evaluate(g, part, j, row);
+            for (int i = 0; i <= PROBES; i++) {
+                if (i > 0)
+                    probe(&row[i - 1], &row[i], g, &most[0]);
+                if (j > 0)
+                    probe(&last[i], &row[i], g, &most[1]);
+            }
+            memcpy(last, row, sizeof *row * (PROBES + 1));
+        }
+    free(row);
+    for (int a = 0; a < 2; a++)
+        g->n[a] = (int)fmin(fmax(ceil(PROBES * most[a]), LEAST), FINEST);
+    const double all = 2.0 * g->n[0] * g->n[1] * parts;
+    for (int a = 0; a < 2 && all > MOST_TRIANGLES; a++)
+        g->n[a] = (int)fmax(g->n[a] * sqrt(MOST_TRIANGLES / all), LEAST);
+    return true;
+}
+
+/* A map's samples are to be on lines of the grid: between them it is bilinear. */
+static void fit_map(grid *g)
+{
+    const object *o = g->o;
+    const map_layout *m = &o->bump_said.layout;
+    const int samples[2] = {o->map.width, o->map.height};
+    double range[2][2];
+    o->shape->is->extent(o->shape, 0, range[0], range[1]);
+    for (int a = 0; a < 2; a++) {
+        /* in the middle of cells: two lines for each */
+        const double lines = (range[a][1] - range[a][0]) / m->size[a] * (m->corners ? samples[a] - 1 : 2 * samples[a]);
+        const int each = (int)(lines + 0.5);
+        if (each > 0 && each <= FINEST)
+            g->n[a] = (g->n[a] + each - 1) / each * each;
+    }
+}
+
+/* ---- writing ---- */
+
+static bool same(const pov_vertex *a, const pov_vertex *b) { return memcmp(a->at, b->at, sizeof a->at) == 0; }
+
+/* The two triangles of each cell, but for those without an area; counted, or written. */
+static int faces(pov_text *t, const grid *g, const pov_vertex *v)
+{
+    const int row = g->n[0] + 1, all = (g->n[1] + 1) * row;
+    int n = 0;
+    for (int part = 0; part < g->o->shape->is->parts; part++)
+        for (int j = 0; j < g->n[1]; j++)
+            for (int i = 0; i < g->n[0]; i++) {
+                const int a = part * all + j * row + i, corner[2][3] = {{a, a + 1, a + row + 1}, {a, a + row + 1, a + row}};
+                for (int k = 0; k < 2; k++) {
+                    const int *c = corner[k];
+                    if (same(&v[c[0]], &v[c[1]]) || same(&v[c[1]], &v[c[2]]) || same(&v[c[2]], &v[c[0]]))
+                        continue;
+                    if (t)
+                        pov_print(t, n % 8 ? ",<%d,%d,%d>" : n ? ",\n<%d,%d,%d>" : "\n<%d,%d,%d>", c[0], c[1], c[2]);
+                    n++;
+                }
+            }
+    return n;
+}
+
+static void put_mesh(pov_text *t, const grid *g, const pov_vertex *v, int n)
+{
+    pov_print(t, "// a mesh made for %d x %d pixels: %d x %d cells%s\n", g->s->width, g->s->height, g->n[0], g->n[1],
+              g->o->shape->is->parts > 1 ? " a part" : "");
+    pov_begin_mesh(t, v, n, pov_by_uv(g->s, g->o));
+    pov_print(t, "  face_indices { %d,", faces(NULL, g, v));
+    faces(t, g, v);
+    pov_print(t, " }\n");
+}
+
+bool pov_sheet(pov_text *t, const scene *s, const object *o)
+{
+    grid g = {.s = s, .o = o, .rough = s->displaced && o->bump};
+    if (!measure(&g))
+        return false;
+    if (g.rough && o->map.file)
+        fit_map(&g);
+    const int row = g.n[0] + 1, all = (g.n[1] + 1) * row, parts = o->shape->is->parts;
+    pov_vertex *v = malloc(sizeof *v * (size_t)all * (size_t)parts);
+    for (int part = 0; v && part < parts; part++)
+        for (int j = 0; j <= g.n[1]; j++)
+            evaluate(&g, part, j, v + part * all + j * row);
+    if (v)
+        put_mesh(t, &g, v, all * parts);
+    free(v);
+    return v;
+}

@@ -1,0 +1,105 @@
+#include "povray/text.h"
+
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+bool pov_begin(pov_text *t, const char *path, errors *e)
+{
+    t->size = 0;
+    t->used = 0;
+    return image_file_open(&t->file, path, e);
+}
+
+static void flush(pov_text *t)
+{
+    image_file_write(&t->file, t->buffer, t->used, t->size);
+    t->size += t->used;
+    t->used = 0;
+}
+
+bool pov_end(pov_text *t, const char *why, errors *e)
+{
+    flush(t);
+    return image_file_close(&t->file, why, e);
+}
+
+static void put(pov_text *t, const char *from, size_t n)
+{
+    while (n > 0) {
+        size_t room = sizeof t->buffer - t->used, m = n < room ? n : room;
+        memcpy(t->buffer + t->used, from, m);
+        t->used += m;
+        from += m;
+        n -= m;
+        if (t->used == sizeof t->buffer)
+            flush(t);
+    }
+}
+
+/* In some locales the decimal sign is another one, even of several bytes. */
+pov_digits pov_number(double x, int digits)
+{
+    pov_digits d;
+    char raw[sizeof d.text];
+    size_t n = 0;
+    snprintf(raw, sizeof raw, "%.*g", digits, x == 0 ? 0 : x); /* no -0 */
+    for (const char *c = raw; *c; c++) {
+        bool plain = strchr("0123456789+-abcdefghijklmnopqrstuvwxyz", *c);
+        if (plain || n == 0 || d.text[n - 1] != '.')
+            d.text[n++] = plain ? *c : '.';
+    }
+    d.text[n] = 0;
+    return d;
+}
+
+pov_digits pov_exact(double x)
+{
+    char raw[40];
+    int digits = 6;
+    for (; digits < 17; digits++) {
+        snprintf(raw, sizeof raw, "%.*g", digits, x);
+        if (strtod(raw, NULL) == x)
+            break;
+    }
+    return pov_number(x, digits);
+}
+
+static void put_number(pov_text *t, double x)
+{
+    pov_digits d = pov_number(x, 9);
+    put(t, d.text, strlen(d.text));
+}
+
+void pov_print(pov_text *t, const char *fmt, ...)
+{
+    va_list args;
+    va_start(args, fmt);
+    for (const char *c = fmt; *c;) {
+        size_t plain = strcspn(c, "%");
+        put(t, c, plain);
+        c += plain;
+        if (!*c)
+            break;
+        if (c[1] == 's') {
+            const char *s = va_arg(args, const char *);
+            put(t, s, strlen(s));
+        } else if (c[1] == 'd') {
+            char text[16];
+            put(t, text, (size_t)snprintf(text, sizeof text, "%d", va_arg(args, int)));
+        } else if (c[1] == 'g')
+            put_number(t, va_arg(args, double));
+        else {
+            vec3 v = va_arg(args, vec3);
+            put(t, "<", 1);
+            put_number(t, v.x);
+            put(t, ", ", 2);
+            put_number(t, v.y);
+            put(t, ", ", 2);
+            put_number(t, v.z);
+            put(t, ">", 1);
+        }
+        c += 2;
+    }
+    va_end(args);
+}

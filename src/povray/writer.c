@@ -1,0 +1,240 @@
+/* The POV-Ray file as a whole: camera, lights, materials, objects. Displaced objects are in pov_isosurface.c and pov_mesh.c. */
+#include "povray/parts.h"
+
+#include "base/frame.h"
+
+#include <string.h>
+
+pov_identifier pov_identify(const char *kind, const char *name, int index)
+{
+    pov_identifier d;
+    if (strchr(name, '-'))
+        snprintf(d.text, sizeof d.text, "%s%d_%s", kind, index, name);
+    else
+        snprintf(d.text, sizeof d.text, "%s_%s", kind, name);
+    for (char *c = d.text; *c; c++)
+        *c = *c == '-' ? '_' : *c;
+    return d;
+}
+
+/* The base name: a file says nothing of the machine that made it. */
+static void put_head(pov_text *t, const scene *s, const pov_options *o)
+{
+    const char *slash = strrchr(s->path, '/');
+    char name[256];
+    snprintf(name, sizeof name, "%s", slash ? slash + 1 : s->path);
+    for (char *c = name; *c; c++)
+        *c = (unsigned char)*c < 0x20 ? '?' : *c;
+    pov_print(t, "// %s, %s, for POV-Ray 3.7\n", name, s->displaced ? "with its bumps truly displaced" : "without bumps");
+    pov_print(t, "// made by: %s\n", o->command);
+    bool images = false;
+    for (int k = 0; k < s->materials; k++)
+        images |= s->material[k].pattern == PATTERN_IMAGE;
+    pov_print(t, "// render:  povray +I<this file> +O<picture>.exr +FE +W%d +H%d", s->width, s->height);
+    if (s->aa > 1 && s->aa_threshold >= 0)
+        pov_print(t, " +A%g +AM1 +R%d -J", s->aa_threshold, s->aa < 9 ? s->aa : 9);
+    else
+        pov_print(t, " -A");
+    pov_print(t, " -D%s\n\n", images ? " +L<the scene's folder>" : "");
+    pov_print(t, "#version 3.7;\n"
+                 "global_settings { assumed_gamma 1 ambient_light rgb 1");
+    if (s->sends)
+        pov_print(t, " max_trace_level %d adc_bailout 0", s->depth);
+    pov_print(t, " }\n\n");
+}
+
+static void put_camera(pov_text *t, const scene *s)
+{
+    const camera_view *v = &s->view;
+    if (s->camera.orthographic)
+        pov_print(t, "camera {\n  orthographic\n  location %v\n  sky %v\n  right x*%g\n  up y*%g*image_height/image_width\n"
+                     "  look_at %v\n}\n\n",
+                  s->camera.from, v->up, v->width, v->width, v->at);
+    else
+        pov_print(t, "camera {\n  perspective\n  location %v\n  sky %v\n  right x*image_width/image_height\n  up y\n"
+                     "  angle %g // horizontal\n  look_at %v\n}\n\n",
+                  s->camera.from, v->up, v->fov, v->at);
+    pov_print(t, "background { color rgb %v }\n\n", s->background);
+}
+
+/* An area is halved down to each of its samples (`adaptive`), as here none is left out. */
+static void put_light(pov_text *t, const light *l)
+{
+    pov_print(t, "light_source { %v color rgb %v", l->at, l->color);
+    if (l->kind == LIGHT_SPOT)
+        pov_print(t, "\n  spotlight point_at %v radius %g falloff %g tightness %g", l->to, l->radius, l->falloff, l->tightness);
+    if (l->kind == LIGHT_PARALLEL)
+        pov_print(t, "\n  parallel point_at %v", l->to);
+    if (l->fade_distance > 0)
+        pov_print(t, "\n  fade_distance %g fade_power %g", l->fade_distance, l->fade_power);
+    if (l->samples[0] * l->samples[1] > 1)
+        pov_print(t, "\n  area_light %v, %v, %d, %d adaptive 16", l->u, l->w, l->samples[0], l->samples[1]);
+    pov_print(t, " } // %s\n", l->name);
+}
+
+static void put_lights(pov_text *t, const scene *s)
+{
+    for (int k = 0; k < s->lights; k++)
+        put_light(t, &s->light[k]);
+    pov_print(t, "\n");
+}
+
+void pov_matrix(pov_text *t, vec3 x, vec3 y, vec3 z, vec3 origin)
+{
+    pov_print(t, "  matrix <%g, %g, %g,  %g, %g, %g,  %g, %g, %g,  %g, %g, %g>", x.x, x.y, x.z, y.x, y.y, y.z, z.x, z.y, z.z,
+              origin.x, origin.y, origin.z);
+}
+
+void pov_object_end(pov_text *t, const scene *s, const pov_options *how, const object *o)
+{
+    const material *m = &s->material[o->material];
+    if (!pov_by_parts(s, o))
+        pov_texture(t, s, o, 0);
+    if (material_clear(m) && shape_has_inside(&o->shape_said))
+        pov_print(t, "  interior { ior %g }\n", m->ior);
+    if ((o->bump && !s->self_shadow) || (!o->bump && how->no_cast))
+        pov_print(t, "  no_shadow\n");
+    pov_print(t, "}\n\n");
+}
+
+/* A parallelogram; the brace stays open. */
+static void put_rectangle(pov_text *t, vec3 O, vec3 U, vec3 W)
+{
+    vec3 n = vec3_unit(vec3_cross(U, W));
+    pov_print(t, "polygon {\n  5, <0, 0>, <1, 0>, <1, 1>, <0, 1>, <0, 0>\n");
+    pov_matrix(t, U, W, n, O);
+    pov_print(t, " // u, w, n, origin\n");
+}
+
+/* A disc, of which a transform may have made an ellipse; the brace stays open. */
+static void put_cap(pov_text *t, const pov_flat *p, double radius)
+{
+    pov_print(t, "disc {\n  0, z, %g\n", radius);
+    pov_matrix(t, p->U, p->W, p->y, p->O);
+    pov_print(t, " // u, w, n, origin\n");
+}
+
+/* The side of a cylinder or cone, with its caps or without; the brace stays open. */
+static void put_side(pov_text *t, const shape_spec *f, bool open)
+{
+    if (f->kind == SHAPE_CYLINDER)
+        pov_print(t, "cylinder {\n  %v, %v, %g%s\n", f->a, f->u, f->radius[0], open ? " open" : "");
+    else
+        pov_print(t, "cone {\n  %v, %g, %v, %g%s\n", f->a, f->radius[0], f->u, f->radius[1], open ? " open" : "");
+}
+
+static void put_transform(pov_text *t, const object *o)
+{
+    if (o->moved) {
+        pov_matrix(t, o->placed.x, o->placed.y, o->placed.z, o->placed.o);
+        pov_print(t, " // its transform\n");
+    }
+}
+
+/* A shape whose faces, or side and caps, have colours of their own, each where it is in the scene. */
+static void put_parts(pov_text *t, const scene *s, const object *o)
+{
+    pov_print(t, "union {\n");
+    for (int part = 0; part < o->shape->is->parts; part++) {
+        const double rim = pov_rim(&o->shape_said, part);
+        if (rim == 0)
+            continue;
+        if (!pov_is_flat(&o->shape_said, part)) {
+            put_side(t, &o->shape_said, true);
+            put_transform(t, o);
+        } else {
+            const pov_flat p = pov_flat_of(o, part);
+            if (rim < 0)
+                put_rectangle(t, p.O, p.U, p.W);
+            else
+                put_cap(t, &p, rim);
+        }
+        pov_texture(t, s, o, part);
+        pov_print(t, "}\n");
+    }
+}
+
+static void put_smooth(pov_text *t, const scene *s, const object *o)
+{
+    const shape_spec *f = &o->shape_said;
+    if (pov_by_parts(s, o)) {
+        put_parts(t, s, o);
+        return;
+    }
+    switch (f->kind) {
+    case SHAPE_PLANE: {
+        vec3 n = vec3_unit(vec3_cross(f->u, f->w));
+        pov_print(t, "plane {\n  %v, %g\n", n, vec3_dot(n, f->a));
+        break;
+    }
+    case SHAPE_RECTANGLE:
+        put_rectangle(t, f->a, f->u, f->w);
+        break;
+    case SHAPE_DISC:
+        pov_print(t, "disc {\n  %v, %v, %g\n", f->a, f->u, f->radius[0]);
+        break;
+    case SHAPE_BOX:
+        pov_print(t, "box {\n  %v, %v\n", f->a, f->u);
+        break;
+    case SHAPE_SPHERE:
+        pov_print(t, "sphere {\n  %v, %g\n", f->a, f->radius[0]);
+        break;
+    case SHAPE_CYLINDER:
+    case SHAPE_CONE:
+        put_side(t, f, f->open);
+        break;
+    case SHAPE_TORUS: {
+        const frame a = frame_about(f->u);
+        pov_print(t, "torus {\n  %g, %g\n  sturm\n", f->radius[0], f->radius[1]);
+        pov_matrix(t, a.x, a.y, a.z, f->a);
+        pov_print(t, " // y is the axis\n");
+        break;
+    }
+    case SHAPE_SEARCHED: /* pov_sheet.c */
+    case SHAPE_MESH:     /* pov_triangles.c */
+        break;
+    }
+    put_transform(t, o);
+}
+
+static bool put_displaced(pov_text *t, const scene *s, int k, pov_report *report)
+{
+    const object *o = &s->object[k];
+    pov_identifier P = pov_identify("P", o->name, k);
+    double gradient = 0;
+    for (int part = 0; part < o->shape->is->parts; part++)
+        gradient = fmax(gradient, pov_isosurface_gradient(o, part));
+    if (gradient < HUGE_VAL && pov_function(t, o, P.text)) {
+        pov_isosurface(t, s, o, P.text);
+        return true;
+    }
+    return pov_mesh(t, s, o, report);
+}
+
+bool pov_write(const scene *s, const pov_options *how, const char *path, pov_report *report, errors *e)
+{
+    pov_text t;
+    bool good = true;
+    *report = (pov_report){0};
+    if (!pov_begin(&t, path, e))
+        return false;
+    put_head(&t, s, how);
+    put_camera(&t, s);
+    put_lights(&t, s);
+    pov_materials(&t, s);
+    for (int k = 0; good && k < s->objects; k++) {
+        const object *o = &s->object[k];
+        pov_print(&t, "// object %s: %s%s%s\n", o->name, o->shape->is->kind, o->bump ? ", bump by " : "",
+                  o->bump ? o->bump->is->kind : "");
+        if (pov_is_sheet(s, o))
+            good = pov_sheet(&t, s, o);
+        else if (o->shape_said.kind == SHAPE_MESH)
+            good = pov_triangles(&t, s, o);
+        else if (s->displaced && o->bump)
+            good = put_displaced(&t, s, k, report);
+        else
+            put_smooth(&t, s, o);
+        pov_object_end(&t, s, how, o);
+    }
+    return pov_end(&t, good ? NULL : "out of memory", e);
+}

@@ -1,0 +1,159 @@
+/* The scene reader's materials, and what is known of their colours on an object. */
+#include "read/reader.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+static void read_checker(reader *r, node *at, material *m)
+{
+    node *k;
+    m->pattern = PATTERN_CHECKER;
+    m->layout.size[0] = m->layout.size[1] = 1;
+    if (!yaml_map(r->y, at, "checker", "even odd size offset"))
+        return;
+    if (yaml_need(r->y, at, "even", "checker"))
+        reader_color(r, at, "even", &m->field[0]);
+    if (yaml_need(r->y, at, "odd", "checker"))
+        reader_color(r, at, "odd", &m->field[1]);
+    if ((k = yaml_get(at, "size")))
+        yaml_numbers(r->y, k, 2, SMALL, BIG, "the size of a field [in u, in w], 1e-6 or more", m->layout.size);
+    if ((k = yaml_get(at, "offset")))
+        yaml_numbers(r->y, k, 2, -BIG, BIG, "where a field begins [in u, in w]", m->layout.offset);
+}
+
+static void read_pixels(reader *r, node *file, image_encoding encoding, material *m)
+{
+    const char *name = yaml_text(r->y, file, "the file of an image");
+    char *path = name ? reader_beside(r, name) : NULL;
+    image pixels = {0};
+    errors e = {0};
+    if (!path)
+        return;
+    if (!image_read_color(path, encoding, &pixels, &m->exr, &e))
+        yaml_error(r->y, file, "'%s' can't be used: %.*s", name, e.size ? (int)e.size - 1 : 0, e.text ? e.text : "");
+    else if (pixels.width < 2 || pixels.height < 2)
+        yaml_error(r->y, file, "'%s' has %d x %d pixels, expected at least 2 x 2", name, pixels.width, pixels.height);
+    else if (!(m->texels = texels_new(&pixels, &m->layout)))
+        errors_add(r->e, "out of memory");
+    m->file = reader_copy(r, name);
+    errors_free(&e);
+    free(pixels.v);
+    free(path);
+}
+
+/* Read with a surface that has ends, so that all mistakes but the lack of a size are told here, and once. */
+static void read_image(reader *r, node *at, material *m)
+{
+    const double whole[2] = {0, 1};
+    node *k, *file;
+    image_encoding encoding = IMAGE_BY_KIND;
+    m->pattern = PATTERN_IMAGE;
+    if (!yaml_map(r->y, at, "image", "file encoding size repeat offset wrap interpolation"))
+        return;
+    bool good = reader_layout(r, at, whole, whole, &m->layout);
+    if ((k = yaml_get(at, "encoding"))) {
+        int word = yaml_word(r->y, k, "srgb linear", "srgb or linear");
+        encoding = word == 0 ? IMAGE_SRGB : IMAGE_LINEAR;
+        m->linear = word == 1;
+        good = word >= 0 && good;
+    }
+    if ((k = yaml_get(at, "interpolation")))
+        m->nearest = yaml_word(r->y, k, "bilinear nearest", "bilinear or nearest") == 1;
+    if ((file = yaml_need(r->y, at, "file", "image")) && good)
+        read_pixels(r, file, encoding, m);
+}
+
+static void read_color(reader *r, node *material_node, material *m)
+{
+    node *at = yaml_get(material_node, "color"), *checker, *pixels;
+    if (!at || !yaml_is_map(at)) {
+        reader_color(r, material_node, "color", &m->color);
+        return;
+    }
+    if (!yaml_map(r->y, at, "color", "checker image"))
+        return;
+    checker = yaml_get(at, "checker");
+    pixels = yaml_get(at, "image");
+    if (!checker == !pixels)
+        yaml_error(r->y, at, "a color with %s, expected either 'checker' or 'image'", pixels ? "both checker and image" : "neither checker nor image");
+    else if (checker)
+        read_checker(r, checker, m);
+    else
+        read_image(r, pixels, m);
+}
+
+static void read_reflection(reader *r, node *at, material *m)
+{
+    static const char *const what = "a share of light, or one each of red, green and blue, 0 to 1";
+    double x[3];
+    if (yaml_is_list(at) ? yaml_numbers(r->y, at, 3, 0, 1, what, x) : yaml_number(r->y, at, 0, false, 1, what, x))
+        m->reflection = yaml_is_list(at) ? (vec3){x[0], x[1], x[2]} : (vec3){x[0], x[0], x[0]};
+}
+
+/* The light from behind, in shares of all light. */
+static void read_clear(reader *r, node *v, material *m)
+{
+    bool good = reader_number(r, v, "filter", 0, false, 1, "the share of light that it lets through in its colour, 0 to 1", &m->filter);
+    good = reader_number(r, v, "transmit", 0, false, 1, "the share of light that it lets through unchanged, 0 to 1", &m->transmit) && good;
+    if (good && m->filter + m->transmit > 1)
+        yaml_error(r->y, yaml_get(v, "transmit"), "a filter of %g and a transmit of %g, expected no more than 1 together", m->filter,
+                   m->transmit);
+    reader_number(r, v, "ior", 0, true, 100, "an index of refraction above 0, at most 100", &m->ior);
+}
+
+void reader_materials(reader *r)
+{
+    node *k;
+    scene *s = r->s;
+    node *at = reader_named(r, "materials", "materials", true, sizeof *s->material, &s->material, &s->materials), *key;
+    for (int i = 0; at && i < s->materials; i++) {
+        node *v = yaml_pair(at, i, &key);
+        material *m = &s->material[i];
+        *m = (material){.color = {1, 1, 1}, .ambient = 0.1, .diffuse = 0.6, .phong_size = 40, .roughness = 0.05, .ior = 1};
+        m->name = reader_name(r, at, key);
+        if (!yaml_map(r->y, v, "a material", "color ambient diffuse phong phong_size specular roughness reflection filter transmit ior"))
+            continue;
+        read_color(r, v, m);
+        reader_number(r, v, "ambient", 0, false, BIG, "a share of light, 0 or more", &m->ambient);
+        reader_number(r, v, "diffuse", 0, false, BIG, "a share of light, 0 or more", &m->diffuse);
+        reader_number(r, v, "phong", 0, false, BIG, "a share of light, 0 or more", &m->phong);
+        reader_number(r, v, "phong_size", 0, true, BIG, "an exponent above 0", &m->phong_size);
+        reader_number(r, v, "specular", 0, false, BIG, "a share of light, 0 or more", &m->specular);
+        reader_number(r, v, "roughness", SMALL, false, BIG, "a number of 1e-6 or more; small is sharp",
+                      &m->roughness); /* the cosine may be a few ulp above 1, which float bears to the power 1e6 */
+        if ((k = yaml_get(v, "reflection")))
+            read_reflection(r, k, m);
+        read_clear(r, v, m);
+    }
+}
+
+/* ---- on an object ---- */
+
+/* The image's layout on this surface. */
+static bool lay_image(reader *r, node *at, const material *m, const object *o, map_layout *l)
+{
+    double u[2], w[2];
+    node *said = yaml_get(yaml_get(yaml_get(yaml_get(yaml_root(r->y), "materials"), m->name), "color"), "image");
+    reader_extent(o->shape, &o->shape_said, u, w);
+    if (!yaml_get(said, "size") && !(u[1] - u[0] < HUGE_VAL && w[1] - w[0] < HUGE_VAL))
+        return yaml_error(r->y, at, "the image of '%s' has no 'size', expected one for a surface without ends", m->name);
+    *l = (map_layout){.size = {1, 1}};
+    return reader_layout(r, said, u, w, l);
+}
+
+void reader_pigment(reader *r, node *at, object *o)
+{
+    const material *m = &r->s->material[o->material];
+    o->color_layout = m->layout;
+    if (m->pattern && !reader_textured(r, at, o))
+        return;
+    if (m->pattern == PATTERN_CHECKER)
+        o->color = pigment_checker(m->field, m->layout.size, m->layout.offset);
+    else if (m->pattern == PATTERN_IMAGE && m->texels && m->name && lay_image(r, at, m, o, &o->color_layout))
+        o->color = pigment_image(m->texels, &o->color_layout, m->nearest);
+    else
+        return;
+    if (!o->color)
+        errors_add(r->e, "out of memory");
+    o->color = reader_fold_color(r, o, o->color);
+}

@@ -1,0 +1,109 @@
+/* The scene reader's meshes. */
+#include "read/reader.h"
+
+#include "texture/mirrored_uv.h"
+#include "mesh/mesh.h"
+
+#include <stdlib.h>
+
+static bool read_normals(reader *r, node *at, mesh_normals *normals, double *crease)
+{
+    node *k = yaml_get(at, "normals");
+    const int which = k ? yaml_word(r->y, k, "file smooth flat", "file, smooth or flat") : 0;
+    *normals = which > 0 ? (mesh_normals)which : MESH_NORMALS_FILE;
+    return reader_number(r, at, "crease", 0, false, 180, "an angle of 0 to 180 degrees", crease) && which >= 0;
+}
+
+static bool is_large(const mesh_data *d)
+{
+    double lo[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, hi[3] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}, size = 0;
+    for (int k = 0; k < 9 * d->n; k++) {
+        const double x = (double)d->at[k / 9][k % 9 / 3][k % 3];
+        lo[k % 3] = fmin(lo[k % 3], x);
+        hi[k % 3] = fmax(hi[k % 3], x);
+    }
+    for (int a = 0; a < 3; a++)
+        size = fmax(size, hi[a] - lo[a]);
+    return size >= SMALL;
+}
+
+surface *reader_mesh(reader *r, node *at, shape_spec *said)
+{
+    mesh_data d = {0};
+    mesh_normals normals;
+    double crease = 40;
+    char why[MESH_WHY];
+    if (!yaml_map(r->y, at, "mesh", "file normals crease"))
+        return NULL;
+    node *file = yaml_need(r->y, at, "file", "mesh");
+    const char *name = file ? yaml_text(r->y, file, "the file of a model") : NULL;
+    if (!read_normals(r, at, &normals, &crease) || !name)
+        return NULL;
+    char *path = reader_beside(r, name);
+    bool good = path && mesh_file_read(path, r->watch, &r->s->made_from, &d, why);
+    if (good)
+        watch_show(r->watch, "checking", 1);
+    good = good && mesh_clean(&d, normals, crease, BIG, why);
+    if (path && !good)
+        yaml_error(r->y, file, "'%s' can't be used: %s", name, why);
+    else if (path && !is_large(&d))
+        good = yaml_error(r->y, file, "'%s' can't be used: it is smaller than %g, expected some size", name, SMALL);
+    free(path);
+    if (!good) {
+        mesh_data_free(&d);
+        return NULL;
+    }
+    surface *f = mesh_new(&d, r->watch);
+    if (!f) {
+        errors_add(r->e, "out of memory");
+        return NULL;
+    }
+    *said = (shape_spec){.kind = SHAPE_MESH, .file = reader_copy(r, name), .triangles = ((mesh *)f)->d.n, .found = ((mesh *)f)->d.notes};
+    return f;
+}
+
+bool reader_textured(reader *r, node *at, const object *o)
+{
+    const shape_spec *f = &o->shape_said;
+    if (f->kind != SHAPE_MESH || f->found.bare == 0)
+        return true;
+    return yaml_error(r->y, at, "%d of the %d triangles of '%s' have no texture coordinates, expected them for what lies on (u,w)", f->found.bare,
+                      f->triangles, f->file);
+}
+
+/* The folds are one range beyond the ends: on both sides, as a transform that mirrors exchanges them. */
+static bool find_folds(const object *o, double *lo, double *hi)
+{
+    double u[2], w[2];
+    if (o->shape_said.kind != SHAPE_MESH || o->shape_said.found.folded == 0)
+        return false;
+    o->own->is->extent(o->own, 0, u, w);
+    *lo = u[0] - (u[1] - u[0]);
+    *hi = u[1] + (u[1] - u[0]);
+    return true;
+}
+
+perturb *reader_fold_bump(reader *r, const object *o, perturb *p)
+{
+    double lo, hi;
+    if (p && find_folds(o, &lo, &hi) && !(p = perturb_folded(p, lo, hi)))
+        errors_add(r->e, "out of memory");
+    return p;
+}
+
+pigment *reader_fold_color(reader *r, const object *o, pigment *c)
+{
+    double lo, hi;
+    if (c && find_folds(o, &lo, &hi) && !(c = pigment_folded(c, lo, hi)))
+        errors_add(r->e, "out of memory");
+    return c;
+}
+
+void reader_extent(const surface *f, const shape_spec *said, double u[2], double w[2])
+{
+    f->is->extent(f, 0, u, w);
+    if (said->kind == SHAPE_MESH) {
+        u[0] = w[0] = 0;
+        u[1] = w[1] = 1;
+    }
+}

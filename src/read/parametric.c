@@ -1,0 +1,164 @@
+/* The scene reader's surfaces without closed forms: three functions of u and w, Bezier patches. */
+#include "read/reader.h"
+
+#include "read/patch_file.h"
+#include "patch/patch.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* An expression; NULL with an error. */
+static expr *read_expr(reader *r, node *at, const char *what)
+{
+    expr_error wrong;
+    const char *text = yaml_text(r->y, at, what);
+    expr *e = text ? expr_parse(text, &wrong) : NULL;
+    if (text && !e)
+        yaml_error_in(r->y, at, wrong.offset, "%s", wrong.message);
+    return e;
+}
+
+/* An end of a range: a number, or an expression without u and w, such as 2*pi, so that what closes does so to the last digit. */
+static bool read_end(reader *r, node *at, double *x)
+{
+    const double u[2] = {0.3, 0.7}, w[2] = {0.6, 0.2};
+    expr_jets z;
+    expr *e = read_expr(r, at, "an end of the range, a number or such as 2*pi");
+    if (!e)
+        return false;
+    expr_eval(e, 2, u, w, 0, &z);
+    expr_free(e);
+    *x = z.v[0];
+    if (z.v[0] != z.v[1])
+        return yaml_error(r->y, at, "an end of a range with u or w in it, expected a number or such as 2*pi");
+    if (!(fabs(*x) <= BIG))
+        return yaml_error(r->y, at, "the range ends at %g, expected -1000000 to 1000000", *x);
+    return true;
+}
+
+static bool read_range(reader *r, node *at, const char *key, double x[2])
+{
+    static const char expected[] = "the range [from, to]";
+    node *v = yaml_need(r->y, at, key, "parametric");
+    const int n = v ? yaml_list(r->y, v, expected) : -1;
+    if (n >= 0 && n != 2)
+        return yaml_error(r->y, v, "%d value%s, expected %s", n, n == 1 ? "" : "s", expected);
+    bool good = n == 2 && read_end(r, yaml_item(v, 0), &x[0]);
+    good = n == 2 && read_end(r, yaml_item(v, 1), &x[1]) && good;
+    if (good && !(x[1] - x[0] >= SMALL))
+        return yaml_error(r->y, v, "a range from %g to %g, expected the second end above the first", x[0], x[1]);
+    return good;
+}
+
+/* The tree of leaves, or why there is none. */
+static surface *search(reader *r, node *at, sheet *q, const char *what)
+{
+    surface *f = q ? searched_new(q) : NULL;
+    if (!q)
+        errors_add(r->e, "out of memory");
+    else if (!f)
+        yaml_error(r->y, at, "%s", what);
+    return f;
+}
+
+surface *reader_parametric(reader *r, node *at, shape_spec *said)
+{
+    static const char *const keys[] = {"x", "y", "z"};
+    expr *e[3] = {NULL, NULL, NULL};
+    double u[2] = {0, 1}, w[2] = {0, 1};
+    if (!yaml_map(r->y, at, "parametric", "x y z u w"))
+        return NULL;
+    bool good = true;
+    for (int k = 0; k < 3; k++) {
+        node *v = yaml_need(r->y, at, keys[k], "parametric");
+        e[k] = v ? read_expr(r, v, "a function of u and w") : NULL;
+        good = e[k] && good;
+    }
+    good = read_range(r, at, "u", u) && good;
+    good = read_range(r, at, "w", w) && good;
+    *said = (shape_spec){.kind = SHAPE_SEARCHED};
+    if (!good) {
+        for (int k = 0; k < 3; k++)
+            expr_free(e[k]);
+        return NULL;
+    }
+    return search(r, at, sheet_function("parametric", e, u, w),
+                  "a surface without bounds, or all in one place, expected functions that are bounded over the range of u and w");
+}
+
+/* ---- patches ---- */
+
+/* Four by four points, or sixteen in a row. */
+static bool read_patch(reader *r, node *at, vec3 p[16])
+{
+    static const char expected[] = "a patch: a list of 16 control points [x, y, z]";
+    const int n = yaml_list(r->y, at, expected);
+    if (n < 0)
+        return false;
+    if (n != 16)
+        return yaml_error(r->y, at, "%d point%s, expected %s", n, n == 1 ? "" : "s", expected);
+    bool good = true;
+    for (int k = 0; k < 16; k++) {
+        double v[3] = {0, 0, 0};
+        good = yaml_numbers(r->y, yaml_item(at, k), 3, -BIG, BIG, "a control point [x, y, z]", v) && good;
+        p[k] = (vec3){v[0], v[1], v[2]};
+    }
+    return good;
+}
+
+static vec3 *read_points(reader *r, node *at, int *patches)
+{
+    static const char expected[] = "a list of patches, each of 16 control points [x, y, z]";
+    *patches = yaml_list(r->y, at, expected);
+    if (*patches < 0)
+        return NULL;
+    if (*patches < 1 || *patches > PATCHES_MAX) {
+        yaml_error(r->y, at, "%d patches, expected 1 to %d", *patches, PATCHES_MAX);
+        return NULL;
+    }
+    vec3 *point = malloc(sizeof *point * 16 * (size_t)*patches);
+    bool good = point || errors_add(r->e, "out of memory");
+    for (int k = 0; point && k < *patches; k++)
+        good = read_patch(r, yaml_item(at, k), point + 16 * k) && good;
+    if (!good) {
+        free(point);
+        return NULL;
+    }
+    return point;
+}
+
+static vec3 *read_file(reader *r, node *at, int *patches)
+{
+    const char *name = yaml_text(r->y, at, "the file of the patches");
+    char *path = name ? reader_beside(r, name) : NULL;
+    vec3 *point = NULL;
+    FILE *there = path ? fopen(path, "rb") : NULL;
+    if (there) {
+        fclose(there);
+        point = patch_file_read(path, path, BIG, patches, r->e);
+    } else if (path)
+        yaml_error(r->y, at, "'%s' can't be used: %s", name, strerror(errno));
+    free(path);
+    return point;
+}
+
+surface *reader_patches(reader *r, node *at, shape_spec *said)
+{
+    if (!yaml_map(r->y, at, "patches", "file points"))
+        return NULL;
+    node *file = yaml_get(at, "file"), *points = yaml_get(at, "points");
+    int n = 0;
+    if (!file == !points) {
+        yaml_error(r->y, at, "patches with %s, expected either 'file' or 'points'", file ? "both file and points" : "neither file nor points");
+        return NULL;
+    }
+    *said = (shape_spec){.kind = SHAPE_SEARCHED};
+    vec3 *point = file ? read_file(r, file, &n) : read_points(r, points, &n);
+    if (!point)
+        return NULL;
+    sheet *q = sheet_bezier(n, point);
+    free(point);
+    return search(r, at, q, "patches that are all in one place, expected some extent");
+}

@@ -1,0 +1,156 @@
+/* Lights, as POV-Ray 3.7 has them. */
+#include "scene/light.h"
+
+#include "math/kmath.h"
+#include "wave/lane.h"
+
+/* ---- shadow rays ---- */
+
+/* No offset is added to the start: it would shorten each shadow by offset/tan(elevation), and P is small, too. */
+STAGE static void aim_at_place(group *restrict g, const light *l, int shifted)
+{
+    const real lx = (real)l->at.x, ly = (real)l->at.y, lz = (real)l->at.z;
+    for (int i = 0; i < g->n; i++) {
+        bs_vec3 o = lane_at(&g->x, i, shifted ? g->t[i] + g->tau[i] : g->t[i]), d = {lx - o.x, ly - o.y, lz - o.z};
+        lane_set(&g->to_light.r, i, o);
+        lane_set(&g->to_light.s, i, d);
+    }
+}
+
+/* Up to the light's plane. Beyond it there is light and no shadow, as in POV-Ray: a segment too short to meet a thing, which still
+ * has its direction. */
+STAGE static void aim_along(group *restrict g, const light *l, int shifted)
+{
+    const real lx = (real)l->at.x, ly = (real)l->at.y, lz = (real)l->at.z;
+    const real ax = (real)l->axis.x, ay = (real)l->axis.y, az = (real)l->axis.z;
+    for (int i = 0; i < g->n; i++) {
+        bs_vec3 o = lane_at(&g->x, i, shifted ? g->t[i] + g->tau[i] : g->t[i]);
+        real depth = real_max((o.x - lx) * ax + (o.y - ly) * ay + (o.z - lz) * az, R(1e-6));
+        bs_vec3 d = {-depth * ax, -depth * ay, -depth * az};
+        lane_set(&g->to_light.r, i, o);
+        lane_set(&g->to_light.s, i, d);
+    }
+}
+
+void light_aim(const light *l, group *g, bool shifted)
+{
+    (l->kind == LIGHT_PARALLEL ? aim_along : aim_at_place)(g, l, shifted);
+}
+
+/* ---- areas ---- */
+
+/* The share of sample i of those from `first` to `last`, as POV-Ray halves a row of them again and again, where a sample in the
+ * middle belongs to both halves. 2, 4, 8 ... samples are equal. */
+static double share_of(int i, int first, int last)
+{
+    if (i < first || i > last)
+        return 0;
+    if (first == last)
+        return 1;
+    int below = (first + last) / 2, above = (first + last + 1) / 2;
+    return (share_of(i, first, below) + share_of(i, above, last)) / 2;
+}
+
+/* Where sample i of n is along a side, from -1/2 to 1/2: the first and the last are on the edge. */
+static double along_side(int i, int n) { return n > 1 ? (double)i / (n - 1) - 0.5 : 0; }
+
+light light_sample(const light *l, int k, real *share)
+{
+    const int i = k % l->samples[0], j = k / l->samples[0];
+    light one = *l;
+    one.at = vec3_add(one.at, vec3_add(vec3_scale(l->u, along_side(i, l->samples[0])), vec3_scale(l->w, along_side(j, l->samples[1]))));
+    *share = (real)(share_of(i, 0, l->samples[0] - 1) * share_of(j, 0, l->samples[1] - 1));
+    return one;
+}
+
+STAGE static void gather(const group *restrict g, real share, real *restrict sum)
+{
+    for (int i = 0; i < g->n; i++)
+        sum[i] += share * g->lit[i];
+}
+
+void light_gather(const group *g, real share, real *sum) { gather(g, share, sum); }
+
+STAGE static void gather_tint(const group *restrict g, real share, vec3s *restrict sum)
+{
+    for (int i = 0; i < g->n; i++) {
+        real x = share * g->lit[i];
+        sum->x[i] += x * g->tint.x[i];
+        sum->y[i] += x * g->tint.y[i];
+        sum->z[i] += x * g->tint.z[i];
+    }
+}
+
+void light_gather_tint(const group *g, real share, vec3s *sum) { gather_tint(g, share, sum); }
+
+int light_corners(const light *l) { return l->samples[0] * l->samples[1] > 1 ? 4 : 1; }
+
+vec3 light_corner(const light *l, int k, vec3 p)
+{
+    if (l->kind == LIGHT_PARALLEL)
+        return vec3_sub(p, vec3_scale(l->axis, 1e6));
+    if (light_corners(l) == 1)
+        return l->at;
+    return vec3_add(l->at, vec3_add(vec3_scale(l->u, (k & 1) - 0.5), vec3_scale(l->w, (k >> 1) - 0.5)));
+}
+
+/* ---- what arrives ---- */
+
+/* How far p1 is from the light, or from its plane, and the cosine between the way there and its axis. */
+STAGE static void place(const group *restrict g, const light *l, double *restrict distance, double *restrict cosine)
+{
+    const real lx = (real)l->at.x, ly = (real)l->at.y, lz = (real)l->at.z;
+    const real ax = (real)l->axis.x, ay = (real)l->axis.y, az = (real)l->axis.z, flat = l->kind == LIGHT_PARALLEL;
+    for (int i = 0; i < g->n; i++) {
+        bs_vec3 p = lane_at(&g->x, i, g->t[i]);
+        real x = p.x - lx, y = p.y - ly, z = p.z - lz;
+        real far = real_sqrt(x * x + y * y + z * z), deep = x * ax + y * ay + z * az;
+        distance[i] = (double)(far + flat * (real_abs(deep) - far));
+        cosine[i] = (double)(deep / real_max(far, R(1e-30)));
+    }
+}
+
+/* cos^tightness, and a cubic from `falloff` (0) to `radius` (1). */
+STAGE static void spot(int n, double outer, double inner, double tightness, const double *restrict cosine, double *restrict share)
+{
+    const double width = inner > outer ? inner - outer : 1e-300;
+    for (int i = 0; i < n; i++) {
+        double c = cosine[i], x = (c - outer) / width;
+        x = x < 1 ? x : 1;
+        x = x > 0 ? x : 0;
+        c = c < 1 ? c : 1;
+        c = c > 1e-300 ? c : 1e-300;
+        share[i] *= x * x * (3 - 2 * x) * km_exp(tightness * km_log(c));
+    }
+}
+
+/* 2/(1 + (d/fade_distance)^power) */
+STAGE static void fade(int n, double reach, double power, const double *restrict distance, double *restrict share)
+{
+    for (int i = 0; i < n; i++) {
+        double d = distance[i] / reach;
+        share[i] *= 2 / (1 + km_exp(power * km_log(d > 1e-300 ? d : 1e-300)));
+    }
+}
+
+STAGE static void dim(group *restrict g, const double *restrict share)
+{
+    for (int i = 0; i < g->n; i++)
+        g->lit[i] = (real)((double)g->lit[i] * share[i]);
+}
+
+void light_fade(const light *l, group *g)
+{
+    double distance[LANES], cosine[LANES], share[LANES];
+    const double degree = 3.14159265358979323846 / 180;
+    if (l->kind != LIGHT_SPOT && l->fade_distance == 0)
+        return;
+    for (int i = 0; i < g->n; i++)
+        share[i] = 1;
+    place(g, l, distance, cosine);
+    if (l->kind == LIGHT_SPOT)
+        spot(g->n, km_cos(l->falloff * degree), km_cos(l->radius * degree), l->tightness, cosine, share);
+    if (l->fade_distance > 0)
+        fade(g->n, l->fade_distance, l->fade_power, distance, share);
+    dim(g, share);
+}

@@ -1,0 +1,260 @@
+#include "render/secondary.h"
+
+#include <string.h>
+
+#include "wave/lane.h"
+#include "render/trace.h"
+
+void secondary_begin(workspace *v) { v->reflected.n = v->refracted.n = v->straight.n = 0; }
+
+/* ---- directions ---- */
+
+/* Where a group's rays go on to, and with which share of the light there. */
+typedef struct ways {
+    vec3s mirrored, bent;  /* with the length of s; unit */
+    real ratio[LANES];     /* of the iors before and behind the surface; 1: straight on */
+    int32_t total[LANES];  /* nothing gets through: all is mirrored */
+    vec3s through;
+} ways;
+
+/* d turned over, so that it is on the other side of the surface across n. */
+static inline bs_vec3 turned_over(bs_vec3 d, bs_vec3 n)
+{
+    real k = 2 * bs_dot(d, n) / bs_dot(n, n);
+    bs_vec3 x = {d.x - k * n.x, d.y - k * n.y, d.z - k * n.z};
+    return x;
+}
+
+/* s mirrored at n'. What goes below the smooth surface then is turned over at it; where n' itself is turned away from the viewer, s is
+ * mirrored at the smooth surface. Both as in POV-Ray. */
+static inline bs_vec3 mirrored(bs_vec3 s, bs_vec3 smooth, bs_vec3 bump)
+{
+    bs_vec3 d = turned_over(s, bump), again, plain = turned_over(s, smooth);
+    real side = bs_dot(s, smooth), below = side * bs_dot(d, smooth), away = side * bs_dot(s, bump);
+    again = turned_over(d, smooth);
+    again.x = away < 0 ? plain.x : again.x;
+    again.y = away < 0 ? plain.y : again.y;
+    again.z = away < 0 ? plain.z : again.z;
+    d.x = below > 0 ? again.x : d.x;
+    d.y = below > 0 ? again.y : d.y;
+    d.z = below > 0 ? again.z : d.z;
+    return d;
+}
+
+STAGE static void mirror(const group *restrict g, ways *restrict y)
+{
+    for (int i = 0; i < g->n; i++)
+        lane_set(&y->mirrored, i, mirrored(lane_get(&g->x.s, i), lane_get(&g->n_smooth, i), lane_get(&g->n_bump, i)));
+}
+
+/* Snell's law with n' on the viewer's side, whichever that is. What stays on the viewer's side of the smooth surface is turned over. */
+STAGE static void bend(const group *restrict g, ways *restrict y)
+{
+    for (int i = 0; i < g->n; i++) {
+        bs_vec3 s = lane_unit(lane_get(&g->x.s, i)), n = lane_get(&g->n_bump, i), smooth = lane_get(&g->n_smooth, i);
+        real ratio = y->ratio[i], c = -bs_dot(s, n), k = 1 + ratio * ratio * (c * c - 1), root = real_sqrt(real_max(k, 0));
+        real by = ratio * c - (c < 0 ? -root : root);
+        bs_vec3 d = {ratio * s.x + by * n.x, ratio * s.y + by * n.y, ratio * s.z + by * n.z}, over = turned_over(d, smooth);
+        int back = bs_dot(s, smooth) * bs_dot(d, smooth) < 0;
+        y->bent.x[i] = back ? over.x : d.x;
+        y->bent.y[i] = back ? over.y : d.y;
+        y->bent.z[i] = back ? over.z : d.z;
+        y->total[i] = k < 0;
+    }
+}
+
+/* ---- what a ray is in ---- */
+
+/* Lane i goes through the surface of object `id`, into it or out of it. Returns the ratio of the iors before and behind. Where things
+ * overlap, without the one being in the other, they have the ior of what was entered last, as in POV-Ray. */
+static double cross(const scene *sc, int id, bool out, media *in, int i)
+{
+    const double own = sc->material[sc->object[id].material].ior;
+    int n = in->n[i], at = n - 1;
+    if (!shape_has_inside(&sc->object[id].shape_said))
+        return 1;
+    if (!out) {
+        const double around = n ? sc->material[sc->object[in->id[n - 1][i]].material].ior : 1;
+        if (n < MEDIA)
+            in->id[in->n[i]++][i] = id;
+        return around / own;
+    }
+    while (at >= 0 && in->id[at][i] != id)
+        at--;
+    const bool innermost = at == n - 1;
+    if (at >= 0) {
+        for (n--; at < n; at++)
+            in->id[at][i] = in->id[at + 1][i];
+        in->n[i] = n;
+        if (!innermost)
+            return 1;
+    }
+    return own / (n ? sc->material[sc->object[in->id[n - 1][i]].material].ior : 1);
+}
+
+static bool is_in(const media *m, int i, int id)
+{
+    bool in = false;
+    for (int k = 0; k < m->n[i]; k++)
+        in |= m->id[k][i] == id;
+    return in;
+}
+
+static void copy_media(const media *from, int j, media *to, int i)
+{
+    to->n[i] = from ? from->n[j] : 0;
+    for (int k = 0; k < to->n[i]; k++)
+        to->id[k][i] = from->id[k][j];
+}
+
+/* ---- sending ---- */
+
+static bs_vec3 weight_of(vec3 w)
+{
+    bs_vec3 x = {(real)w.x, (real)w.y, (real)w.z};
+    return x;
+}
+
+static bool is_zero(bs_vec3 w) { return !(w.x > 0 || w.y > 0 || w.z > 0); }
+
+/* Lane i of the group goes on in direction s. For other things it starts at r + s t0, the shifted place; for its own smooth surface, where it
+ * has met that. */
+static void send(const group *g, int i, int id, real t0, bs_vec3 s, bs_vec3 weight, const media *in, int j, bounce *b)
+{
+    const int to = b->n++;
+    b->lane[to] = group_place(g, i);
+    lane_set(&b->weight, to, weight);
+    lane_set(&b->x.r, to, lane_at(&g->x, i, t0));
+    lane_set(&b->x.s, to, s);
+    b->from.id[to] = id;
+    b->from.part[to] = g->part[i];
+    lane_set(&b->from.at, to, lane_at(&g->x, i, g->t[i]));
+    copy_media(in, j, &b->in, to);
+}
+
+STAGE static void through_plain(int n, real kr, real kg, real kb, vec3s *restrict w)
+{
+    for (int i = 0; i < n; i++) {
+        w->x[i] = kr;
+        w->y[i] = kg;
+        w->z[i] = kb;
+    }
+}
+
+STAGE static void through_pattern(const group *restrict g, real filter, real transmit, vec3s *restrict w)
+{
+    for (int i = 0; i < g->n; i++) {
+        w->x[i] = g->color.x[i] * filter + transmit;
+        w->y[i] = g->color.y[i] * filter + transmit;
+        w->z[i] = g->color.z[i] * filter + transmit;
+    }
+}
+
+static void send_clear(const tracer *k, int id, workspace *v, ways *y)
+{
+    const scene *sc = k->scene;
+    const material *m = &sc->material[sc->object[id].material];
+    const group *g = &v->g;
+    const bs_vec3 mirror_weight = weight_of(m->reflection), one = {1, 1, 1};
+    const media *before = v->of ? &v->of->in : NULL;
+    media in;
+    for (int i = 0; i < g->n; i++) {
+        copy_media(before, group_place(g, i), &in, i);
+        /* what has been entered is left, as in POV-Ray, also through a gap between rough parts; the eye may be in what it has not entered */
+        bool out = is_in(&in, i, id) || bs_dot(lane_get(&g->x.s, i), lane_get(&g->n_smooth, i)) > 0;
+        y->ratio[i] = (real)cross(sc, id, out, &in, i);
+    }
+    bend(g, y);
+    if (m->pattern)
+        through_pattern(g, (real)m->filter, (real)m->transmit, &y->through);
+    else
+        through_plain(g->n, (real)(m->color.x * m->filter + m->transmit), (real)(m->color.y * m->filter + m->transmit),
+                      (real)(m->color.z * m->filter + m->transmit), &y->through);
+    for (int i = 0; i < g->n; i++) {
+        bs_vec3 through = lane_get(&y->through, i);
+        const bool total = y->ratio[i] != 1 && y->total[i] && !is_zero(through);
+        if (total)
+            send(g, i, id, g->t[i] + g->tau[i], lane_get(&y->mirrored, i), one, before, group_place(g, i), &v->refracted);
+        else if (is_zero(through))
+            ;
+        else if (y->ratio[i] == 1) /* the same ray: what is before the surface it has passed already */
+            send(g, i, id, g->t[i], lane_get(&g->x.s, i), through, &in, i, &v->straight);
+        else
+            send(g, i, id, g->t[i] + g->tau[i], lane_get(&y->bent, i), through, &in, i, &v->refracted);
+        if (!total && !is_zero(mirror_weight))
+            send(g, i, id, g->t[i] + g->tau[i], lane_get(&y->mirrored, i), mirror_weight, before, group_place(g, i), &v->reflected);
+    }
+}
+
+void secondary_send(const tracer *k, int id, workspace *v)
+{
+    const material *m = &k->scene->material[k->scene->object[id].material];
+    const group *g = &v->g;
+    ways y;
+    if (v->left == 0 || !material_sends(m))
+        return;
+    mirror(g, &y);
+    if (material_clear(m)) {
+        send_clear(k, id, v, &y);
+        return;
+    }
+    for (int i = 0; i < g->n; i++)
+        send(g, i, id, g->t[i] + g->tau[i], lane_get(&y.mirrored, i), weight_of(m->reflection), v->of ? &v->of->in : NULL, group_place(g, i), &v->reflected);
+}
+
+/* ---- following ---- */
+
+static void add_light(const bounce *b, const vec3s *from, vec3s *to)
+{
+    for (int i = 0; i < b->n; i++) {
+        const int at = b->lane[i];
+        to->x[at] += b->weight.x[i] * from->x[i];
+        to->y[at] += b->weight.y[i] * from->y[i];
+        to->z[at] += b->weight.z[i] * from->z[i];
+    }
+}
+
+/* What goes straight on of b becomes b. */
+static void go_on(const bounce *on, bounce *b)
+{
+    int32_t lane[LANES];
+    vec3s weight;
+    for (int i = 0; i < on->n; i++) {
+        bs_vec3 w = lane_get(&on->weight, i), before = lane_get(&b->weight, on->lane[i]);
+        bs_vec3 both = {w.x * before.x, w.y * before.y, w.z * before.z};
+        lane[i] = b->lane[on->lane[i]];
+        lane_set(&weight, i, both);
+    }
+    *b = *on;
+    memcpy(b->lane, lane, (size_t)on->n * sizeof *lane);
+    memcpy(&b->weight, &weight, sizeof weight);
+}
+
+/* Trace a wave that `left` more may follow. A ray that goes straight on through a surface is none more, as in POV-Ray; so it is
+ * traced in the same workspace, in a loop. */
+static void follow(const tracer *k, bounce *b, int left, workspace *v)
+{
+    workspace *d = v->deeper;
+    tracer inner = *k;
+    inner.layers = false;
+    for (int times = 0; b->n > 0 && times < STRAIGHTS; times++) {
+        d->of = b;
+        d->left = left;
+        d->x = b->x;
+        d->stats = v->stats; /* the counts go along */
+        trace(&inner, b->n, d);
+        v->stats = d->stats;
+        add_light(b, &d->out.rgb, &v->out.rgb);
+        go_on(&d->straight, b);
+    }
+}
+
+void secondary_follow(const tracer *k, workspace *v)
+{
+    if (v->left == 0)
+        return;
+    follow(k, &v->reflected, v->left - 1, v);
+    follow(k, &v->refracted, v->left - 1, v);
+    if (!v->of)
+        follow(k, &v->straight, v->left, v);
+}

@@ -1,0 +1,42 @@
+/* Secondary rays: mirrored, refracted, and straight on through what does not refract. Those of a wave's lanes are gathered, side by side,
+ * in waves of their own, that are traced as the camera's are, in the next workspace; so waves are full where their
+ * parents' groups are not. How far this goes is bounded, and so is the memory, which each thread has from the start.
+ */
+#ifndef KAGE_RENDER_SECONDARY_H
+#define KAGE_RENDER_SECONDARY_H
+
+#include "wave/wave.h"
+
+enum {
+    MEDIA = 8,      /* things within one another, of which a ray knows */
+    STRAIGHTS = 256 /* surfaces in a row that a ray passes straight on */
+};
+
+/* What each ray is in: the objects that it has entered and not left, the innermost last. */
+typedef struct media {
+    int32_t n[LANES], id[MEDIA][LANES];
+} media;
+
+/* A wave of secondary rays. */
+typedef struct bounce {
+    int n;
+    int32_t lane[LANES]; /* in the wave to whose light they add, */
+    vec3s weight;        /* with this weight */
+    rays x;              /* from the shifted place r + s t0 */
+    starts from;
+    media in;
+} bounce;
+
+struct tracer;
+struct workspace;
+
+/* None yet. */
+void secondary_begin(struct workspace *v);
+
+/* The rays that go on from the group v->g, which has met object `id`. */
+void secondary_send(const struct tracer *k, int id, struct workspace *v);
+
+/* Trace all that were sent, and add their light to v->out.rgb. */
+void secondary_follow(const struct tracer *k, struct workspace *v);
+
+#endif

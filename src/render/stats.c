@@ -1,0 +1,44 @@
+#include "render/stats.h"
+
+#include <time.h>
+
+const char *const stage_names[STAGES] = {
+    "camera", "hit", "sort", "surface", "bump", "normal", "shift", "shadow", "shade", "film",
+};
+
+double stats_clock(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+void stats_orders(stats *s, int n, const int32_t *order, int asked)
+{
+    int same = 0;
+    for (int i = 0; i < n; i++)
+        same += order[i] == asked;
+    s->bumped += n;
+    s->fell_back += n - same;
+    if (same == n)
+        s->orders[asked + 1] += n;
+    else
+        for (int i = 0; i < n; i++)
+            s->orders[order[i] + 1]++;
+}
+
+void stats_add(stats *sum, const stats *part)
+{
+    sum->rays += part->rays;
+    sum->shadow_rays += part->shadow_rays;
+    sum->secondary_rays += part->secondary_rays;
+    sum->heights += part->heights;
+    sum->displaced.heights += part->displaced.heights;
+    sum->displaced.uncertain += part->displaced.uncertain;
+    sum->bumped += part->bumped;
+    sum->fell_back += part->fell_back;
+    for (int k = 0; k < ORDER_CODES; k++)
+        sum->orders[k] += part->orders[k];
+    for (int k = 0; k < STAGES; k++)
+        sum->seconds[k] += part->seconds[k];
+}

@@ -1,0 +1,96 @@
+#include "render/transmittance.h"
+
+#include <string.h>
+
+#include "wave/lane.h"
+
+enum { CROSSINGS = 64 }; /* of a rough surface; what crosses it more often is dark */
+
+/* The segments that are still followed, side by side, each up to the light at t = 1. */
+typedef struct segments {
+    int n;
+    int32_t lane[LANES];
+    rays x;
+    starts from;
+    hits h;
+    int32_t part[LANES];
+    real u[LANES], w[LANES];
+    vec3s color;
+} segments;
+
+void filter_begin(group *g) { vec3s_fill(&g->tint, g->n, 1, 1, 1); }
+
+static void begin(const group *g, int id, bool own, segments *a)
+{
+    a->n = 0;
+    for (int i = 0; i < g->n; i++) {
+        if (!(g->lit[i] > 0))
+            continue;
+        const int to = a->n++;
+        a->lane[to] = i;
+        lane_set(&a->x.r, to, lane_get(&g->to_light.r, i));
+        lane_set(&a->x.s, to, lane_get(&g->to_light.s, i));
+        lane_set(&a->from.at, to, lane_get(&g->to_light.r, i));
+        a->from.id[to] = own ? id : -1;
+        a->from.part[to] = g->part[i];
+    }
+}
+
+/* Those that cross the surface go on behind it; the others have arrived. */
+static void cross(int id, bool rough, segments *a)
+{
+    int n = 0;
+    for (int i = 0; i < a->n; i++) {
+        if (a->h.id[i] < 0)
+            continue;
+        const real t = a->h.t[i];
+        bs_vec3 at = lane_at(&a->x, i, t), s = lane_get(&a->x.s, i), rest = {s.x * (1 - t), s.y * (1 - t), s.z * (1 - t)};
+        a->lane[n] = a->lane[i];
+        lane_set(&a->x.r, n, at);
+        lane_set(&a->x.s, n, rest);
+        lane_set(&a->from.at, n, at);
+        a->from.id[n] = id;
+        a->from.part[n] = rough ? a->h.part[i] : a->part[i];
+        n++;
+    }
+    a->n = n;
+}
+
+static void tint(const material *m, const segments *a, group *g)
+{
+    const real filter = (real)m->filter, transmit = (real)m->transmit;
+    const bs_vec3 plain = {(real)m->color.x, (real)m->color.y, (real)m->color.z};
+    for (int i = 0; i < a->n; i++) {
+        const int at = a->lane[i];
+        if (a->h.id[i] < 0)
+            continue;
+        bs_vec3 c = m->pattern ? lane_get(&a->color, i) : plain;
+        g->tint.x[at] *= c.x * filter + transmit;
+        g->tint.y[at] *= c.y * filter + transmit;
+        g->tint.z[at] *= c.z * filter + transmit;
+    }
+}
+
+void filter_light(const tracer *k, int id, bool own, group *g, stats *st)
+{
+    const object *o = &k->scene->object[id];
+    const material *m = &k->scene->material[o->material];
+    segments a;
+    begin(g, id, own, &a);
+    for (int crossing = 0; crossing < CROSSINGS && a.n; crossing++) {
+        for (int i = 0; i < a.n; i++) {
+            a.h.t[i] = 1;
+            a.h.id[i] = -1;
+            a.h.part[i] = 0;
+        }
+        trace_hit(k, id, a.n, &a.x, &a.from, &a.h, st);
+        memcpy(a.part, a.h.part, sizeof a.part);
+        o->shape->is->locate(o->shape, a.n, &a.x, a.h.t, a.part, a.u, a.w);
+        if (o->color)
+            o->color->is->eval(o->color, a.n, a.u, a.w, &a.color);
+        tint(m, &a, g);
+        cross(id, k->displaced && o->bump, &a);
+    }
+    for (int i = 0; i < a.n; i++)
+        g->lit[a.lane[i]] = 0;
+}

@@ -1,0 +1,222 @@
+#include "scene/object_bvh.h"
+
+#include "bvh/bvh.h"
+#include "scene/scene.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    FEW = 12, /* objects with an end: no more than these are all tried with all, which is the faster (docs/design.md) */
+    BITS = 64,
+    WORDS = LANES / BITS,
+};
+
+typedef struct box {
+    double lo[3], hi[3];
+} box;
+
+struct crowd {
+    int objects, bounded;
+    int32_t *object; /* of each box; then those that have none, as they have no end */
+    box *box;
+    bvh_space space; /* about all boxes */
+    bvh *tree;       /* over them */
+};
+
+struct meetings {
+    int objects;
+    uint64_t *met;           /* a bit for each object */
+    uint64_t (*lane)[WORDS]; /* and for each ray of those objects */
+};
+
+/* ---- the objects ---- */
+
+static box box_of(const scene *s, const object *o)
+{
+    box b;
+    o->shape->is->box(o->shape, b.lo, b.hi);
+    const double high = s->displaced && o->bump ? fmax(fabs((double)o->bump->Pmin), fabs((double)o->bump->Pmax)) : 0;
+    for (int k = 0; k < 3; k++) {
+        b.lo[k] -= high;
+        b.hi[k] += high;
+    }
+    return b;
+}
+
+static bool has_end(const box *b)
+{
+    bool ends = true;
+    for (int k = 0; k < 3; k++)
+        ends = ends && b->hi[k] - b->lo[k] < HUGE_VAL;
+    return ends;
+}
+
+static void measure(crowd *c)
+{
+    box all = c->box[0];
+    for (int i = 1; i < c->bounded; i++)
+        for (int k = 0; k < 3; k++) {
+            all.lo[k] = fmin(all.lo[k], c->box[i].lo[k]);
+            all.hi[k] = fmax(all.hi[k], c->box[i].hi[k]);
+        }
+    c->space = bvh_space_about(all.lo, all.hi);
+}
+
+static bvh *tree_of(const crowd *c)
+{
+    bvh_box *b = malloc(sizeof *b * (size_t)c->bounded);
+    for (int i = 0; b && i < c->bounded; i++)
+        b[i] = bvh_box_in(&c->space, c->box[i].lo, c->box[i].hi);
+    bvh *tree = b ? bvh_new(c->bounded, b) : NULL;
+    free(b);
+    return tree;
+}
+
+crowd *crowd_new(const scene *s, bool *good)
+{
+    const size_t n = (size_t)s->objects;
+    crowd *c = calloc(1, sizeof *c);
+    *good = c && (c->object = malloc(sizeof *c->object * n)) && (c->box = malloc(sizeof *c->box * n));
+    for (int i = 0, endless = 0; *good && i < s->objects; i++) {
+        const box b = box_of(s, &s->object[i]);
+        if (has_end(&b)) {
+            c->box[c->bounded] = b;
+            c->object[c->bounded++] = i;
+        } else
+            c->object[s->objects - ++endless] = i;
+    }
+    if (*good && c->bounded > FEW) {
+        c->objects = s->objects;
+        measure(c);
+        *good = (c->tree = tree_of(c)) != NULL;
+    }
+    if (c && c->tree)
+        return c;
+    crowd_free(c);
+    return NULL;
+}
+
+void crowd_free(crowd *c)
+{
+    if (!c)
+        return;
+    bvh_free(c->tree);
+    free(c->object);
+    free(c->box);
+    free(c);
+}
+
+/* ---- a wave ---- */
+
+static size_t words_for(int objects) { return ((size_t)objects + BITS - 1) / BITS; }
+
+meetings *meetings_new(const crowd *c)
+{
+    meetings *m = calloc(1, sizeof *m);
+    if (!m)
+        return NULL;
+    m->objects = c->objects;
+    m->met = calloc(words_for(c->objects), sizeof *m->met);
+    m->lane = calloc((size_t)c->objects, sizeof *m->lane);
+    if (m->met && m->lane)
+        return m;
+    meetings_free(m);
+    return NULL;
+}
+
+void meetings_free(meetings *m)
+{
+    if (!m)
+        return;
+    free(m->met);
+    free(m->lane);
+    free(m);
+}
+
+static void note(meetings *m, int32_t id, int lane)
+{
+    m->met[id / BITS] |= (uint64_t)1 << (id % BITS);
+    m->lane[id][lane / BITS] |= (uint64_t)1 << (lane % BITS);
+}
+
+static void clear(meetings *m)
+{
+    for (int32_t k = meetings_next(m, -1); k >= 0; k = meetings_next(m, k))
+        memset(m->lane[k], 0, sizeof m->lane[k]);
+    memset(m->met, 0, words_for(m->objects) * sizeof *m->met);
+}
+
+/* A ray on its way through the hierarchy. */
+typedef struct passage {
+    const crowd *c;
+    meetings *m;
+    int lane;
+    double r[3], s[3], end, size; /* size: of r's coordinates */
+} passage;
+
+/* Whether it passes the box, or comes so near that float might see a hit there. */
+static bool passes(const passage *p, const box *b)
+{
+    double t0 = 0, t1 = p->end;
+    for (int k = 0; k < 3; k++) {
+        const double air = 16 * REAL_ROUNDING * (p->size + fabs(b->lo[k]) + fabs(b->hi[k]));
+        const double lo = b->lo[k] - air - p->r[k], hi = b->hi[k] + air - p->r[k];
+        if (p->s[k] == 0) {
+            t1 = lo <= 0 && hi >= 0 ? t1 : -1;
+            continue;
+        }
+        const double x = lo / p->s[k], y = hi / p->s[k];
+        t0 = fmax(t0, fmin(x, y));
+        t1 = fmin(t1, fmax(x, y));
+    }
+    return t0 <= t1 * (1 + 16 * REAL_ROUNDING);
+}
+
+static void visit(void *user, int32_t index)
+{
+    const passage *p = user;
+    if (passes(p, &p->c->box[index]))
+        note(p->m, p->c->object[index], p->lane);
+}
+
+void crowd_meet(const crowd *c, int n, const rays *x, const real *end, const int32_t *own, meetings *m)
+{
+    clear(m);
+    for (int k = c->bounded; k < c->objects; k++)
+        for (int i = 0; i < n; i++)
+            note(m, c->object[k], i);
+    for (int i = 0; i < n; i++) {
+        const vec3 r = {(double)x->r.x[i], (double)x->r.y[i], (double)x->r.z[i]};
+        const vec3 s = {(double)x->s.x[i], (double)x->s.y[i], (double)x->s.z[i]};
+        passage p = {c, m, i, {r.x, r.y, r.z}, {s.x, s.y, s.z}, (double)end[i], fabs(r.x) + fabs(r.y) + fabs(r.z)};
+        double from = 0, to = p.end;
+        float at[3], way[3], far;
+        if (own && own[i] >= 0)
+            note(m, own[i], i);
+        if (bvh_enter(&c->space, c->space.radius, r, s, &from, &to, at, way, &far))
+            bvh_along(c->tree, at, way, far, visit, &p);
+    }
+}
+
+int32_t meetings_next(const meetings *m, int32_t after)
+{
+    for (int32_t k = after + 1; k < m->objects; k++) {
+        const uint64_t rest = m->met[k / BITS] >> (k % BITS);
+        if (rest & 1)
+            return k;
+        if (!rest)
+            k |= BITS - 1; /* none in this word */
+    }
+    return -1;
+}
+
+int meetings_of(const meetings *m, int32_t id, int32_t *lane)
+{
+    int n = 0;
+    for (int i = 0; i < LANES; i++) { /* without a branch */
+        lane[n] = i;
+        n += (int)(m->lane[id][i / BITS] >> (i % BITS) & 1);
+    }
+    return n;
+}

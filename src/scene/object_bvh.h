@@ -1,0 +1,34 @@
+/* Which of a scene's many objects each ray of a wave may meet, so that not all are tried with all. The objects' boxes are in a hierarchy
+ * (bvh.h); what it tells is told again, the same on every processor, by their boxes in double. Objects without an end, as planes, are
+ * always told.
+ */
+#ifndef KAGE_SCENE_OBJECT_BVH_H
+#define KAGE_SCENE_OBJECT_BVH_H
+
+#include <stdbool.h>
+
+#include "wave/wave.h"
+
+struct scene;
+typedef struct crowd crowd;
+
+/* The boxes of the scene's objects, with their heights where they are displaced. NULL with *good: so few that trying all is faster. NULL
+ * without: out of memory. */
+crowd *crowd_new(const struct scene *s, bool *good);
+void crowd_free(crowd *c);
+
+/* For each object the rays of a wave that may meet it. One for each thread. */
+typedef struct meetings meetings;
+meetings *meetings_new(const crowd *c); /* NULL: out of memory */
+void meetings_free(meetings *m);
+
+/* Find them, for n rays r + s t, 0 < t < end[i]. own: the object that each ray has left, which is told whatever its box; NULL: none. */
+void crowd_meet(const crowd *c, int n, const rays *x, const real *end, const int32_t *own, meetings *m);
+
+/* The next object after `after` (-1: the first) that some ray may meet; -1: there is none. */
+int32_t meetings_next(const meetings *m, int32_t after);
+
+/* The rays, in order, that may meet it, and how many. */
+int meetings_of(const meetings *m, int32_t id, int32_t *lane);
+
+#endif

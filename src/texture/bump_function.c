@@ -1,0 +1,130 @@
+/* P from an expression in u and w, with exact partials by forward-mode differentiation (expr.h). */
+#include "texture/bump.h"
+
+#include "base/vec3.h"
+
+#include <stdlib.h>
+
+typedef struct function {
+    perturb base;
+    expr *f;
+    double scale;
+} function;
+
+static void function_copy(int n, double scale, const double *restrict from, real *restrict to)
+{
+    for (int i = 0; i < n; i++)
+        to[i] = (real)(scale * from[i]);
+}
+
+static void function_eval(const perturb *base, int n, const real *u, const real *w, int order, heights *h)
+{
+    const function *p = (const function *)base;
+    for (int at = 0; at < n; at += EXPR_BATCH) {
+        int m = n - at < EXPR_BATCH ? n - at : EXPR_BATCH;
+        double x[EXPR_BATCH], y[EXPR_BATCH];
+        expr_jets j;
+        for (int i = 0; i < m; i++) {
+            x[i] = (double)u[at + i];
+            y[i] = (double)w[at + i];
+        }
+        expr_eval(p->f, m, x, y, order, &j);
+        function_copy(m, p->scale, j.v, h->P + at);
+        if (order >= 1) {
+            function_copy(m, p->scale, j.u, h->Pu + at);
+            function_copy(m, p->scale, j.w, h->Pw + at);
+        }
+        if (order >= 2) {
+            function_copy(m, p->scale, j.uu, h->Puu + at);
+            function_copy(m, p->scale, j.uw, h->Puw + at);
+            function_copy(m, p->scale, j.ww, h->Pww + at);
+        }
+    }
+}
+
+static void function_jets(const perturb *base, int n, const double *u, const double *w, expr_jets *out)
+{
+    const function *p = (const function *)base;
+    const double scale = p->scale;
+    expr_eval(p->f, n, u, w, 1, out);
+    for (int i = 0; i < n; i++) {
+        out->v[i] *= scale;
+        out->u[i] *= scale;
+        out->w[i] *= scale;
+    }
+}
+
+/* scale times a range, 0 for a scale of 0 */
+static void scaled(double scale, double range[2])
+{
+    const double a = scale == 0 ? 0 : scale * range[0], b = scale == 0 ? 0 : scale * range[1];
+    range[0] = lesser(a, b);
+    range[1] = greater(a, b);
+}
+
+static void function_bound(const perturb *base, const double u[2], const double w[2], expr_bounds *out)
+{
+    const function *p = (const function *)base;
+    expr_range_gradient(p->f, u[0], u[1], w[0], w[1], out);
+    scaled(p->scale, out->v);
+    scaled(p->scale, out->u);
+    scaled(p->scale, out->w);
+}
+
+static void function_free(perturb *base)
+{
+    expr_free(((function *)base)->f);
+    free(base);
+}
+
+static const perturb_methods function_methods = {"function", function_eval, function_jets, function_bound, function_free};
+
+static double widest(const double range[2], double so_far) { return greater(so_far, greater(fabs(range[0]), fabs(range[1]))); }
+
+/* Where part i of n of an extent begins, which is where part i - 1 ends. */
+static double part(const double extent[2], int i, int n)
+{
+    return i == 0 ? extent[0] : i == n ? extent[1] : extent[0] + (extent[1] - extent[0]) * i / n;
+}
+
+/* Interval arithmetic takes each mention of u for another variable, so its bounds are wide over a wide extent. Over
+ * CELLS x CELLS parts of it they are close. Slopes bounded in each part are bounded by the steepest in all: the parts
+ * share their edges, so that no jump is between them. */
+static void function_bounds(const expr *f, const double u[2], const double w[2], double P[2], double slope[2])
+{
+    enum { CELLS = 64 };
+    int nu = u[1] - u[0] < HUGE_VAL ? CELLS : 1, nw = w[1] - w[0] < HUGE_VAL ? CELLS : 1;
+    P[0] = HUGE_VAL;
+    P[1] = -HUGE_VAL;
+    slope[0] = slope[1] = 0;
+    for (int j = 0; j < nw; j++)
+        for (int i = 0; i < nu; i++) {
+            expr_bounds b;
+            expr_range_gradient(f, part(u, i, nu), part(u, i + 1, nu), part(w, j, nw), part(w, j + 1, nw), &b);
+            P[0] = lesser(P[0], b.v[0]);
+            P[1] = greater(P[1], b.v[1]);
+            slope[0] = widest(b.u, slope[0]);
+            slope[1] = widest(b.w, slope[1]);
+        }
+}
+
+perturb *perturb_function(expr *f, double scale, const double u[2], const double w[2])
+{
+    function *p = calloc(1, sizeof *p);
+    if (!p) {
+        expr_free(f);
+        return NULL;
+    }
+    double P[2], slope[2];
+    function_bounds(f, u, w, P, slope);
+    p->base.is = &function_methods;
+    if (scale != 0) { /* 0 times an infinite bound is no bound */
+        p->base.Pmin = (real)(scale < 0 ? scale * P[1] : scale * P[0]);
+        p->base.Pmax = (real)(scale < 0 ? scale * P[0] : scale * P[1]);
+    }
+    p->base.Pu_max = perturb_slope(slope[0], scale);
+    p->base.Pw_max = perturb_slope(slope[1], scale);
+    p->f = f;
+    p->scale = scale;
+    return &p->base;
+}

@@ -1,0 +1,229 @@
+/* P from discrete data, section 4.1 of the paper: "the data of the points next to the intersection ... their
+ * differences as approximate derivatives ... where the coordinates are real numbers, the derivatives at the neighbouring
+ * points are interpolated bilinearly".
+ *
+ * The central differences are made once, at the samples, and already carry scale and chain rule. Interpolated, they are those of P
+ * as it is looked up, a sample's distance to either side: (P(u + du, w) - P(u - du, w))/(2 du). But where a clamped map is level,
+ * beyond its outermost samples (with `cells` that is half a cell before its edge), the derivatives that way are 0: a difference
+ * would reach back to where it is not. On the outermost sample itself they are the mean of both sides.
+ */
+#include "texture/bump.h"
+
+#include <stdlib.h>
+
+enum { P_PU_PW, PUU_PUW_PWW, TABLES };
+
+typedef struct map {
+    perturb base;
+    table_grid grid;
+    real *table[TABLES]; /* row 0 at the lowest w, as in the image */
+} map;
+
+/* 0 where x is beyond the outermost samples along its axis. */
+STAGE static void level_beyond(int n, real k, real o, int last, const real *restrict x, real *restrict derivative)
+{
+    const real end = (real)last;
+    for (int i = 0; i < n; i++) {
+        const real y = x[i] * k + o;
+        derivative[i] = y >= 0 && y <= end ? derivative[i] : 0;
+    }
+}
+
+static void clamp_derivatives(const table_grid *g, int n, const real *u, const real *w, int order, heights *h)
+{
+    real *const along_u[] = {h->Pu, h->Puu, h->Puw}, *const along_w[] = {h->Pw, h->Puw, h->Pww};
+    for (int k = 0; k < (order == 2 ? 3 : 1); k++) {
+        level_beyond(n, g->ku, g->ou, g->columns, u, along_u[k]);
+        level_beyond(n, g->kw, g->ow, g->rows, w, along_w[k]);
+    }
+}
+
+static void map_eval(const perturb *base, int n, const real *u, const real *w, int order, heights *h)
+{
+    const map *m = (const map *)base;
+    int32_t at[LANES];
+    real a[LANES], b[LANES];
+    table_cells(&m->grid, n, u, w, at, a, b);
+    if (order == 0)
+        table_one(&m->grid, m->table[P_PU_PW], n, at, a, b, h->P);
+    else
+        table_three(&m->grid, m->table[P_PU_PW], n, at, a, b, h->P, h->Pu, h->Pw);
+    if (order == 2)
+        table_three(&m->grid, m->table[PUU_PUW_PWW], n, at, a, b, h->Puu, h->Puw, h->Pww);
+    if (order >= 1 && !m->grid.repeat)
+        clamp_derivatives(&m->grid, n, u, w, order, h);
+}
+
+/* The cell of a coordinate x among n samples, and where in it. *k, samples a unit, becomes 0 beyond an end. */
+static int cell(double x, int n, int repeat, double *fraction, double *k)
+{
+    *k = repeat || (x >= 0 && x <= n) ? *k : 0;
+    const double y = fmin(fmax(repeat ? x - floor(x / n) * n : x, 0), n);
+    const int i = y < n ? (int)y : n - 1;
+    *fraction = y - i;
+    return i;
+}
+
+static void map_jets(const perturb *base, int n, const double *u, const double *w, expr_jets *out)
+{
+    const map *m = (const map *)base;
+    const table_grid *g = &m->grid;
+    for (int i = 0; i < n; i++) {
+        double a, b, ku = (double)g->ku, kw = (double)g->kw;
+        const int column = cell(u[i] * ku + (double)g->ou, g->columns, g->repeat, &a, &ku);
+        const int row = cell(w[i] * kw + (double)g->ow, g->rows, g->repeat, &b, &kw);
+        const real *p = m->table[P_PU_PW] + ((size_t)row * (size_t)(g->columns + 1) + (size_t)column) * TABLE_VALUES;
+        const real *q = p + (size_t)(g->columns + 1) * TABLE_VALUES;
+        const double p0 = (double)p[0], p1 = (double)p[TABLE_VALUES], q0 = (double)q[0], q1 = (double)q[TABLE_VALUES];
+        const double left = p0 + (q0 - p0) * b, right = p1 + (q1 - p1) * b;
+        out->v[i] = left + (right - left) * a;
+        out->u[i] = (right - left) * ku;
+        out->w[i] = ((q0 - p0) + ((q1 - p1) - (q0 - p0)) * a) * kw;
+    }
+}
+
+/* The cells that a range of (u,w) comes to along one axis: `first` and how many, wrapped as they are looked up; all of them where they
+ * are many, 0 where it may lie beyond an end and P be level there. */
+typedef struct cells {
+    int first, n;
+    bool beyond;
+} cells;
+
+static cells cells_over(const double x[2], double k, double o, int n, int repeat)
+{
+    const double a = fmin(x[0] * k, x[1] * k) + o, b = fmax(x[0] * k, x[1] * k) + o, air = 1e-12 * (fabs(a) + fabs(b) + fabs(o));
+    double lo = floor(a - air), hi = floor(b + air);
+    cells c = {0, n, !repeat && (a - air < 0 || b + air > n)};
+    if (!(hi - lo < n) || !(fabs(lo) < 1e9))
+        return c;
+    if (!repeat) {
+        lo = fmin(fmax(lo, 0), n - 1);
+        hi = fmin(fmax(hi, 0), n - 1);
+    }
+    c.first = (int)(lo - (repeat ? floor(lo / n) * n : 0));
+    c.n = (int)(hi - lo) + 1;
+    return c;
+}
+
+static void widen(double range[2], double x)
+{
+    range[0] = fmin(range[0], x);
+    range[1] = fmax(range[1], x);
+}
+
+/* Over a few cells their samples tell; over many the bounds of the whole are close enough. */
+static void map_bound(const perturb *base, const double u[2], const double w[2], expr_bounds *out)
+{
+    enum { FEW = 1024 };
+    const map *m = (const map *)base;
+    const table_grid *g = &m->grid;
+    const double ku = (double)g->ku, kw = (double)g->kw, Pu = (double)base->Pu_max, Pw = (double)base->Pw_max;
+    const cells c = cells_over(u, ku, (double)g->ou, g->columns, g->repeat), r = cells_over(w, kw, (double)g->ow, g->rows, g->repeat);
+    *out = (expr_bounds){{(double)base->Pmin, (double)base->Pmax}, {-Pu, Pu}, {-Pw, Pw}};
+    if ((double)c.n * r.n > FEW)
+        return;
+    *out = (expr_bounds){{HUGE_VAL, -HUGE_VAL}, {HUGE_VAL, -HUGE_VAL}, {HUGE_VAL, -HUGE_VAL}};
+    for (int j = 0; j < r.n; j++)
+        for (int i = 0; i < c.n; i++) {
+            const size_t row = (size_t)((r.first + j) % g->rows), column = (size_t)((c.first + i) % g->columns);
+            const real *p = m->table[P_PU_PW] + (row * (size_t)(g->columns + 1) + column) * TABLE_VALUES;
+            const real *q = p + (size_t)(g->columns + 1) * TABLE_VALUES;
+            const double p0 = (double)p[0], p1 = (double)p[TABLE_VALUES], q0 = (double)q[0], q1 = (double)q[TABLE_VALUES];
+            widen(out->v, fmin(fmin(p0, p1), fmin(q0, q1)));
+            widen(out->v, fmax(fmax(p0, p1), fmax(q0, q1)));
+            widen(out->u, (p1 - p0) * ku);
+            widen(out->u, (q1 - q0) * ku);
+            widen(out->w, (q0 - p0) * kw);
+            widen(out->w, (q1 - p1) * kw);
+        }
+    if (c.beyond)
+        widen(out->u, 0);
+    if (r.beyond)
+        widen(out->w, 0);
+}
+
+static void map_free(perturb *base)
+{
+    map *m = (map *)base;
+    for (int k = 0; k < TABLES; k++)
+        free(m->table[k]);
+    free(m);
+}
+
+static const perturb_methods map_methods = {"map", map_eval, map_jets, map_bound, map_free};
+
+/* The tables. ku, kw: samples per u and per w, for the chain rule. */
+static void map_differences(map *m, const image *s, const map_layout *l, double ku, double kw)
+{
+    m->base.Pmin = REAL_FAR;
+    m->base.Pmax = -REAL_FAR;
+    for (int j = 0; j <= m->grid.rows; j++)
+        for (int i = 0; i <= m->grid.columns; i++) {
+            double z[3][3];
+            for (int y = 0; y < 3; y++)
+                for (int x = 0; x < 3; x++) {
+                    int row = table_sample(j + y - 1, s->height, l), column = table_sample(i + x - 1, s->width, l);
+                    double v = (double)s->v[(size_t)row * (size_t)s->width + (size_t)column];
+                    z[y][x] = l->scale * (v - l->zero);
+                }
+            const double d[TABLES][TABLE_VALUES] = {
+                {z[1][1], (z[1][2] - z[1][0]) / 2 * ku, (z[2][1] - z[0][1]) / 2 * kw},
+                {(z[1][2] - 2 * z[1][1] + z[1][0]) * ku * ku, (z[2][2] - z[2][0] - z[0][2] + z[0][0]) / 4 * ku * kw,
+                 (z[2][1] - 2 * z[1][1] + z[0][1]) * kw * kw},
+            };
+            for (int t = 0; t < TABLES; t++)
+                for (int k = 0; k < TABLE_VALUES; k++)
+                    m->table[t][((size_t)j * (size_t)(m->grid.columns + 1) + (size_t)i) * TABLE_VALUES + (size_t)k] = (real)d[t][k];
+            m->base.Pmin = real_min((real)z[1][1], m->base.Pmin);
+            m->base.Pmax = real_max((real)z[1][1], m->base.Pmax);
+        }
+}
+
+static double steepest(const real *from, const real *to, double so_far)
+{
+    double d = fabs((double)*to - (double)*from);
+    return d <= so_far ? so_far : d == d ? d : HUGE_VAL; /* NaN: a sample is, or is infinite */
+}
+
+/* Bilinear between the samples, P is steepest along the edge of a cell: by the difference of two neighbours, not by the
+ * central ones, which are means of two such. The extra column and row hold the neighbours across the wrap. */
+static void map_slopes(map *m)
+{
+    double du = 0, dw = 0;
+    const size_t next = TABLE_VALUES, below = (size_t)(m->grid.columns + 1) * TABLE_VALUES;
+    const real *v = m->table[P_PU_PW];
+    for (int j = 0; j <= m->grid.rows; j++)
+        for (int i = 0; i <= m->grid.columns; i++, v += TABLE_VALUES) {
+            du = i < m->grid.columns ? steepest(v, v + next, du) : du;
+            dw = j < m->grid.rows ? steepest(v, v + below, dw) : dw;
+        }
+    m->base.Pu_max = perturb_slope(du, (double)m->grid.ku); /* as the stages have it */
+    m->base.Pw_max = perturb_slope(dw, (double)m->grid.kw);
+}
+
+perturb *perturb_map(const image *samples, const map_layout *l)
+{
+    table_grid grid;
+    map *m = table_lay(&grid, samples->width, samples->height, l) ? calloc(1, sizeof *m) : NULL;
+    if (!m)
+        return NULL;
+    m->base.is = &map_methods;
+    m->grid = grid;
+    for (int k = 0; k < TABLES; k++) {
+        m->table[k] = malloc(sizeof(real) * TABLE_VALUES * (size_t)(m->grid.columns + 1) * (size_t)(m->grid.rows + 1));
+        if (!m->table[k]) {
+            map_free(&m->base);
+            return NULL;
+        }
+    }
+    map_differences(m, samples, l, (double)(samples->width - l->corners) / l->size[0],
+                    (double)(samples->height - l->corners) / l->size[1]);
+    map_slopes(m);
+    return &m->base;
+}
+
+void perturb_free(perturb *p)
+{
+    if (p)
+        p->is->free(p);
+}

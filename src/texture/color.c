@@ -1,0 +1,136 @@
+#include "texture/color.h"
+
+#include <stdlib.h>
+
+/* ---- checker ---- */
+
+typedef struct checker {
+    pigment base;
+    real even[3], odd[3];
+    real ku, kw, ou, ow; /* fields per (u,w), and the place of (u,w) = 0 in them */
+} checker;
+
+STAGE static void checker_eval(const pigment *base, int n, const real *restrict u, const real *restrict w, vec3s *restrict color)
+{
+    const checker c = *(const checker *)base;
+    for (int i = 0; i < n; i++) {
+        real pair = R(0.5) * (real_floor(u[i] * c.ku + c.ou) + real_floor(w[i] * c.kw + c.ow));
+        real odd = 2 * (pair - real_floor(pair)); /* 0 or 1 */
+        color->x[i] = c.even[0] + odd * (c.odd[0] - c.even[0]);
+        color->y[i] = c.even[1] + odd * (c.odd[1] - c.even[1]);
+        color->z[i] = c.even[2] + odd * (c.odd[2] - c.even[2]);
+    }
+}
+
+static const pigment_methods checker_methods = {"checker", checker_eval, NULL};
+
+static void store(real to[3], vec3 v)
+{
+    to[0] = (real)v.x;
+    to[1] = (real)v.y;
+    to[2] = (real)v.z;
+}
+
+pigment *pigment_checker(const vec3 color[2], const double size[2], const double offset[2])
+{
+    checker *c = calloc(1, sizeof *c);
+    if (!c)
+        return NULL;
+    c->base.is = &checker_methods;
+    store(c->even, color[0]);
+    store(c->odd, color[1]);
+    c->ku = (real)(1 / size[0]);
+    c->kw = (real)(1 / size[1]);
+    c->ou = (real)(-offset[0] / size[0]);
+    c->ow = (real)(-offset[1] / size[1]);
+    return &c->base;
+}
+
+/* ---- image ---- */
+
+struct texels {
+    int width, height;
+    real v[]; /* a table of the image's period */
+};
+
+texels *texels_new(const image *m, const map_layout *l)
+{
+    table_grid g;
+    if (!table_lay(&g, m->width, m->height, l))
+        return NULL;
+    const size_t columns = (size_t)g.columns + 1, rows = (size_t)g.rows + 1;
+    texels *t = malloc(sizeof *t + columns * rows * TABLE_VALUES * sizeof *t->v);
+    if (!t)
+        return NULL;
+    t->width = m->width;
+    t->height = m->height;
+    for (size_t j = 0; j < rows; j++)
+        for (size_t i = 0; i < columns; i++) {
+            const int y = table_sample((int)j, m->height, l), x = table_sample((int)i, m->width, l);
+            const float *from = m->v + 4 * ((size_t)y * (size_t)m->width + (size_t)x);
+            for (size_t k = 0; k < TABLE_VALUES; k++)
+                t->v[(j * columns + i) * TABLE_VALUES + k] = (real)from[k];
+        }
+    return t;
+}
+
+void texels_free(texels *t) { free(t); }
+
+typedef struct image_pigment {
+    pigment base;
+    const texels *texels;
+    table_grid grid;
+} image_pigment;
+
+static void bilinear_eval(const pigment *base, int n, const real *u, const real *w, vec3s *color)
+{
+    const image_pigment *p = (const image_pigment *)base;
+    int32_t at[LANES];
+    real a[LANES], b[LANES];
+    table_cells(&p->grid, n, u, w, at, a, b);
+    table_three(&p->grid, p->texels->v, n, at, a, b, color->x, color->y, color->z);
+}
+
+/* Each pixel is a cell here, and its colour that of the sample at its upper left corner. Where the table ends, place 1 in the last
+ * cell is the last sample. */
+STAGE static void to_corner(int n, real *restrict a)
+{
+    for (int i = 0; i < n; i++)
+        a[i] = a[i] < 1 ? 0 : R(1);
+}
+
+static void nearest_eval(const pigment *base, int n, const real *u, const real *w, vec3s *color)
+{
+    const image_pigment *p = (const image_pigment *)base;
+    int32_t at[LANES];
+    real a[LANES], b[LANES];
+    table_cells(&p->grid, n, u, w, at, a, b);
+    to_corner(n, a);
+    to_corner(n, b);
+    table_three(&p->grid, p->texels->v, n, at, a, b, color->x, color->y, color->z);
+}
+
+static const pigment_methods bilinear_methods = {"image", bilinear_eval, NULL}, nearest_methods = {"image", nearest_eval, NULL};
+
+pigment *pigment_image(const texels *t, const map_layout *l, bool nearest)
+{
+    image_pigment *p = calloc(1, sizeof *p);
+    if (!p)
+        return NULL;
+    p->base.is = nearest ? &nearest_methods : &bilinear_methods;
+    p->texels = t;
+    table_lay(&p->grid, t->width, t->height, l);
+    if (nearest) { /* half a pixel back: cells begin where their pixels do */
+        p->grid.ou += R(0.5);
+        p->grid.ow += R(0.5);
+    }
+    return &p->base;
+}
+
+void pigment_free(pigment *p)
+{
+    if (p && p->is->free)
+        p->is->free(p);
+    else
+        free(p);
+}

@@ -1,0 +1,39 @@
+/* The colour of a surface where it is not the same everywhere: a function of (u,w). It knows nothing of surfaces or light. */
+#ifndef KAGE_TEXTURE_COLOR_H
+#define KAGE_TEXTURE_COLOR_H
+
+#include "image/image.h"
+#include "texture/table.h"
+#include "base/vec3.h"
+
+typedef struct pigment pigment;
+
+typedef struct pigment_methods {
+    const char *kind; /* as in the scene file */
+
+    /* The linear colour at (u,w). A stage: n lanes, no allocation, reentrant. */
+    void (*eval)(const pigment *p, int n, const real *u, const real *w, vec3s *color);
+
+    void (*free)(pigment *p); /* NULL: it owns nothing but itself */
+} pigment_methods;
+
+struct pigment {
+    const pigment_methods *is;
+};
+
+/* The pixels of an image, ready to be looked up; several pigments can share them. */
+typedef struct texels texels;
+
+/* From an image of four values a pixel; the wrap is the layout's. NULL: out of memory, fewer than 2 x 2 pixels, or more than 2^29. */
+texels *texels_new(const image *rgba, const map_layout *l);
+void texels_free(texels *t);
+
+/* Fields of the two colours in turn, of that size, one beginning at `offset`. NULL: out of memory. */
+pigment *pigment_checker(const vec3 color[2], const double size[2], const double offset[2]);
+
+/* The image on (u,w) by a layout of the same wrap; the nearest pixel, or bilinear between their middles. The texels must outlive it. */
+pigment *pigment_image(const texels *t, const map_layout *l, bool nearest);
+
+void pigment_free(pigment *p);
+
+#endif

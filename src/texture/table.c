@@ -1,0 +1,141 @@
+#include "texture/table.h"
+
+#include <stddef.h>
+
+/* The place of a coordinate among n samples: i + fraction, 0 <= i < n, the fraction in 0..1, whatever x is. */
+static inline int cell_of(real x, int n, int repeat, real *fraction)
+{
+    real N = (real)n, iN = 1 / N, y = repeat ? x - real_floor(x * iN) * N : x;
+    y = real_min(real_max(y, 0), N); /* far out, and for NaN, the line above gives anything */
+    int i = (int)y;                  /* y >= 0, so this is the floor */
+    i = i < n ? i : n - 1;
+    *fraction = y - (real)i;
+    return i;
+}
+
+/* Call it with a constant `repeat`: a choice in the loop would keep it from being vectorised. */
+static inline void cells(const table_grid *t, int repeat, int n, const real *restrict u, const real *restrict w,
+                         int32_t *restrict at, real *restrict a, real *restrict b)
+{
+    const int columns = t->columns, rows = t->rows;
+    const real ku = t->ku, kw = t->kw, ou = t->ou, ow = t->ow;
+#pragma omp simd
+    for (int i = 0; i < n; i++) {
+        int c = cell_of(u[i] * ku + ou, columns, repeat, &a[i]);
+        int r = cell_of(w[i] * kw + ow, rows, repeat, &b[i]);
+        at[i] = r * (columns + 1) + c;
+    }
+}
+
+STAGE static void cells_repeat(const table_grid *t, int n, const real *u, const real *w, int32_t *at, real *a, real *b)
+{
+    cells(t, 1, n, u, w, at, a, b);
+}
+
+STAGE static void cells_clamp(const table_grid *t, int n, const real *u, const real *w, int32_t *at, real *a, real *b)
+{
+    cells(t, 0, n, u, w, at, a, b);
+}
+
+/* One value alone: a gather. */
+STAGE static void map_one(const table_grid *t, const real *restrict v, int n, const int32_t *restrict at, const real *restrict a,
+                          const real *restrict b, real *restrict out)
+{
+    const int row = (t->columns + 1) * TABLE_VALUES;
+#pragma omp simd
+    for (int i = 0; i < n; i++) {
+        int p = at[i] * TABLE_VALUES, q = p + row;
+        real left = v[p] + (v[q] - v[p]) * b[i];
+        real right = v[p + TABLE_VALUES] + (v[q + TABLE_VALUES] - v[p + TABLE_VALUES]) * b[i];
+        out[i] = left + (right - left) * a[i];
+    }
+}
+
+/* All three of a table: the two left corners and the two right ones as one vector each way. Twelve gathers would cost
+ * about twice as much. The fourth value is padding, but must not look dead to the compiler: it would take the vector to
+ * pieces. So this is a stage of its own, and the next one picks the arrays out. */
+STAGE static void map_interpolate(const table_grid *t, const real *restrict v, int n, const int32_t *restrict at,
+                                  const real *restrict a, const real *restrict b, real (*restrict out)[TABLE_VALUES])
+{
+    const size_t row = (size_t)(t->columns + 1) * TABLE_VALUES;
+    for (int i = 0; i < n; i++) {
+        const real *p = v + (size_t)at[i] * TABLE_VALUES, *q = p + row;
+        real side[2 * TABLE_VALUES];
+        for (int k = 0; k < 2 * TABLE_VALUES; k++)
+            side[k] = p[k] + (q[k] - p[k]) * b[i];
+        for (int k = 0; k < TABLE_VALUES; k++)
+            out[i][k] = side[k] + (side[TABLE_VALUES + k] - side[k]) * a[i];
+    }
+}
+
+STAGE static void map_turn(int n, const real (*restrict from)[TABLE_VALUES], real *restrict x, real *restrict y, real *restrict z)
+{
+    for (int i = 0; i < n; i++) {
+        x[i] = from[i][0];
+        y[i] = from[i][1];
+        z[i] = from[i][2];
+    }
+}
+
+void table_cells(const table_grid *t, int n, const real *u, const real *w, int32_t *at, real *a, real *b)
+{
+    (t->repeat ? cells_repeat : cells_clamp)(t, n, u, w, at, a, b);
+}
+
+void table_one(const table_grid *t, const real *v, int n, const int32_t *at, const real *a, const real *b, real *x)
+{
+    map_one(t, v, n, at, a, b, x);
+}
+
+void table_three(const table_grid *t, const real *v, int n, const int32_t *at, const real *a, const real *b, real *x, real *y, real *z)
+{
+    real out[LANES][TABLE_VALUES];
+    map_interpolate(t, v, n, at, a, b, out);
+    map_turn(n, (const real (*)[TABLE_VALUES])out, x, y, z);
+}
+
+/* ---- layout ---- */
+
+/* The index that stands for i outside 0..n-1. */
+static int wrapped(int i, int n, map_wrap wrap)
+{
+    if (wrap == MAP_CLAMP)
+        return i < 0 ? 0 : i < n ? i : n - 1;
+    int period = wrap == MAP_MIRROR ? 2 * n : n;
+    i = (i % period + period) % period;
+    return i < n ? i : 2 * n - 1 - i;
+}
+
+/* With samples on the edges a mirror does not double the first and the last, and a copy's last is the next one's
+ * first; wrapped is for samples in the middle of cells. */
+int table_sample(int i, int n, const map_layout *l)
+{
+    if (!l->corners || l->wrap == MAP_CLAMP)
+        return wrapped(i, n, l->wrap);
+    if (l->wrap == MAP_REPEAT)
+        return wrapped(i, n - 1, MAP_REPEAT);
+    int period = 2 * (n - 1);
+    i = (i % period + period) % period;
+    return i < n ? i : period - i;
+}
+
+/* Cells to step over before the map repeats, or ends. */
+static int period(int n, const map_layout *l)
+{
+    int cells = n - (l->corners || l->wrap == MAP_CLAMP);
+    return l->wrap == MAP_MIRROR ? 2 * cells : cells;
+}
+
+bool table_lay(table_grid *t, int width, int height, const map_layout *l)
+{
+    const double ku = (double)(width - l->corners) / l->size[0], kw = (double)(height - l->corners) / l->size[1];
+    const double half = l->corners ? 0 : 0.5;
+    *t = (table_grid){.columns = period(width, l),
+                      .rows = period(height, l),
+                      .repeat = l->wrap != MAP_CLAMP,
+                      .ku = (real)ku,
+                      .kw = (real)kw,
+                      .ou = (real)(-l->offset[0] * ku - half),
+                      .ow = (real)(-l->offset[1] * kw - half)};
+    return width > 1 && height > 1 && (t->columns + 1L) * (t->rows + 1L) <= INT32_MAX / TABLE_VALUES; /* places are counted in 32 bits */
+}

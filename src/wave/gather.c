@@ -1,0 +1,173 @@
+#include "wave/gather.h"
+
+#include <string.h>
+
+STAGE static void fill(int n, real *v, real x)
+{
+    for (int i = 0; i < n; i++)
+        v[i] = x;
+}
+
+void wave_start(int n, hits *h)
+{
+    fill(n, h->t, REAL_FAR);
+    for (int i = 0; i < n; i++) {
+        h->id[i] = -1;
+        h->part[i] = 0;
+    }
+}
+
+STAGE static void start_own(int n, const starts *restrict from, const int32_t *restrict id, vec3s *restrict r)
+{
+    for (int i = 0; i < n; i++) {
+        int own = (id[i] == from->id[i]) & (id[i] >= 0);
+        real x = from->at.x[i], y = from->at.y[i], z = from->at.z[i];
+        r->x[i] = own ? x : r->x[i];
+        r->y[i] = own ? y : r->y[i];
+        r->z[i] = own ? z : r->z[i];
+    }
+}
+
+void wave_start_own(int n, const starts *from, const hits *h, rays *x) { start_own(n, from, h->id, &x->r); }
+
+void wave_background(int n, vec3 color, bool layers, int lights, workspace *v)
+{
+    samples *o = &v->out;
+    vec3s_fill(&o->rgb, n, (real)color.x, (real)color.y, (real)color.z);
+    if (!layers)
+        return;
+    fill(n, o->depth, (real)HUGE_VAL);
+    vec3s_fill(&o->position, n, 0, 0, 0);
+    vec3s_fill(&o->normal, n, 0, 0, 0);
+    fill(n, o->u, 0);
+    fill(n, o->w, 0);
+    fill(n, o->height, 0);
+    fill(n, o->tau, 0);
+    for (int i = 0; i < n; i++)
+        o->order[i] = -1;
+    for (int l = 0; l < lights; l++)
+        fill(n, v->visibility[l], 0);
+}
+
+STAGE static void pick(const group *restrict g, const real *restrict from, real *restrict to)
+{
+    if (g->whole) {
+        memcpy(to, from, (size_t)g->n * sizeof *to);
+        return;
+    }
+#pragma omp simd
+    for (int i = 0; i < g->n; i++)
+        to[i] = from[g->lane[i]];
+}
+
+static void pick3(const group *g, const vec3s *from, vec3s *to)
+{
+    pick(g, from->x, to->x);
+    pick(g, from->y, to->y);
+    pick(g, from->z, to->z);
+}
+
+static void pick_some(int n, const int32_t *lane, const vec3s *from, vec3s *to)
+{
+    for (int i = 0; i < n; i++) {
+        to->x[i] = from->x[lane[i]];
+        to->y[i] = from->y[lane[i]];
+        to->z[i] = from->z[lane[i]];
+    }
+}
+
+void wave_pick_rays(int n, const int32_t *lane, const rays *x, rays *to)
+{
+    pick_some(n, lane, &x->r, &to->r);
+    pick_some(n, lane, &x->s, &to->s);
+}
+
+void wave_pick_starts(int n, const int32_t *lane, const starts *from, starts *to)
+{
+    for (int i = 0; i < n; i++) {
+        to->id[i] = from->id[lane[i]];
+        to->part[i] = from->part[lane[i]];
+    }
+    pick_some(n, lane, &from->at, &to->at);
+}
+
+STAGE static int count(int n, const int32_t *id, int32_t wanted)
+{
+    int m = 0;
+    for (int i = 0; i < n; i++)
+        m += id[i] == wanted;
+    return m;
+}
+
+int32_t wave_next_group(int n, const rays *x, hits *h, group *g)
+{
+    int first = 0;
+    while (first < n && h->id[first] < 0)
+        first++;
+    if (first == n)
+        return -1;
+    const int32_t id = h->id[first];
+    g->n = count(n, h->id, id);
+    g->whole = g->n == n;
+    if (!g->whole)
+        for (int i = first, m = 0; m < g->n; i++) { /* without a branch: at a silhouette it would be a toss-up */
+            g->lane[m] = i;
+            m += h->id[i] == id;
+        }
+    for (int i = 0; i < g->n; i++)
+        h->id[group_place(g, i)] = -1;
+    pick(g, h->t, g->t);
+    for (int i = 0; i < g->n; i++)
+        g->part[i] = h->part[group_place(g, i)];
+    pick3(g, &x->r, &g->x.r);
+    pick3(g, &x->s, &g->x.s);
+    return id;
+}
+
+static void put(const group *restrict g, const real *restrict from, real *restrict to)
+{
+    if (g->whole) {
+        memcpy(to, from, (size_t)g->n * sizeof *to);
+        return;
+    }
+    for (int i = 0; i < g->n; i++)
+        to[g->lane[i]] = from[i];
+}
+
+static void put3(const group *g, const vec3s *from, vec3s *to)
+{
+    put(g, from->x, to->x);
+    put(g, from->y, to->y);
+    put(g, from->z, to->z);
+}
+
+STAGE static void brightness(const group *restrict g, real *restrict v)
+{
+    for (int i = 0; i < g->n; i++)
+        v[i] = g->lit[i] * ((g->tint.x[i] + g->tint.y[i] + g->tint.z[i]) / 3);
+}
+
+void wave_scatter_visibility(const group *g, bool tinted, real *visibility)
+{
+    real v[LANES];
+    if (tinted)
+        brightness(g, v);
+    put(g, tinted ? v : g->lit, visibility);
+}
+
+void wave_scatter(const group *g, bool layers, bool bumped, samples *o)
+{
+    put3(g, &g->rgb, &o->rgb);
+    if (!layers)
+        return;
+    put(g, g->t, o->depth);
+    put3(g, &g->q.Q, &o->position);
+    put3(g, &g->n_bump, &o->normal);
+    put(g, g->u, o->u);
+    put(g, g->w, o->w);
+    if (bumped)
+        put(g, g->h.P, o->height);
+    put(g, g->tau, o->tau);
+    for (int i = 0; i < g->n; i++)
+        o->order[group_place(g, i)] = g->order[i];
+}

@@ -1,0 +1,38 @@
+/* One lane of a wave as a vector of bumpshadow.h. Loops over these stay plain loops over the arrays. */
+#ifndef KAGE_WAVE_LANE_H
+#define KAGE_WAVE_LANE_H
+
+#ifdef KAGE_DOUBLE
+#define BS_DOUBLE
+#endif
+#include "bumpshadow.h"
+#include "wave/wave.h"
+
+static inline bs_vec3 lane_get(const vec3s *v, int i)
+{
+    bs_vec3 x = {v->x[i], v->y[i], v->z[i]};
+    return x;
+}
+
+static inline void lane_set(vec3s *v, int i, bs_vec3 x)
+{
+    v->x[i] = x.x;
+    v->y[i] = x.y;
+    v->z[i] = x.z;
+}
+
+static inline bs_vec3 lane_unit(bs_vec3 v)
+{
+    real il = 1 / real_sqrt(bs_dot(v, v));
+    bs_vec3 x = {v.x * il, v.y * il, v.z * il};
+    return x;
+}
+
+/* r + s t */
+static inline bs_vec3 lane_at(const rays *x, int i, real t)
+{
+    bs_vec3 p = {x->r.x[i] + x->s.x[i] * t, x->r.y[i] + x->s.y[i] * t, x->r.z[i] + x->s.z[i] * t};
+    return p;
+}
+
+#endif

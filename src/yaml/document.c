@@ -1,0 +1,165 @@
+/* Opening: the file's bytes, their one document, what is wrong with its syntax; and closing. */
+#include "yaml/document.h"
+
+#include <errno.h>
+#include <libfyaml.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "yaml/text.h"
+
+enum { MAX_ANCHORS = 1000 };
+
+static const char scene_expected[] = "expected a map with camera, lights, materials and objects";
+
+/* ---- the bytes ---- */
+
+/* Why these bytes are no scene, as an error with its place; true: they may be one. */
+static bool is_text(const char *path, const char *text, size_t n, errors *e)
+{
+    char message[80];
+    int line, column;
+    size_t bad = text_not_utf8(text, n);
+    const char *zero = memchr(text, 0, bad);
+    if (n > YAML_MAX_BYTES)
+        return errors_add(e, "%s: the scene is too large, expected at most %d MiB", path, YAML_MAX_BYTES >> 20);
+    int anchors = 0; /* libfyaml's time grows with their square */
+    for (size_t k = 0; k < n; k++)
+        anchors += text[k] == '&';
+    if (anchors > MAX_ANCHORS)
+        return errors_add(e, "%s: %d times '&', expected at most %d: kage takes no anchors", path, anchors, MAX_ANCHORS);
+    if (!zero && bad == n)
+        return text[strspn(text, " \t\r\n")] ||
+               errors_add(e, "%s:1:1: an empty file, %s", path, scene_expected);
+    bad = zero ? (size_t)(zero - text) : bad;
+    text_place(text, bad, &line, &column);
+    snprintf(message, sizeof message, "the byte 0x%02X, expected a text in UTF-8", (unsigned)(unsigned char)text[bad]);
+    return text_error(e, path, text, line, column, message);
+}
+
+static char *read_all(const char *path, size_t *size, errors *e)
+{
+    FILE *f = fopen(path, "rb");
+    char *text = f ? malloc(YAML_MAX_BYTES + 2) : NULL;
+    size_t n = 0;
+    bool good = text != NULL;
+    if (text) {
+        errno = 0;
+        n = fread(text, 1, YAML_MAX_BYTES + 1, f);
+        good = !ferror(f);
+        text[n] = 0;
+    }
+    if (!good)
+        errors_add(e, "%s: can't read the scene: %s", path, strerror(errno));
+    if (f)
+        fclose(f);
+    if (good && n >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0) /* a byte order mark */
+        memmove(text, text + 3, (n -= 3) + 1);
+    if (!good || !is_text(path, text, n, e)) {
+        free(text);
+        return NULL;
+    }
+    *size = n;
+    char *fit = realloc(text, n + 1);
+    return fit ? fit : text;
+}
+
+/* ---- the document ---- */
+
+/* libfyaml's words where they leave a person wondering. */
+static const char *reworded(const char *message)
+{
+    static const char *const words[][2] = {
+        {"invalid tab as indendation in a mapping", "a tab as indentation, expected spaces"},
+        {"did not find expected node content", "no value here, expected one, or the bracket that closes"},
+        {"could not find expected ':'", "a line without ':', expected 'key: value'"},
+        {"Max depth (64) exceeded", "nested too deep, expected at most 64 levels"},
+        {"flow sequence without a closing bracket", "a list that is not closed, expected ']'"},
+        {"flow mapping without a closing brace", "a map that is not closed, expected '}'"},
+    };
+    for (size_t k = 0; k < sizeof words / sizeof *words; k++)
+        if (strcmp(message, words[k][0]) == 0)
+            return words[k][1];
+    return message;
+}
+
+bool yaml_syntax_errors(yaml *y, const origin *o)
+{
+    struct fy_diag_error *k;
+    bool told = false;
+    while ((k = yaml_report(y)))
+        if (k->line >= 1 && !told) {
+            yaml_tell(y, o, k->line, k->column, reworded(k->msg));
+            told = true;
+        }
+    return told ? false : yaml_tell(y, o, 1, 1, o ? "no value here" : "no scene here, only comments");
+}
+
+static struct fy_diag *new_diag(void)
+{
+    struct fy_diag_cfg cfg;
+    fy_diag_cfg_default(&cfg);
+    cfg.fp = NULL;
+    cfg.colorize = false;
+    struct fy_diag *d = fy_diag_create(&cfg);
+    if (d)
+        fy_diag_set_collect_errors(d, true);
+    return d;
+}
+
+/* The file's document, the only one in it. */
+static bool load(yaml *y)
+{
+    struct fy_parse_cfg cfg = {.flags = FYPCF_QUIET | FYPCF_COLLECT_DIAG | FYPCF_ALLOW_DUPLICATE_KEYS, .diag = y->diag};
+    struct fy_parser *parser = fy_parser_create(&cfg);
+    bool good = parser && fy_parser_set_string(parser, y->text, y->size) == 0;
+    y->doc = good ? fy_parse_load_document(parser) : NULL;
+    struct fy_document *second = y->doc ? fy_parse_load_document(parser) : NULL;
+    if (!y->doc || fy_parser_get_stream_error(parser))
+        good = yaml_syntax_errors(y, NULL);
+    else if (!fy_document_root(y->doc) || !fy_node_is_mapping(fy_document_root(y->doc)))
+        good = yaml_error(y, fy_document_root(y->doc), "no scene here, %s", scene_expected);
+    else if (second)
+        good = yaml_error(y, fy_document_root(second), "a second document, expected one scene a file");
+    fy_document_destroy(second);
+    fy_parser_destroy(parser);
+    return good;
+}
+
+yaml *yaml_open(const char *path, int sets, char *const *set, const char *optional, errors *e)
+{
+    yaml *y = calloc(1, sizeof *y);
+    if (!y) {
+        errors_add(e, "%s: out of memory", path);
+        return NULL;
+    }
+    y->errors = e;
+    y->path = strdup(path);
+    y->text = read_all(path, &y->size, e);
+    y->diag = new_diag();
+    if (!y->path || !y->text || !y->diag || !load(y) || !yaml_change(y, sets, set, optional)) {
+        yaml_close(y);
+        return NULL;
+    }
+    return y;
+}
+
+void yaml_close(yaml *y)
+{
+    if (!y)
+        return;
+    for (int k = 0; k < y->count; k++)
+        free(y->scalars[k]);
+    free(y->scalars);
+    fy_document_destroy(y->doc);
+    fy_diag_destroy(y->diag);
+    free(y->origins);
+    free(y->path);
+    free(y->text);
+    free(y);
+}
+
+node *yaml_root(const yaml *y) { return fy_document_root(y->doc); }
+
+const char *yaml_source(const yaml *y) { return y->text; }

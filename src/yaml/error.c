@@ -1,0 +1,129 @@
+/* Errors with their places: where in the file, or in a --set, a node stands. */
+#include "yaml/document.h"
+
+#include <libfyaml.h>
+#include <stdarg.h>
+#include <stdio.h>
+
+#include "yaml/text.h"
+
+struct fy_diag_error *yaml_report(yaml *y)
+{
+    void *last = y->seen;
+    struct fy_diag_error *k = fy_diag_errors_iterate(y->diag, &last);
+    if (k)
+        y->seen = last;
+    return k;
+}
+
+/* libfyaml knows where a node begins; it is asked by letting it collect a report about the node. */
+static bool own_place(yaml *y, node *at, int *line, int *column)
+{
+    struct fy_diag_error *k;
+    const origin *own = fy_node_get_meta(at);
+    bool found = own && own->placed;
+    if (found) {
+        *line = own->line;
+        *column = own->column;
+        return true;
+    }
+    fy_node_report(at, FYET_ERROR, "%s", "here");
+    for (; (k = yaml_report(y)); found = true) {
+        *line = k->line;
+        *column = k->column;
+    }
+    return found;
+}
+
+const origin *yaml_origin(node *at)
+{
+    const origin *o = NULL;
+    for (; at && !o; at = fy_node_get_parent(at))
+        o = fy_node_get_meta(at);
+    return o;
+}
+
+/* The key of a value in a map; of NULL, the map's first. */
+static node *key_of(node *map, node *value)
+{
+    void *next = NULL;
+    struct fy_node_pair *p;
+    while (map && fy_node_is_mapping(map) && (p = fy_node_mapping_iterate(map, &next)))
+        if (!value || fy_node_pair_value(p) == value)
+            return fy_node_pair_key(p);
+    return NULL;
+}
+
+/* An empty value has no place, nor has a map that begins with one: it is that of its key, or of what is around it. */
+void yaml_place(yaml *y, node *at, int *line, int *column)
+{
+    *line = *column = 1;
+    for (; at && !own_place(y, at, line, column); at = fy_node_get_parent(at)) {
+        node *key = key_of(fy_node_get_parent(at), at), *first = key_of(at, NULL);
+        if ((first && own_place(y, first, line, column)) || (key && own_place(y, key, line, column)))
+            return;
+    }
+}
+
+static scalar_style style_of(struct fy_token *token)
+{
+    switch (fy_token_scalar_style(token)) {
+    case FYSS_SINGLE_QUOTED:
+        return SCALAR_SINGLE;
+    case FYSS_DOUBLE_QUOTED:
+        return SCALAR_DOUBLE;
+    case FYSS_LITERAL:
+        return SCALAR_LITERAL;
+    case FYSS_FOLDED:
+        return SCALAR_FOLDED;
+    default:
+        return SCALAR_PLAIN;
+    }
+}
+
+bool yaml_tell(yaml *y, const origin *o, int line, int column, const char *message)
+{
+    const bool set = o && o->set;
+    if (set && line == 1)
+        column += o->start - 1;
+    return text_error(y->errors, set ? "--set" : y->path, set ? o->set : y->text, line, column, message);
+}
+
+static bool error_at(yaml *y, node *at, size_t offset, const char *fmt, va_list args)
+{
+    char message[1024];
+    int line = 1, column = 1;
+    if (y->errors->count >= ERRORS_SHOWN) {
+        y->errors->count++;
+        return false;
+    }
+    vsnprintf(message, sizeof message, fmt, args);
+    const origin *o = yaml_origin(at);
+    struct fy_token *token = offset && fy_node_is_scalar(at) ? fy_node_get_scalar_token(at) : NULL;
+    const struct fy_mark *mark = token ? fy_token_start_mark(token) : NULL;
+    if (!mark)
+        yaml_place(y, at, &line, &column);
+    else {
+        const char *text = o && o->set ? o->set + o->start - 1 : y->text;
+        text_place(text, text_offset(text, mark->input_pos, style_of(token), offset), &line, &column);
+    }
+    return yaml_tell(y, o, line, column, message);
+}
+
+bool yaml_error_in(yaml *y, node *at, size_t offset, const char *fmt, ...)
+{
+    va_list args;
+    va_start(args, fmt);
+    error_at(y, at, offset, fmt, args);
+    va_end(args);
+    return false;
+}
+
+bool yaml_error(yaml *y, node *at, const char *fmt, ...)
+{
+    va_list args;
+    va_start(args, fmt);
+    error_at(y, at, 0, fmt, args);
+    va_end(args);
+    return false;
+}

@@ -1,0 +1,194 @@
+/* The typed getters: each checks what it hands out, and tells what it expected. */
+#include "yaml/document.h"
+
+#include <libfyaml.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "yaml/text.h"
+
+static bool is_empty(node *at)
+{
+    const char *text = fy_node_is_scalar(at) ? fy_node_get_scalar0(at) : NULL;
+    return fy_node_is_scalar(at) && !fy_node_is_alias(at) && !(text && *text);
+}
+
+static const char *kind_of(node *at)
+{
+    if (fy_node_is_alias(at))
+        return "an alias, which kage does not take";
+    if (fy_node_is_mapping(at))
+        return "a map";
+    if (fy_node_is_sequence(at))
+        return "a list";
+    return is_empty(at) ? "nothing here" : "a single value";
+}
+
+bool yaml_map(yaml *y, node *at, const char *what, const char *keys)
+{
+    if (!fy_node_is_mapping(at))
+        return yaml_error(y, at, "%s is %s, expected a map", what, is_empty(at) ? "empty" : kind_of(at));
+    bool good = true;
+    unsigned seen = 0;
+    void *next = NULL;
+    struct fy_node_pair *p;
+    while (keys && (p = fy_node_mapping_iterate(at, &next))) {
+        char near[64];
+        node *key = fy_node_pair_key(p);
+        const char *text = key && fy_node_is_scalar(key) && !fy_node_is_alias(key) ? fy_node_get_scalar0(key) : NULL;
+        int k = text ? text_among(text, keys) : -1;
+        if (k >= 0 && !(seen & 1u << k)) {
+            seen |= 1u << k;
+            continue;
+        }
+        text_nearest(text ? text : "", keys, near, sizeof near);
+        if (k >= 0)
+            good = yaml_error(y, key, "a second '%s' in %s, expected one", text, what);
+        else if (!text)
+            good = yaml_error(y, key ? key : at, "%s as a key, expected one of: %s", key ? kind_of(key) : "nothing", keys);
+        else if (*near)
+            good = yaml_error(y, key, "%s has no '%.60s', did you mean '%s'?", what, text, near);
+        else
+            good = yaml_error(y, key, "%s has no '%.60s', expected one of: %s", what, text, keys);
+    }
+    return good;
+}
+
+bool yaml_is_map(node *at) { return fy_node_is_mapping(at); }
+
+node *yaml_get(node *map, const char *key) { return fy_node_mapping_lookup_by_string(map, key, FY_NT); }
+
+node *yaml_first(node *map, const char *key)
+{
+    struct fy_node_pair *p = fy_node_mapping_lookup_pair_by_string(map, key, FY_NT);
+    return p ? fy_node_pair_key(p) : NULL;
+}
+
+node *yaml_need(yaml *y, node *map, const char *key, const char *what)
+{
+    node *v = yaml_get(map, key);
+    if (!v)
+        yaml_error(y, map, "%s lacks its '%s'", what, key);
+    return v;
+}
+
+int yaml_size(node *map) { return fy_node_mapping_item_count(map); }
+
+node *yaml_pair(node *map, int i, node **key)
+{
+    struct fy_node_pair *p = fy_node_mapping_get_by_index(map, i);
+    *key = fy_node_pair_key(p);
+    return fy_node_pair_value(p);
+}
+
+static bool scalar(yaml *y, node *at, const char *what)
+{
+    if (at && fy_node_is_scalar(at) && !fy_node_is_alias(at))
+        return true;
+    return yaml_error(y, at, "%s, expected %s", kind_of(at), what);
+}
+
+const char *yaml_text(yaml *y, node *at, const char *what)
+{
+    if (!scalar(y, at, what))
+        return NULL;
+    const char *text = fy_node_get_scalar0(at);
+    if (!text || !*text) {
+        yaml_error(y, at, "nothing here, expected %s", what);
+        return NULL;
+    }
+    char **more = realloc(y->scalars, sizeof *more * (size_t)(y->count + 1)), *copy = strdup(text);
+    if (more)
+        y->scalars = more;
+    if (!more || !copy) {
+        free(copy);
+        errors_add(y->errors, "%s: out of memory", y->path);
+        return NULL;
+    }
+    return y->scalars[y->count++] = copy;
+}
+
+/* A plain decimal number, no infinity and no NaN, which strtod would take. */
+static bool number(const char *text, double *x)
+{
+    char *end;
+    if (!*text || strspn(text, "+-.0123456789eE") != strlen(text))
+        return false;
+    *x = strtod(text, &end);
+    return !*end && isfinite(*x);
+}
+
+bool yaml_number(yaml *y, node *at, double lo, bool open, double hi, const char *what, double *x)
+{
+    if (!scalar(y, at, what))
+        return false;
+    const char *text = fy_node_get_scalar0(at);
+    double v;
+    if (!text || !number(text, &v))
+        return yaml_error(y, at, "%s%.60s%s, expected %s", text && *text ? "'" : "", text && *text ? text : "nothing",
+                          text && *text ? "' is no number" : " here", what);
+    if (v < lo || v > hi)
+        return yaml_error(y, at, "%.60s is %s than %.7g, expected %s", text, v < lo ? "less" : "more", v < lo ? lo : hi, what);
+    if (open && v <= lo)
+        return yaml_error(y, at, "%.60s is too small, expected %s", text, what);
+    *x = v;
+    return true;
+}
+
+bool yaml_whole(yaml *y, node *at, int lo, int hi, const char *what, int *x)
+{
+    double v;
+    if (!yaml_number(y, at, lo, false, hi, what, &v))
+        return false;
+    if (v != floor(v))
+        return yaml_error(y, at, "%g is no whole number, expected %s", v, what);
+    *x = (int)v;
+    return true;
+}
+
+bool yaml_bool(yaml *y, node *at, const char *what, bool *x)
+{
+    int k = yaml_word(y, at, "false true", what);
+    *x = k == 1;
+    return k >= 0;
+}
+
+bool yaml_is_list(node *at) { return fy_node_is_sequence(at); }
+
+int yaml_list(yaml *y, node *at, const char *what)
+{
+    if (fy_node_is_sequence(at))
+        return fy_node_sequence_item_count(at);
+    yaml_error(y, at, "%s, expected %s", kind_of(at), what);
+    return -1;
+}
+
+node *yaml_item(node *list, int i) { return fy_node_sequence_get_by_index(list, i); }
+
+bool yaml_numbers(yaml *y, node *at, int n, double lo, double hi, const char *what, double *x)
+{
+    int count = yaml_list(y, at, what);
+    if (count < 0)
+        return false;
+    if (count != n)
+        return yaml_error(y, at, "%d value%s, expected %s", count, count == 1 ? "" : "s", what);
+    bool good = true;
+    for (int i = 0; i < n; i++)
+        good = yaml_number(y, yaml_item(at, i), lo, false, hi, what, &x[i]) && good;
+    return good;
+}
+
+int yaml_word(yaml *y, node *at, const char *words, const char *what)
+{
+    char near[64];
+    const char *text = yaml_text(y, at, what);
+    if (!text)
+        return -1;
+    int i = text_among(text, words);
+    if (i >= 0)
+        return i;
+    text_nearest(text, words, near, sizeof near);
+    yaml_error(y, at, "'%.60s' is unknown, expected %s%s%s%s", text, what, *near ? "; did you mean '" : "", near, *near ? "'?" : "");
+    return -1;
+}

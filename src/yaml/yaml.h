@@ -1,0 +1,66 @@
+/* A YAML file as the scene reader sees it: nodes, and errors that point at them. Only yaml.c, yaml_error.c, yaml_set.c and
+ * yaml_value.c include libfyaml.
+ *
+ * All getters take the place of an error as a node: a wrong value adds one message to the list given to yaml_open,
+ *
+ *     scene.yaml:12:10: what is wrong, expected what was expected
+ *        12 |     scale: -1
+ *           |            ^
+ *
+ * and the reader goes on, so that all the errors of a file are told at once.
+ */
+#ifndef KAGE_YAML_YAML_H
+#define KAGE_YAML_YAML_H
+
+#include <stdbool.h>
+
+#include "base/errors.h"
+
+struct fy_node;
+typedef struct fy_node node;
+typedef struct yaml yaml;
+
+enum { YAML_MAX_BYTES = 1 << 22 };
+
+/* Read the file at `path` and make the changes PATH=VALUE (PATH: keys and indices with dots between them; VALUE: YAML).
+ * A change may go into the maps at the top named in `optional` also where the file has none. Errors go to e, from now on.
+ * NULL where there is no document to go on with. */
+yaml *yaml_open(const char *path, int sets, char *const *set, const char *optional, errors *e);
+void yaml_close(yaml *y);
+
+node *yaml_root(const yaml *y);
+const char *yaml_source(const yaml *y); /* the file's text; the yaml's */
+
+/* Add an error about a node. `offset`: characters into its text. Always false. */
+bool yaml_error(yaml *y, node *at, const char *fmt, ...) KAGE_PRINTF(3, 4);
+bool yaml_error_in(yaml *y, node *at, size_t offset, const char *fmt, ...) KAGE_PRINTF(4, 5);
+
+/* Maps. `yaml_map` checks that the node is one with no other keys than `keys` (separated by spaces, any where NULL). */
+bool yaml_map(yaml *y, node *at, const char *what, const char *keys);
+bool yaml_is_map(node *at);
+node *yaml_get(node *map, const char *key); /* NULL: not there */
+node *yaml_first(node *map, const char *key); /* the key itself; of several of that name the first */
+node *yaml_need(yaml *y, node *map, const char *key, const char *what); /* NULL: an error is told */
+int yaml_size(node *map);
+node *yaml_pair(node *map, int i, node **key);
+
+/* Scalars. The texts are the yaml's. `what` names the value expected, for the message. */
+const char *yaml_text(yaml *y, node *at, const char *what);
+
+/* A number lo <= x <= hi; `open`: lo < x. */
+bool yaml_number(yaml *y, node *at, double lo, bool open, double hi, const char *what, double *x);
+bool yaml_whole(yaml *y, node *at, int lo, int hi, const char *what, int *x);
+bool yaml_bool(yaml *y, node *at, const char *what, bool *x);
+
+/* n numbers in [ ]. */
+bool yaml_numbers(yaml *y, node *at, int n, double lo, double hi, const char *what, double *x);
+
+/* Lists. yaml_list: how many items; -1: an error is told. */
+bool yaml_is_list(node *at);
+int yaml_list(yaml *y, node *at, const char *what);
+node *yaml_item(node *list, int i);
+
+/* The index of the text among words separated by spaces; -1 with an error where it is none of them. */
+int yaml_word(yaml *y, node *at, const char *words, const char *what);
+
+#endif

@@ -1,0 +1,76 @@
+"""What the README and docs/ tell of the bench is what bench/result.json holds."""
+
+from __future__ import annotations
+
+import copy
+import json
+from pathlib import Path
+
+import pytest
+from conftest import TOP
+
+
+from bench import readme  # noqa: E402
+
+
+@pytest.fixture
+def data() -> readme.Data:
+    return json.loads(readme.RESULT.read_text())
+
+
+def test_readme_and_docs_agree_with_the_result(data: readme.Data) -> None:
+    assert readme.disagreements(data) == [], "`make readme` writes them"
+    assert readme.main(["--check"]) == 0
+
+
+@pytest.mark.parametrize("path, wrong", [
+    (("quality", "scenes", "cube", "0", "mask", "wrong"), {"README.md", "docs/method.md", "docs/cost-error.svg"}),
+    (("quality", "scenes", "waves", "iter:2", "mask", "wrong"), {"docs/method.md"}),
+    (("cost", "scenes", "cube", "methods", "0", "ns", "median"), {"README.md", "docs/design.md"}),
+    (("cost", "scenes", "cube", "methods", "1", "added", "median"), {"README.md", "docs/design.md", "docs/cost-error.svg"}),
+    (("claims", 0, "verdict"), {"README.md"}),
+    (("quality", "parity", "sphere", "mask_differs"), {"README.md"}),
+    (("circumstances", "commit"), {"README.md", "docs/design.md"}),
+    (("sheets", "figures.png"), {"docs/figures.png"}),
+    (("sheets", "gallery.png"), {"docs/gallery.png"}),
+])
+def test_another_result_disagrees(data: readme.Data, path: tuple[str | int, ...], wrong: set[str]) -> None:
+    place = data
+    for key in path[:-1]:
+        place = place[key]
+    old = place[path[-1]]
+    place[path[-1]] = old + "x" if isinstance(old, str) else old + 7
+    assert set(readme.disagreements(data)) == wrong
+
+
+def test_a_region_must_be_there_once() -> None:
+    text = "a\n<!-- bench:x -->\nold\n<!-- /bench:x -->\nb\n"
+    assert readme.generated(text, "x", "new") == text.replace("old", "new")
+    for bad in ("", text + text, text.replace("/bench", "bench")):
+        with pytest.raises(readme.ReadmeError, match="no place, or more than one"):
+            readme.generated(bad, "x", "new")
+
+
+def test_what_was_not_measured_leaves_a_gap(data: readme.Data) -> None:
+    """As after a bench without POV-Ray and valgrind."""
+    data = copy.deepcopy(data)
+    data["quality"]["scenes"]["cube"]["0"]["mask"] = None
+    data["cost"]["peers"] = []
+    data["cost"]["scenes"]["cube"]["methods"]["0"]["instructions_added"] = None
+    assert "| – |" in readme.wrong_table(data, ("none", "0", "1"))
+    assert "POV-Ray" not in readme.cost_table(data, ("none", "0"))
+
+
+def test_update_keeps_and_writes(data: readme.Data, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """From a report on, in a project of its own; then all agrees."""
+    for name in (*readme.REGIONS, *(f"docs/{sheet}" for sheet in readme.SHEETS)):
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_bytes((TOP / name).read_bytes())
+    (tmp_path / "README.md").write_text((tmp_path / "README.md").read_text().replace("kage, none", "kage, some"))
+    monkeypatch.setattr(readme, "TOP", tmp_path)
+    monkeypatch.setattr(readme, "RESULT", tmp_path / "result.json")
+    monkeypatch.setattr(readme, "kept", lambda report, sheets: report | {"sheets": sheets})
+    readme.update(data, TOP / "docs")
+    assert json.loads((tmp_path / "result.json").read_text()) == data
+    assert readme.disagreements(data) == []
+    assert (tmp_path / "README.md").read_text() == (TOP / "README.md").read_text()

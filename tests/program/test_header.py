@@ -1,0 +1,111 @@
+"""bumpshadow.h as others will use it: alone, in C99 and C++17, in float and double, and in a loop that becomes SIMD."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+SRC = Path(__file__).resolve().parents[2] / "include"
+WARNINGS = ["-Wall", "-Wextra", "-Wpedantic", "-Wshadow", "-Wconversion", "-Wdouble-promotion", "-Wundef", "-Werror"]
+FLAGS = ["-O3", "-fno-math-errno", "-fno-trapping-math", "-ffp-contract=off"]
+COMPILERS = [("gcc", "c99"), ("clang", "c99"), ("g++", "c++17"), ("clang++", "c++17")]
+
+PROGRAM = r"""
+#include "bumpshadow.h"
+#include <stdio.h>
+
+static bs_vec3 vec(double x, double y, double z)
+{
+    bs_vec3 v;
+    v.x = (bs_real)x, v.y = (bs_real)y, v.z = (bs_real)z;
+    return v;
+}
+
+int main(void)
+{
+    bs_vec3 Qu = vec(1, .2, 0), Qw = vec(.1, .3, -1.2), z = vec(.1, .2, .3), s = vec(.3, -1, .4), n = bs_normal(Qu, Qw);
+    bs_vec3 np = bs_perturbed_normal(n, Qu, Qw, (bs_real).2, (bs_real)-.1);
+    bs_view v = bs_view_of(s, n, Qu, Qw);
+    bs_bump p = {(bs_real).04, (bs_real).2, (bs_real)-.1, (bs_real).3, (bs_real).2, (bs_real)-.4};
+    bs_slab slab = bs_slab_of(v, (bs_real)-.1, (bs_real).2);
+    printf("%a %a %a %d\n", (double)np.x, (double)np.y, (double)np.z, bs_regular(n, Qu, Qw));
+    for (int guard = 0; guard < 2; guard++)
+        for (int order = 0; order < 4; order++) {
+            bs_shift t = bs_shift_of(order, guard, v, bs_curvature(v, n, z, z, z), p, slab);
+            printf("%a %d\n", (double)t.tau, t.order);
+        }
+    bs_march m = bs_march_start(slab);
+    for (int i = 0; i <= 5; i++) {
+        bs_real t = bs_march_tau(slab, i, 5);
+        m = bs_march_step(m, t, bs_gap(v, 0, t, p.P + p.Pu * v.a * t), v);
+    }
+    printf("%a %d\n", (double)m.tau, m.found);
+    for (int k = 0; k < 3; k++) { /* no bound above, none below, none at all */
+        bs_slab endless = bs_slab_of(v, k ? (bs_real)-INFINITY : (bs_real)-.1, k == 1 ? (bs_real).2 : (bs_real)INFINITY);
+        bs_march e = bs_march_start(endless);
+        for (int i = 0; i <= 5; i++) {
+            bs_real t = bs_march_tau(endless, i, 5);
+            e = bs_march_step(e, t, bs_gap(v, 0, t, p.P + p.Pu * v.a * t), v);
+            printf("%a ", (double)t);
+        }
+        printf("%d\n", e.found);
+    }
+    return 0;
+}
+"""
+
+LOOP = """
+#include "bumpshadow.h"
+void shift(int n, const float *restrict sn, const float *restrict a, const float *restrict b, const float *restrict P,
+           const float *restrict Pu, const float *restrict Pw, const float *restrict Puu, const float *restrict Pww,
+           float *restrict tau);
+void shift(int n, const float *restrict sn, const float *restrict a, const float *restrict b, const float *restrict P,
+           const float *restrict Pu, const float *restrict Pw, const float *restrict Puu, const float *restrict Pww,
+           float *restrict tau)
+{
+    for (int i = 0; i < n; i++) {
+        bs_view v = {sn[i], a[i], b[i]};
+        bs_bump p = {P[i], Pu[i], Pw[i], Puu[i], 0, Pww[i]};
+        tau[i] = bs_shift_of(ORDER, 1, v, 0, p, bs_slab_of(v, -1, 1)).tau;
+    }
+}
+"""
+
+
+def run(compiler: str, standard: str, tmp_path: Path, real: list[str]) -> str:
+    source = tmp_path / ("main.cpp" if "++" in compiler else "main.c")
+    source.write_text(PROGRAM)
+    program = tmp_path / "program"
+    command = [compiler, f"-std={standard}", *WARNINGS, *FLAGS, *real, f"-I{SRC}", source, "-o", program, "-lm"]
+    subprocess.run(command, check=True, timeout=120)
+    return subprocess.run([program], check=True, capture_output=True, text=True, timeout=10).stdout
+
+
+@pytest.mark.parametrize("real", [[], ["-DBS_DOUBLE"]], ids=["float", "double"])
+@pytest.mark.parametrize("compiler, standard", COMPILERS[1:])
+def test_alike_in_every_language(compiler: str, standard: str, real: list[str], tmp_path: Path) -> None:
+    """No warning, and to the bit the numbers of gcc's C99."""
+    if not shutil.which(compiler):
+        pytest.skip(f"{compiler} is not installed")
+    want = run("gcc", "c99", tmp_path, real)
+    assert want.count("\n") == 13 and "nan" not in want and "inf" not in want
+    assert [line[-1] for line in want.splitlines()[-4:]] == ["1", "0", "0", "0"]  # what the marches found
+    assert run(compiler, standard, tmp_path, real) == want
+
+
+@pytest.mark.parametrize("order", range(4))
+def test_vectorises(order: int, tmp_path: Path) -> None:
+    source = tmp_path / "loop.c"
+    source.write_text(LOOP)
+    command = ["gcc", "-std=c99", *FLAGS, "-fopt-info-vec", f"-DORDER={order}", f"-I{SRC}", "-c", source, "-o", tmp_path / "loop.o"]
+    told = subprocess.run(command, check=True, capture_output=True, text=True, timeout=120).stderr
+    assert re.search(r"loop vectorized using 16 byte vectors", told), told
+
+
+def test_depends_on_nothing() -> None:
+    """The one inclusion is <math.h>, for sqrt."""
+    assert re.findall(r"#include\s+(\S+)", (SRC / "bumpshadow.h").read_text()) == ["<math.h>"]

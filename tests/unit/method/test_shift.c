@@ -1,0 +1,285 @@
+/* The method's stages over whole waves, in the build's own precision: P = 0, constant, linear, quadratic; march and iter
+ * against their header; the stages against the header, lane by lane.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "wave/lane.h"
+#include "support/random_in.h"
+#include "method/shift.h"
+#include "geometry/surface.h"
+
+/* Distances are a few units, so a hit is known to a few of their last digits. */
+#ifdef KAGE_DOUBLE
+#define EPS 2.2e-16
+#else
+#define EPS 1.2e-7
+#endif
+
+static perturb *function(const char *text)
+{
+    const double all[2] = {-HUGE_VAL, HUGE_VAL};
+    expr_error e;
+    expr *x = expr_parse(text, &e);
+    assert_non_null(x);
+    perturb *p = perturb_function(x, 1, all, all);
+    assert_non_null(p);
+    return p;
+}
+
+/* A wave of rays that come down, or up from behind, onto a skewed plane near (u,w) = 0..1; all that precedes the shift. */
+static group *wave(const perturb *P, double side)
+{
+    static group g;
+    surface *f = plane_new((vec3){0.1, 0.2, -0.3}, (vec3){0.1, 0.05, 1.3}, (vec3){0.9, 0.1, 0.2}, false);
+    hits h;
+    assert_non_null(f);
+    g.n = LANES;
+    for (int i = 0; i < LANES; i++) {
+        double px = random_in(0, 1), pz = random_in(0, 1);
+        g.x.s.x[i] = (real)random_in(-1, 1);
+        g.x.s.y[i] = (real)(-side * random_in(0.5, 1.5));
+        g.x.s.z[i] = (real)random_in(-1, 1);
+        g.x.r.x[i] = (real)px - 3 * g.x.s.x[i];
+        g.x.r.y[i] = (real)0.2 - 3 * g.x.s.y[i];
+        g.x.r.z[i] = (real)pz - 3 * g.x.s.z[i];
+        h.t[i] = REAL_FAR;
+        h.id[i] = -1;
+    }
+    f->is->hit(f, LANES, &g.x, 7, &h);
+    for (int i = 0; i < LANES; i++)
+        assert_int_equal(h.id[i], 7);
+    memcpy(g.t, h.t, sizeof g.t);
+    f->is->locate(f, LANES, &g.x, g.t, g.part, g.u, g.w);
+    f->is->eval(f, LANES, g.part, g.u, g.w, 2, &g.q);
+    P->is->eval(P, LANES, g.u, g.w, 2, &g.h);
+    shift_normals(&g, P);
+    surface_free(f);
+    return &g;
+}
+
+/* |gap| at the shift found, in scene units: how far r + s t0 is from the rough surface along the normal. */
+static double miss(const group *g, int i, const perturb *P)
+{
+    bs_view v = bs_view_of(lane_get(&g->x.s, i), lane_get(&g->n_smooth, i), lane_get(&g->q.Qu, i), lane_get(&g->q.Qw, i));
+    real u[LANES], w[LANES];
+    static heights h;
+    u[0] = g->u[i] + v.a * g->tau[i];
+    w[0] = g->w[i] + v.b * g->tau[i];
+    P->is->eval(P, 1, u, w, 0, &h);
+    return fabs((double)bs_gap(v, 0, g->tau[i], h.P[0]));
+}
+
+static const method every[] = {{METHOD_NONE, 0},  {METHOD_ORDER, 0}, {METHOD_ORDER, 1}, {METHOD_ORDER, 2}, {METHOD_ORDER, 3},
+                               {METHOD_ITER, 1},  {METHOD_ITER, 4},  {METHOD_MARCH, 1}, {METHOD_MARCH, 4}, {METHOD_MARCH, 9}};
+enum { EVERY = sizeof every / sizeof *every };
+
+/* By these methods the shift must be exact for P: the ray's point is on the rough surface to rounding. `flat`: also where
+ * they fall back to order 0. */
+static void exact(const char *text, const int *ks, int n, bool flat)
+{
+    perturb *P = function(text);
+    for (int behind = 0; behind < 2; behind++) {
+        group *g = wave(P, behind ? -1 : 1);
+        for (int k = 0; k < n; k++)
+            for (int guard = 0; guard < 2; guard++) {
+                shift_group(g, P, every[ks[k]], guard);
+                int back = 0;
+                for (int i = 0; i < LANES; i++) {
+                    if (g->order[i] != method_code(every[ks[k]])) {
+                        back++; /* a ray that this quadratic does not meet near order 1 */
+                        if (!flat)
+                            continue;
+                    }
+                    double m = miss(g, i, P);
+                    if (!(m <= 32 * EPS)) {
+                        char name[METHOD_NAME_SIZE];
+                        method_name(every[ks[k]], name);
+                        print_error("P = %s, method %s, lane %d: off by %g\n", text, name, i, m);
+                        fail();
+                    }
+                }
+                assert_true(back < LANES / 4 || flat);
+            }
+    }
+    perturb_free(P);
+}
+
+static void constant_is_exact_for_all(void **state)
+{
+    static const int ks[] = {1, 2, 3, 4, 5, 6, 7, 8, 9};
+    (void)state;
+    exact("0.07", ks, 9, true);
+    exact("-0.04", ks, 9, true);
+}
+
+static void linear_is_exact_from_order_1(void **state)
+{
+    static const int ks[] = {2, 3, 4};
+    (void)state;
+    exact("0.02 + 0.1*u - 0.07*w", ks, 3, false);
+}
+
+static void quadratic_is_exact_for_order_2(void **state)
+{
+    static const int two[] = {3, 4}, plus[] = {4};
+    (void)state;
+    exact("0.02 + 0.1*u - 0.07*w + 0.2*u^2 - 0.15*w^2", two, 2, false);
+    exact("0.02 + 0.1*u - 0.07*w + 0.2*u^2 - 0.15*w^2 + 0.25*u*w", plus, 1, false);
+}
+
+/* And not exact for those that it is not for: a test of the test. */
+static void lower_orders_are_not_exact(void **state)
+{
+    (void)state;
+    perturb *P = function("0.02 + 0.1*u - 0.07*w + 0.2*u^2 - 0.15*w^2 + 0.25*u*w");
+    group *g = wave(P, 1);
+    for (int k = 1; k <= 3; k++) {
+        int off = 0;
+        shift_group(g, P, every[k], false);
+        for (int i = 0; i < LANES; i++)
+            off += miss(g, i, P) > 1e-4;
+        assert_true(off > LANES / 2);
+    }
+    perturb_free(P);
+}
+
+static void no_bump_no_shift(void **state)
+{
+    (void)state;
+    perturb *P = function("0");
+    group *g = wave(P, 1);
+    for (int k = 0; k < EVERY; k++)
+        for (int guard = 0; guard < 2; guard++) {
+            shift_group(g, P, every[k], guard);
+            for (int i = 0; i < LANES; i++) {
+                real t = g->t[i] + g->tau[i];
+                assert_true(g->tau[i] == 0 && memcmp(&t, &g->t[i], sizeof t) == 0);
+                bs_vec3 n = lane_unit(lane_get(&g->n_smooth, i));
+                bs_vec3 np = lane_get(&g->n_bump, i);
+                assert_true(memcmp(&n, &np, sizeof n) == 0);
+            }
+        }
+    perturb_free(P);
+}
+
+/* march:N against the true first crossing, found by many small steps: within a step's secant error, and better with N;
+ * iter converges where the slope is gentle. */
+static void march_and_iter_come_near(void **state)
+{
+    (void)state;
+    perturb *P = function("0.05*sin(5*u)*cos(4*w) + 0.02*sin(11*u + 3*w)");
+    group *g = wave(P, 1);
+    double before = 1;
+    for (int N = 2; N <= 64; N *= 2) {
+        double sum = 0;
+        shift_group(g, P, (method){METHOD_MARCH, N}, true);
+        for (int i = 0; i < LANES; i++) {
+            assert_int_equal(g->order[i], 5);
+            sum += miss(g, i, P);
+        }
+        assert_true(sum / LANES < before / 2.5);
+        before = fmax(sum / LANES, 1e-6);
+    }
+    shift_group(g, P, (method){METHOD_ITER, 32}, true);
+    int good = 0;
+    for (int i = 0; i < LANES; i++)
+        good += miss(g, i, P) < 1e-6;
+    assert_true(good > LANES * 9 / 10);
+    perturb_free(P);
+}
+
+/* The order used and the number of look-ups are told as they are. */
+static void counts(void **state)
+{
+    (void)state;
+    perturb *P = function("0.05*sin(5*u)*cos(4*w)");
+    group *g = wave(P, 1);
+    assert_int_equal(shift_group(g, P, (method){METHOD_NONE, 0}, true), 0);
+    assert_int_equal(shift_group(g, P, (method){METHOD_ORDER, 2}, true), 0);
+    assert_int_equal(shift_group(g, P, (method){METHOD_ITER, 1}, true), 0);
+    assert_int_equal(shift_group(g, P, (method){METHOD_ITER, 4}, true), 3 * LANES);
+    assert_int_equal(shift_group(g, P, (method){METHOD_MARCH, 4}, true), 5 * LANES);
+    perturb_free(P);
+    /* without bounds there is no slab to march through */
+    P = function("0.1*u");
+    g = wave(P, 1);
+    shift_group(g, P, (method){METHOD_MARCH, 4}, true);
+    for (int i = 0; i < LANES; i++) {
+        bs_view v = bs_view_of(lane_get(&g->x.s, i), lane_get(&g->n_smooth, i), lane_get(&g->q.Qu, i), lane_get(&g->q.Qw, i));
+        assert_int_equal(g->order[i], 0);
+        assert_true(fabs((double)(g->tau[i] - bs_tau0(v, g->h.P[i]))) < 1e-6);
+    }
+    perturb_free(P);
+}
+
+/* The guard keeps every shift within the slab. */
+static void guarded_shifts_stay_in_the_slab(void **state)
+{
+    (void)state;
+    perturb *P = function("0.2*sin(9*u)*cos(7*w)");
+    int back = 0;
+    for (int round = 0; round < 16; round++) {
+        group *g = wave(P, round % 2 ? 1 : -1);
+        for (int order = 0; order <= 3; order++) {
+            shift_group(g, P, (method){METHOD_ORDER, order}, true);
+            for (int i = 0; i < LANES; i++) {
+                bs_view v =
+                    bs_view_of(lane_get(&g->x.s, i), lane_get(&g->n_smooth, i), lane_get(&g->q.Qu, i), lane_get(&g->q.Qw, i));
+                bs_slab slab = bs_slab_of(v, P->Pmin, P->Pmax);
+                double slack = 4 * EPS * (double)real_abs(slab.back);
+                assert_true((double)g->tau[i] >= (double)slab.front - slack && (double)g->tau[i] <= (double)slab.back + slack);
+                back += g->order[i] != order;
+            }
+        }
+    }
+    assert_true(back > 0);
+    perturb_free(P);
+}
+
+/* At a pole: order none, and the smooth normal. */
+static void pole(void **state)
+{
+    (void)state;
+    static group g;
+    surface *f = sphere_new((vec3){0, 0, 0}, 2);
+    perturb *P = function("0.1*sin(3*u)");
+    g.n = 1;
+    g.x.r.x[0] = 0, g.x.r.y[0] = 5, g.x.r.z[0] = 0;
+    g.x.s.x[0] = 0, g.x.s.y[0] = -1, g.x.s.z[0] = 0;
+    g.t[0] = 3;
+    f->is->locate(f, 1, &g.x, g.t, g.part, g.u, g.w);
+    f->is->eval(f, 1, g.part, g.u, g.w, 2, &g.q);
+    P->is->eval(P, 1, g.u, g.w, 2, &g.h);
+    shift_normals(&g, P);
+    for (int k = 0; k < EVERY; k++) {
+        shift_group(&g, P, every[k], true);
+        assert_int_equal(g.order[0], -1);
+        assert_true(g.tau[0] == 0);
+        assert_true(g.n_bump.y[0] > R(0.999999));
+    }
+    perturb_free(P);
+    surface_free(f);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(no_bump_no_shift),
+        cmocka_unit_test(constant_is_exact_for_all),
+        cmocka_unit_test(linear_is_exact_from_order_1),
+        cmocka_unit_test(quadratic_is_exact_for_order_2),
+        cmocka_unit_test(lower_orders_are_not_exact),
+        cmocka_unit_test(march_and_iter_come_near),
+        cmocka_unit_test(counts),
+        cmocka_unit_test(guarded_shifts_stay_in_the_slab),
+        cmocka_unit_test(pole),
+    };
+    return cmocka_run_group_tests_name("the method over waves", tests, NULL, NULL);
+}
