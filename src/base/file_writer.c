@@ -36,11 +36,11 @@ static char *create_aside(const char *dir, size_t dir_length, int *fd)
     return name;
 }
 
-bool image_file_open(image_file *f, const char *path, errors *e)
+bool file_writer_open(file_writer *f, const char *path, errors *e)
 {
     struct stat st;
     const bool exists = stat(path, &st) == 0;
-    *f = (image_file){.path = path, .fd = -1};
+    *f = (file_writer){.path = path, .fd = -1};
     if (exists && S_ISDIR(st.st_mode))
         return fail(path, strerror(EISDIR), e);
     if (exists && !S_ISREG(st.st_mode)) {
@@ -84,7 +84,7 @@ static bool write_all(int fd, const char *data, size_t size)
     return true;
 }
 
-bool image_file_write(image_file *f, const void *data, size_t size, uint64_t offset)
+bool file_writer_write(file_writer *f, const void *data, size_t size, uint64_t offset)
 {
     if (!f->error && (lseek(f->fd, (off_t)offset, SEEK_SET) < 0 || !write_all(f->fd, data, size)))
         f->error = errno;
@@ -108,7 +108,7 @@ static int copy_to(const char *path, int from)
     return error;
 }
 
-bool image_file_close(image_file *f, const char *why, errors *e)
+bool file_writer_close(file_writer *f, const char *why, errors *e)
 {
     if (!why && !f->error && !f->target)
         f->error = copy_to(f->path, f->fd);

@@ -2,12 +2,12 @@
 #ifndef KAGE_BASE_PROGRESS_H
 #define KAGE_BASE_PROGRESS_H
 
-typedef struct watch {
+typedef struct progress {
     void (*show)(void *user, const char *what, double share); /* `what` is done, and this share of it; NULL: nobody is there */
     void *user;
-} watch;
+} progress;
 
-static inline void watch_show(const watch *w, const char *what, double share)
+static inline void progress_show(const progress *w, const char *what, double share)
 {
     if (w && w->show)
         w->show(w->user, what, share);

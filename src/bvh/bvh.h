@@ -39,8 +39,8 @@ bvh *bvh_new(int n, const bvh_box *box);
 void bvh_free(bvh *b);
 
 /* The same for many boxes: tells now and then which share of the work is done. */
-typedef void bvh_watch(void *user, double share);
-bvh *bvh_new_watched(int n, const bvh_box *box, bvh_watch *watch, void *user);
+typedef void bvh_progress(void *user, double share);
+bvh *bvh_new_with_progress(int n, const bvh_box *box, bvh_progress *progress, void *user);
 
 /* The boxes that r + s t, 0 <= t <= end, passes. Reentrant. */
 void bvh_along(const bvh *b, const float r[3], const float s[3], float end, bvh_visit *visit, void *user);

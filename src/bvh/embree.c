@@ -63,22 +63,22 @@ static bool near_one(struct RTCPointQueryFunctionArguments *a)
 
 /* What Embree calls while it builds. */
 typedef struct onlooker {
-    bvh_watch *watch;
+    bvh_progress *progress;
     void *user;
 } onlooker;
 
 static bool look(void *user, double share)
 {
     const onlooker *k = user;
-    k->watch(k->user, share);
+    k->progress(k->user, share);
     return true;
 }
 
-bvh *bvh_new(int n, const bvh_box *box) { return bvh_new_watched(n, box, NULL, NULL); }
+bvh *bvh_new(int n, const bvh_box *box) { return bvh_new_with_progress(n, box, NULL, NULL); }
 
-bvh *bvh_new_watched(int n, const bvh_box *box, bvh_watch *watch, void *user)
+bvh *bvh_new_with_progress(int n, const bvh_box *box, bvh_progress *progress, void *user)
 {
-    onlooker k = {watch, user};
+    onlooker k = {progress, user};
     bvh *b = calloc(1, sizeof *b);
     if (!b)
         return NULL;
@@ -101,7 +101,7 @@ bvh *bvh_new_watched(int n, const bvh_box *box, bvh_watch *watch, void *user)
     rtcAttachGeometry(b->scene, g);
     rtcReleaseGeometry(g);
     rtcSetSceneFlags(b->scene, RTC_SCENE_FLAG_ROBUST);
-    if (watch)
+    if (progress)
         rtcSetSceneProgressMonitorFunction(b->scene, look, &k);
     rtcCommitScene(b->scene);
     rtcSetSceneProgressMonitorFunction(b->scene, NULL, NULL);

@@ -28,7 +28,7 @@ static int ascending(const void *a, const void *b)
 }
 
 /* tan of the angle between the smooth and the perturbed normal: the slope of the bump in scene units. */
-static float slope(const group *g, int i)
+static float slope(const hit_group *g, int i)
 {
     bs_vec3 n = lane_unit(lane_get(&g->n_smooth, i)), np = lane_get(&g->n_bump, i), c = bs_cross(n, np);
     return (float)(real_sqrt(bs_dot(c, c)) / bs_dot(n, np));
@@ -41,8 +41,8 @@ static void look(const scene *s, int order, workspace *v, seen *all)
         const int n = SAMPLES * SAMPLES - first < LANES ? SAMPLES * SAMPLES - first : LANES;
         for (int i = 0; i < n; i++)
             render_ray(&s->camera, SAMPLES, SAMPLES, (first + i) % SAMPLES + 0.5, (double)((first + i) / SAMPLES) + 0.5, v, i);
-        for (int32_t id = trace_nearest(&k, n, v); id >= 0; id = wave_next_group(n, &v->x, &v->h, &v->g)) {
-            const group *g = &v->g;
+        for (int32_t id = trace_nearest(&k, n, v); id >= 0; id = gather_next_group(n, &v->x, &v->h, &v->g)) {
+            const hit_group *g = &v->g;
             seen *o = &all[id];
             if (!s->object[id].bump)
                 continue;
@@ -60,7 +60,7 @@ static void look(const scene *s, int order, workspace *v, seen *all)
 
 static int print_bump(const object *o, const seen *x)
 {
-    const perturb *p = o->bump;
+    const bump *p = o->bump;
     int warnings = 0;
     if (o->map.file)
         printf("    map       %s: %d x %d samples from %.7g to %.7g\n", o->map.file, o->map.width, o->map.height, o->map.low,
@@ -137,12 +137,12 @@ static void print_scene(const scene *s, const seen *all)
     for (int i = 0; i < s->objects; i++) {
         const object *o = &s->object[i];
         const material *m = &s->material[o->material];
-        printf("object %s: %s%s%s%s, material %s%s%s%s%s%s%s\n", o->name, o->shape->is->kind, o->copy_of ? ", copy of " : "",
+        printf("object %s: %s%s%s%s, material %s%s%s%s%s%s%s\n", o->name, o->shape->ops->kind, o->copy_of ? ", copy of " : "",
                o->copy_of ? o->copy_of : "", o->moved ? ", transformed" : "", m->name, o->color ? ", color by " : "",
-               o->color ? o->color->is->kind : "", o->bump ? ", bump by " : "", o->bump ? o->bump->is->kind : "",
+               o->color ? o->color->ops->kind : "", o->bump ? ", bump by " : "", o->bump ? o->bump->ops->kind : "",
                material_mirrors(m) ? ", mirrors" : "", material_clear(m) ? ", transparent" : "");
-        if (o->shape_said.kind == SHAPE_MESH && !o->copy_of)
-            warnings += print_mesh(&o->shape_said);
+        if (o->shape_spec.kind == SHAPE_MESH && !o->copy_of)
+            warnings += print_mesh(&o->shape_spec);
         if (o->bump)
             warnings += print_bump(o, &all[i]);
     }

@@ -55,18 +55,18 @@ int command_fail(errors *e, int status);
 bool usage_error(const char *fmt, ...) KAGE_PRINTF(1, 2);
 
 /* A bar on the terminal behind stderr: what is done, the rate, the time left. Nothing where that is no terminal. */
-typedef struct progress {
+typedef struct progress_bar {
     bool on;
     double start, shown;
     long pixels;
     const char *name, *what; /* what: is done with a file */
-} progress;
+} progress_bar;
 
 /* The same for a scene's files, which have no pixels: what is done with the file, and its share. */
-void progress_load(void *p, const char *what, double share);
+void progress_bar_load(void *p, const char *what, double share);
 
-void progress_start(progress *p, bool quiet, const char *name, long pixels);
-void progress_show(void *p, long done, long all);
-void progress_end(progress *p);
+void progress_bar_start(progress_bar *p, bool quiet, const char *name, long pixels);
+void progress_bar_show(void *p, long done, long all);
+void progress_bar_end(progress_bar *p);
 
 #endif

@@ -73,7 +73,7 @@ int command_fail(errors *e, int status)
 /* A model is shown without its triangles that have no area; that is nothing to see, but may be a sign. */
 static void tell_flat(const object *o)
 {
-    const shape_spec *f = &o->shape_said;
+    const shape_spec *f = &o->shape_spec;
     if (f->kind == SHAPE_MESH && !o->copy_of && f->found.flat)
         fprintf(stderr, "kage: object %s: %d of the %d triangles in %s have no area; they are left out\n", o->name, f->found.flat,
                 f->triangles + f->found.flat, f->file);
@@ -82,15 +82,15 @@ static void tell_flat(const object *o)
 scene *command_scene(const arguments *a)
 {
     errors e = {0};
-    progress p;
-    progress_start(&p, a->quiet, base_name(a->operand[0]), 0);
-    const watch w = {progress_load, &p};
+    progress_bar p;
+    progress_bar_start(&p, a->quiet, base_name(a->operand[0]), 0);
+    const progress w = {progress_bar_load, &p};
 #if defined(_OPENMP)
     if (a->threads > 0) /* also where a scene is made ready (leaf.c) */
         omp_set_num_threads(a->threads);
 #endif
     scene *s = scene_read(a->operand[0], a->sets, a->set, &w, &e);
-    progress_end(&p);
+    progress_bar_end(&p);
     if (!s)
         command_fail(&e, EXIT_INPUT);
     const bool tell = !a->quiet && strcmp(a->command, "check") != 0; /* which tells it itself */

@@ -14,7 +14,7 @@ static void vector(const char *name, const vec3s *v)
     printf("%-10s %.9g %.9g %.9g\n", name, (double)v->x[0], (double)v->y[0], (double)v->z[0]);
 }
 
-static void shape(const group *g, const object *o)
+static void shape(const hit_group *g, const object *o)
 {
     vector("Q", &g->q.Q);
     vector("Qu", &g->q.Qu);
@@ -52,7 +52,7 @@ static void shape(const group *g, const object *o)
 static void row(const tracer *k, int id, workspace *v, const char *label)
 {
     trace_group(k, id, v);
-    const group *g = &v->g;
+    const hit_group *g = &v->g;
     const int asked = k->scene->object[id].bump ? method_code(k->shadow) : -1;
     bs_vec3 o = lane_at(&g->x, 0, g->t[0] + g->tau[0]);
     printf("%-10s %13.6g %13.6g  %11.6g %11.6g %11.6g  %-6s", label, (double)g->tau[0], (double)(g->t[0] + g->tau[0]),
@@ -116,8 +116,8 @@ static int print_pixel(const scene *s, int x, int y)
     if (id >= 0) {
         const object *o = &s->object[id];
         trace_group(&k, id, v);
-        printf("object     %s: %s, %s%s\n", o->name, o->shape->is->kind, o->bump ? "bump by " : "no bump",
-               o->bump ? o->bump->is->kind : "");
+        printf("object     %s: %s, %s%s\n", o->name, o->shape->ops->kind, o->bump ? "bump by " : "no bump",
+               o->bump ? o->bump->ops->kind : "");
         scalar("t_hit", v->g.t[0]);
         scalar("u", v->g.u[0]);
         scalar("w", v->g.w[0]);

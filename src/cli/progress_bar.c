@@ -4,15 +4,15 @@
 #include <stdio.h>
 #include <unistd.h>
 
-void progress_start(progress *p, bool quiet, const char *name, long pixels)
+void progress_bar_start(progress_bar *p, bool quiet, const char *name, long pixels)
 {
-    *p = (progress){.on = !quiet && isatty(STDERR_FILENO), .start = stats_clock(), .pixels = pixels, .name = name};
+    *p = (progress_bar){.on = !quiet && isatty(STDERR_FILENO), .start = stats_clock(), .pixels = pixels, .name = name};
     p->shown = p->start;
 }
 
 /* Whether it is time to draw again; then how much of the bar is full is in `bar`. */
 enum { BAR = 30 };
-static bool is_due(progress *p, double share, char bar[BAR + 1])
+static bool is_due(progress_bar *p, double share, char bar[BAR + 1])
 {
     const double now = stats_clock();
     if (!p->on || now - p->shown < 0.1)
@@ -24,9 +24,9 @@ static bool is_due(progress *p, double share, char bar[BAR + 1])
     return true;
 }
 
-void progress_show(void *user, long done, long all)
+void progress_bar_show(void *user, long done, long all)
 {
-    progress *p = user;
+    progress_bar *p = user;
     char bar[BAR + 1];
     const double share = (double)done / (double)all;
     if (!is_due(p, share, bar))
@@ -36,9 +36,9 @@ void progress_show(void *user, long done, long all)
             share * (double)p->pixels / gone / 1e6, gone / share - gone);
 }
 
-void progress_load(void *user, const char *what, double share)
+void progress_bar_load(void *user, const char *what, double share)
 {
-    progress *p = user;
+    progress_bar *p = user;
     char bar[BAR + 1];
     if (p->what != what) { /* the first of each is seen, and the last of none hides it */
         p->what = what;
@@ -48,7 +48,7 @@ void progress_load(void *user, const char *what, double share)
         fprintf(stderr, "\r%.24s [%s] %3.0f %%  %s \033[K", p->name, bar, 100 * share, what);
 }
 
-void progress_end(progress *p)
+void progress_bar_end(progress_bar *p)
 {
     if (p->on && p->shown > p->start)
         fprintf(stderr, "\r\033[K");

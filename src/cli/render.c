@@ -110,7 +110,7 @@ static void print_stats(const stats *t, const scene *s, double seconds, double o
                seconds * 1e9 / n * t->seconds[k] / sum, 100 * t->seconds[k] / sum);
     printf("output    %9.2f ms\n", output * 1e3);
     printf("camera rays %ld, shadow rays %ld, height look-ups %ld\n", t->rays, t->shadow_rays,
-           t->heights + t->displaced.heights);
+           t->evaluations + t->displaced.evaluations);
     if (t->secondary_rays)
         printf("reflected and refracted rays %ld\n", t->secondary_rays);
     char name[METHOD_NAME_SIZE];
@@ -185,15 +185,15 @@ static int render_outputs(const scene *s, const arguments *a, const char *const 
     }
 
     stats t;
-    progress p;
+    progress_bar p;
     tracer k = {.scene = s, .shadow = s->shadow, .guard = s->guard, .layers = layers, .displaced = s->displaced,
                 .self_shadow = s->self_shadow};
-    progress_start(&p, a->quiet, base_name(s->path), (long)(part.x1 - part.x0) * (part.y1 - part.y0));
-    render_options o = {s->aa, s->aa_threshold, a->threads, a->stats, p.on ? progress_show : NULL, &p};
+    progress_bar_start(&p, a->quiet, base_name(s->path), (long)(part.x1 - part.x0) * (part.y1 - part.y0));
+    render_options o = {s->aa, s->aa_threshold, a->threads, a->stats, p.on ? progress_bar_show : NULL, &p};
     double start = stats_clock();
     bool good = render(&k, &o, f, &t, &e);
     double rendered = stats_clock();
-    progress_end(&p);
+    progress_bar_end(&p);
     good = good && write_outputs(s, a, output, outputs, f, &e);
     double written = stats_clock();
     film_free(f);

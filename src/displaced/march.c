@@ -19,10 +19,10 @@ typedef struct search {
     real t[LANES], gap[LANES], end[LANES], shortest[LANES], tolerance[LANES];
     real side[LANES]; /* 1: the ray comes from above the rough surface; -1: from below; 0: not known yet */
     int32_t own[LANES], left[LANES], open[LANES]; /* starts on this part; has clearly left it; is still searched */
-    feet p;
-    heights h;
+    closest_points p;
+    bump_values h;
     real rate[LANES], reach[LANES];
-    long looks; /* at P */
+    long evaluations; /* at P */
 } search;
 
 /* The gap at t, and its derivative along the ray. */
@@ -36,14 +36,14 @@ STAGE static void gaps(search *restrict s, real *restrict slope)
     }
 }
 
-static void look(const ground *f, const perturb *P, search *s, real *slope)
+static void look(const domain *f, const bump *P, search *s, real *slope)
 {
     real u[LANES], w[LANES];
     f->foot(f, s->n, s->lane, &s->x, s->t, &s->p);
     if (f->loose)
         f->within(f, s->n, s->lane, &s->p, u, w);
-    P->is->eval(P, s->n, f->loose ? u : s->p.u, f->loose ? w : s->p.w, 1, &s->h);
-    s->looks += s->n;
+    P->ops->eval(P, s->n, f->loose ? u : s->p.u, f->loose ? w : s->p.w, 1, &s->h);
+    s->evaluations += s->n;
     gaps(s, slope);
 }
 
@@ -73,12 +73,12 @@ static void compact(search *s)
 
 /* A crossing between a and b, the gap's sign changing: Newton's steps from b, or halvings where they leave the bracket or
  * do not pay. Returns the confirmed t in *t. */
-static displace_end refine(const ground *f, const perturb *P, search *s, int i, real a, real b, real *t)
+static displaced_result refine(const domain *f, const bump *P, search *s, int i, real a, real b, real *t)
 {
     search one; /* its first lane alone is used */
     real slope[LANES], best = b, least = REAL_FAR, before = REAL_FAR;
     one.n = 1;
-    one.looks = 0;
+    one.evaluations = 0;
     one.lane[0] = s->lane[i];
     lane_set(&one.x.r, 0, lane_get(&s->x.r, i));
     lane_set(&one.x.s, 0, lane_get(&s->x.s, i));
@@ -102,17 +102,17 @@ static displace_end refine(const ground *f, const perturb *P, search *s, int i, 
             break;
         one.t[0] = next;
     }
-    s->looks += one.looks;
+    s->evaluations += one.evaluations;
     *t = best;
     /* a ray from the surface itself was let go on until it was clearly below, so that its bracket can begin there */
-    return least <= (s->own[i] ? 2 : 1) * s->tolerance[i] ? DISPLACE_HIT : DISPLACE_UNCERTAIN;
+    return least <= (s->own[i] ? 2 : 1) * s->tolerance[i] ? DISPLACED_HIT : DISPLACED_UNCERTAIN;
 }
 
 /* Whether the foot of a hit is on the piece, and not on what extends it. */
-static bool counts(const ground *f, const search *s, int i, real t)
+static bool counts(const domain *f, const search *s, int i, real t)
 {
     rays x;
-    feet p;
+    closest_points p;
     real u, w;
     if (!f->loose)
         return true;
@@ -124,12 +124,12 @@ static bool counts(const ground *f, const search *s, int i, real t)
 }
 
 /* Open the search on the rays whose shell is not empty. */
-static void begin(const ground *f, const perturb *P, int n, const rays *x, const real *end, const int32_t *own, search *s)
+static void begin(const domain *f, const bump *P, int n, const rays *x, const real *end, const int32_t *own, search *s)
 {
     real t0[LANES], t1[LANES];
     f->shell(f, n, x, end, P->Pmin, P->Pmax, t0, t1);
     s->n = 0;
-    s->looks = 0;
+    s->evaluations = 0;
     for (int i = 0; i < n; i++) {
         if (!(t0[i] <= t1[i]))
             continue;
@@ -169,13 +169,13 @@ static real tolerance_of(const search *s, int i)
     return real_max(s->tolerance[i], real_min(off, 8 * s->tolerance[i]));
 }
 
-long displace_search_over(const ground *f, const perturb *P, int n, const rays *x, const real *end, const int32_t *own, real *t,
+long displaced_search_over(const domain *f, const bump *P, int n, const rays *x, const real *end, const int32_t *own, real *t,
                           int32_t *found)
 {
     search s;
     real slope[LANES];
     for (int i = 0; i < n; i++)
-        found[i] = DISPLACE_MISSED;
+        found[i] = DISPLACED_MISSED;
     begin(f, P, n, x, end, own, &s);
     for (int step = 0; step < f->steps && s.n; step++) {
         look(f, P, &s, slope);
@@ -202,7 +202,7 @@ long displace_search_over(const ground *f, const perturb *P, int n, const rays *
             if (above <= -least || (touches && s.left[i])) {
                 /* no step goes past a crossing by more than the shortest does */
                 real from = real_max(s.t[i] - s.shortest[i], 0), at;
-                displace_end end_of = refine(f, P, &s, i, from, s.t[i], &at);
+                displaced_result end_of = refine(f, P, &s, i, from, s.t[i], &at);
                 if (counts(f, &s, i, at)) {
                     t[s.lane[i]] = at;
                     found[s.lane[i]] = (int32_t)end_of;
@@ -228,76 +228,76 @@ long displace_search_over(const ground *f, const perturb *P, int n, const rays *
     for (int i = 0; i < s.n; i++)
         if (counts(f, &s, i, s.t[i])) {
             t[s.lane[i]] = s.t[i];
-            found[s.lane[i]] = DISPLACE_UNCERTAIN;
+            found[s.lane[i]] = DISPLACED_UNCERTAIN;
         }
-    return s.looks;
+    return s.evaluations;
 }
 
 /* ---- a part of a surface, the same for every lane ---- */
 
 typedef struct part_ground {
-    ground base;
+    domain base;
     const surface *f;
     int part;
 } part_ground;
 
-static const part_ground *part_of(const ground *g) { return (const part_ground *)g; }
+static const part_ground *part_of(const domain *g) { return (const part_ground *)g; }
 
-static void part_shell(const ground *g, int n, const rays *x, const real *end, real Pmin, real Pmax, real *t0, real *t1)
+static void part_shell(const domain *g, int n, const rays *x, const real *end, real Pmin, real Pmax, real *t0, real *t1)
 {
     const part_ground *k = part_of(g);
-    k->f->is->shell(k->f, k->part, n, x, end, Pmin, Pmax, t0, t1);
+    k->f->ops->shell(k->f, k->part, n, x, end, Pmin, Pmax, t0, t1);
 }
 
-static void part_foot(const ground *g, int n, const int32_t *lane, const rays *x, const real *t, feet *p)
+static void part_foot(const domain *g, int n, const int32_t *lane, const rays *x, const real *t, closest_points *p)
 {
     const part_ground *k = part_of(g);
     (void)lane;
-    k->f->is->foot(k->f, k->part, n, x, t, p);
+    k->f->ops->foot(k->f, k->part, n, x, t, p);
 }
 
-static void part_steep(const ground *g, int n, const int32_t *lane, const rays *x, const feet *p, real Pu_max, real Pw_max, real *rate,
+static void part_steep(const domain *g, int n, const int32_t *lane, const rays *x, const closest_points *p, real Pu_max, real Pw_max, real *rate,
                        real *reach)
 {
     const part_ground *k = part_of(g);
     (void)lane;
-    k->f->is->steep(k->f, k->part, n, x, p, Pu_max, Pw_max, rate, reach);
+    k->f->ops->steep(k->f, k->part, n, x, p, Pu_max, Pw_max, rate, reach);
 }
 
-static void part_within(const ground *g, int n, const int32_t *lane, const feet *p, real *u, real *w)
+static void part_within(const domain *g, int n, const int32_t *lane, const closest_points *p, real *u, real *w)
 {
     const part_ground *k = part_of(g);
     double U[2], W[2];
     (void)lane;
-    k->f->is->extent(k->f, k->part, U, W);
+    k->f->ops->extent(k->f, k->part, U, W);
     for (int i = 0; i < n; i++) {
         u[i] = real_min(real_max(p->u[i], (real)U[0]), (real)U[1]);
         w[i] = real_min(real_max(p->w[i], (real)W[0]), (real)W[1]);
     }
 }
 
-long displace_search(const surface *f, const perturb *P, int part, int n, const rays *x, const real *end, const int32_t *on, real *t,
+long displaced_search(const surface *f, const bump *P, int part, int n, const rays *x, const real *end, const int32_t *on, real *t,
                      int32_t *found)
 {
-    const part_ground k = {{part_shell, part_foot, part_steep, part_within, f->is->loose, STEPS}, f, part};
+    const part_ground k = {{part_shell, part_foot, part_steep, part_within, f->ops->loose, STEPS}, f, part};
     int32_t own[LANES];
     for (int i = 0; i < n; i++)
         own[i] = on && on[i] == part;
-    return displace_search_over(&k.base, P, n, x, end, own, t, found);
+    return displaced_search_over(&k.base, P, n, x, end, own, t, found);
 }
 
-static void keep_nearer(int n, int part, const real *t, const int32_t *found, int32_t id, hits *h, displace_counts *c)
+static void keep_nearer(int n, int part, const real *t, const int32_t *found, int32_t id, hits *h, displaced_counts *c)
 {
     for (int i = 0; i < n; i++)
-        if (found[i] != DISPLACE_MISSED && t[i] > 0 && t[i] < h->t[i]) {
+        if (found[i] != DISPLACED_MISSED && t[i] > 0 && t[i] < h->t[i]) {
             h->t[i] = t[i];
             h->id[i] = id;
             h->part[i] = part;
-            c->uncertain += found[i] == DISPLACE_UNCERTAIN;
+            c->uncertain += found[i] == DISPLACED_UNCERTAIN;
         }
 }
 
-void displace_hit(const surface *f, const perturb *P, int n, const rays *x, const starts *from, int32_t id, hits *h, displace_counts *c)
+void displaced_hit(const surface *f, const bump *P, int n, const rays *x, const ray_origins *from, int32_t id, hits *h, displaced_counts *c)
 {
     real t[LANES];
     int32_t found[LANES], on[LANES];
@@ -307,14 +307,14 @@ void displace_hit(const surface *f, const perturb *P, int n, const rays *x, cons
     }
     for (int i = 0; from && i < n; i++)
         on[i] = from->id[i] == id ? from->part[i] : -1;
-    for (int part = 0; part < f->is->parts; part++) {
-        c->heights += displace_search(f, P, part, n, x, h->t, from ? on : NULL, t, found);
+    for (int part = 0; part < f->ops->parts; part++) {
+        c->evaluations += displaced_search(f, P, part, n, x, h->t, from ? on : NULL, t, found);
         keep_nearer(n, part, t, found, id, h, c);
     }
 }
 
-void displace_occlude(const surface *f, const perturb *P, int n, const rays *x, const int32_t *on, real *lit,
-                      displace_counts *c)
+void displaced_occlude(const surface *f, const bump *P, int n, const rays *x, const int32_t *on, real *lit,
+                      displaced_counts *c)
 {
     real t[LANES], end[LANES];
     int32_t found[LANES];
@@ -324,23 +324,23 @@ void displace_occlude(const surface *f, const perturb *P, int n, const rays *x, 
     }
     for (int i = 0; i < n; i++)
         end[i] = lit[i] > 0 ? R(1) : R(-1); /* what is dark already need not be searched */
-    for (int part = 0; part < f->is->parts; part++) {
-        c->heights += displace_search(f, P, part, n, x, end, on, t, found);
+    for (int part = 0; part < f->ops->parts; part++) {
+        c->evaluations += displaced_search(f, P, part, n, x, end, on, t, found);
         for (int i = 0; i < n; i++)
-            if (found[i] != DISPLACE_MISSED) {
+            if (found[i] != DISPLACED_MISSED) {
                 lit[i] = 0;
-                c->uncertain += found[i] == DISPLACE_UNCERTAIN;
+                c->uncertain += found[i] == DISPLACED_UNCERTAIN;
             }
     }
 }
 
 /* The feet of a group's hits, each on its own part. */
-static void group_feet(const surface *f, const group *g, feet *all)
+static void group_feet(const surface *f, const hit_group *g, closest_points *all)
 {
-    f->is->foot(f, 0, g->n, &g->x, g->t, all);
-    for (int part = 1; part < f->is->parts; part++) {
-        feet p;
-        f->is->foot(f, part, g->n, &g->x, g->t, &p);
+    f->ops->foot(f, 0, g->n, &g->x, g->t, all);
+    for (int part = 1; part < f->ops->parts; part++) {
+        closest_points p;
+        f->ops->foot(f, part, g->n, &g->x, g->t, &p);
         for (int i = 0; i < g->n; i++)
             if (g->part[i] == part) {
                 all->u[i] = p.u[i];
@@ -352,17 +352,17 @@ static void group_feet(const surface *f, const group *g, feet *all)
     }
 }
 
-void displace_shape(const surface *f, const perturb *P, group *g)
+void displaced_shape(const surface *f, const bump *P, hit_group *g)
 {
-    feet p;
+    closest_points p;
     if (f->rough)
-        f->rough->feet(f, P, g->n, &g->x, g->t, g->part, &p);
+        f->rough->closest_points(f, P, g->n, &g->x, g->t, g->part, &p);
     else
         group_feet(f, g, &p);
     memcpy(g->u, p.u, sizeof g->u);
     memcpy(g->w, p.w, sizeof g->w);
-    P->is->eval(P, g->n, g->u, g->w, 1, &g->h);
-    f->is->eval(f, g->n, g->part, g->u, g->w, 1, &g->q);
+    P->ops->eval(P, g->n, g->u, g->w, 1, &g->h);
+    f->ops->eval(f, g->n, g->part, g->u, g->w, 1, &g->q);
     /* the rough surface is where height - P = 0: its normal is the gradient of that */
     for (int i = 0; i < g->n; i++) {
         bs_vec3 h = lane_get(&p.gh, i), u = lane_get(&p.gu, i), w = lane_get(&p.gw, i);
@@ -377,14 +377,14 @@ void displace_shape(const surface *f, const perturb *P, group *g)
     }
 }
 
-void displace_shift(const surface *f, const perturb *P, group *g, displace_counts *c)
+void displaced_shift(const surface *f, const bump *P, hit_group *g, displaced_counts *c)
 {
     hits h;
     for (int i = 0; i < g->n; i++) {
         h.t[i] = REAL_FAR;
         h.id[i] = -1;
     }
-    displace_hit(f, P, g->n, &g->x, NULL, 0, &h, c);
+    displaced_hit(f, P, g->n, &g->x, NULL, 0, &h, c);
     for (int i = 0; i < g->n; i++) {
         bs_vec3 n = lane_get(&g->n_smooth, i), Qu = lane_get(&g->q.Qu, i), Qw = lane_get(&g->q.Qw, i);
         bs_real sn = bs_dot(lane_get(&g->x.s, i), n) / real_sqrt(bs_dot(n, n));
@@ -395,9 +395,9 @@ void displace_shift(const surface *f, const perturb *P, group *g, displace_count
     }
 }
 
-bool displace_prepare(surface *f, const perturb *P) { return !f->rough || f->rough->prepare(f, P); }
+bool displaced_prepare(surface *f, const bump *P) { return !f->rough || f->rough->prepare(f, P); }
 
-bool displace_possible(const perturb *P)
+bool displaced_possible(const bump *P)
 {
     return P->Pmax - P->Pmin < REAL_FAR && P->Pu_max < REAL_FAR && P->Pw_max < REAL_FAR;
 }

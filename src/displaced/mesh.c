@@ -51,7 +51,7 @@ static void rough_box(const mesh_triangle *x, double lo, double hi, double box[2
     }
 }
 
-static bool rough_prepare(surface *base, const perturb *P)
+static bool rough_prepare(surface *base, const bump *P)
 {
     mesh *f = (mesh *)base;
     if (f->rough && f->lowest <= (double)P->Pmin && f->highest >= (double)P->Pmax)
@@ -134,7 +134,7 @@ void mesh_gradients(const mesh_triangle *x, const mesh_prism *p, double det, vec
 /* Not farther beyond a triangle than it is wide: what lies there is another's. */
 static double near_triangle(double b) { return b < -1 ? -1 : b > 2 ? 2 : b; }
 
-static void foot_of(const mesh_triangle *x, vec3 at, feet *out, int lane)
+static void foot_of(const mesh_triangle *x, vec3 at, closest_points *out, int lane)
 {
     const vec3 n = vec3_cross(vec3_sub(x->at[1], x->at[0]), vec3_sub(x->at[2], x->at[0]));
     double b = 1.0 / 3, c = 1.0 / 3, h = vec3_dot(vec3_sub(at, x->at[0]), n) / vec3_length(n);
@@ -164,14 +164,14 @@ static void foot_of(const mesh_triangle *x, vec3 at, feet *out, int lane)
 /* ---- triangles as the ground of a search ---- */
 
 typedef struct pieces {
-    ground base;
+    domain base;
     const mesh *f;
     const mesh_triangle *x; /* of each lane */
 } pieces;
 
-static const mesh_triangle *piece(const ground *g, int32_t lane) { return &((const pieces *)g)->x[lane]; }
+static const mesh_triangle *piece(const domain *g, int32_t lane) { return &((const pieces *)g)->x[lane]; }
 
-static void pieces_shell(const ground *g, int n, const rays *x, const real *end, real Pmin, real Pmax, real *t0, real *t1)
+static void pieces_shell(const domain *g, int n, const rays *x, const real *end, real Pmin, real Pmax, real *t0, real *t1)
 {
     const double air = AIR * ((const pieces *)g)->f->space.radius;
     for (int i = 0; i < n; i++) {
@@ -182,14 +182,14 @@ static void pieces_shell(const ground *g, int n, const rays *x, const real *end,
     }
 }
 
-static void pieces_foot(const ground *g, int n, const int32_t *lane, const rays *x, const real *t, feet *p)
+static void pieces_foot(const domain *g, int n, const int32_t *lane, const rays *x, const real *t, closest_points *p)
 {
     for (int i = 0; i < n; i++)
         foot_of(piece(g, lane[i]), vec3_add(get(&x->r, i), vec3_scale(get(&x->s, i), (double)t[i])), p, i);
 }
 
 /* By how much normals turn over a triangle for its shortest side says how far it is to where they meet; halfway there gradients at most double. */
-static void pieces_steep(const ground *g, int n, const int32_t *lane, const rays *x, const feet *p, real Pu_max, real Pw_max, real *rate,
+static void pieces_steep(const domain *g, int n, const int32_t *lane, const rays *x, const closest_points *p, real Pu_max, real Pw_max, real *rate,
                          real *reach)
 {
     const double height = ((const pieces *)g)->f->height;
@@ -212,7 +212,7 @@ static void pieces_steep(const ground *g, int n, const int32_t *lane, const rays
 
 /* (u,w) of a place of the triangle, as far as it goes on, that is near the foot: the foot's own where it is one. So P goes on from there without
  * a step, which a ray that comes by would cross. */
-static void pieces_within(const ground *g, int n, const int32_t *lane, const feet *p, real *u, real *w)
+static void pieces_within(const domain *g, int n, const int32_t *lane, const closest_points *p, real *u, real *w)
 {
     for (int i = 0; i < n; i++) {
         const mesh_triangle *x = piece(g, lane[i]);
@@ -234,11 +234,11 @@ static void pieces_within(const ground *g, int n, const int32_t *lane, const fee
 
 typedef struct tour {
     const mesh *f;
-    const perturb *P;
+    const bump *P;
     const rays *x;
     real end[LANES];
     bool own[LANES]; /* the ray starts on the rough surface */
-    displace_counts counts;
+    displaced_counts counts;
     real *t; /* the nearest hits so far */
     int32_t *index_hit;
     int lane;
@@ -254,14 +254,14 @@ static void starts_on(tour *k, const pieces *g, int32_t *own)
 {
     real zero[LANES] = {0}, u[LANES], w[LANES];
     int32_t lane[LANES];
-    feet p;
-    heights h;
+    closest_points p;
+    bump_values h;
     for (int i = 0; i < k->n; i++)
         lane[i] = i;
     pieces_foot(&g->base, k->n, lane, &k->y, zero, &p);
     pieces_within(&g->base, k->n, lane, &p, u, w);
-    k->P->is->eval(k->P, k->n, u, w, 0, &h);
-    k->counts.heights += k->n;
+    k->P->ops->eval(k->P, k->n, u, w, 0, &h);
+    k->counts.evaluations += k->n;
     for (int i = 0; i < k->n; i++) {
         const double size = vec3_length(get(&k->y.r, i)) + k->f->height;
         const bool in = u[i] == p.u[i] && w[i] == p.w[i];
@@ -279,15 +279,15 @@ static void search_all(tour *k)
     for (int i = 0; i < k->n; i++)
         end[i] = k->end[k->of[i]];
     starts_on(k, &g, own);
-    k->counts.heights += displace_search_over(&g.base, k->P, k->n, &k->y, end, own, t, found);
+    k->counts.evaluations += displaced_search_over(&g.base, k->P, k->n, &k->y, end, own, t, found);
     for (int i = 0; i < k->n; i++) {
         const int at = k->of[i];
-        const bool nearer = found[i] != DISPLACE_MISSED && t[i] > 0 && (t[i] < k->t[at] || (t[i] == k->t[at] && k->index[i] < k->index_hit[at]));
+        const bool nearer = found[i] != DISPLACED_MISSED && t[i] > 0 && (t[i] < k->t[at] || (t[i] == k->t[at] && k->index[i] < k->index_hit[at]));
         if (!nearer)
             continue;
         k->t[at] = t[i];
         k->index_hit[at] = k->index[i];
-        k->counts.uncertain += found[i] == DISPLACE_UNCERTAIN;
+        k->counts.uncertain += found[i] == DISPLACED_UNCERTAIN;
     }
     k->n = 0;
 }
@@ -310,10 +310,10 @@ static void visit(void *user, int32_t index)
 }
 
 /* t[i] becomes the nearest hit with 0 < t < t[i], on the triangle index[i], which is -1 where there is none. k->own is set. */
-static void go_round(tour *k, int n, const rays *x, real *t, int32_t *index, displace_counts *c)
+static void go_round(tour *k, int n, const rays *x, real *t, int32_t *index, displaced_counts *c)
 {
     k->x = x;
-    k->counts = (displace_counts){0};
+    k->counts = (displaced_counts){0};
     k->t = t;
     k->index_hit = index;
     k->n = 0;
@@ -327,12 +327,12 @@ static void go_round(tour *k, int n, const rays *x, real *t, int32_t *index, dis
             bvh_along(k->f->rough, at, way, far, visit, k);
     }
     search_all(k);
-    c->heights += k->counts.heights;
+    c->evaluations += k->counts.evaluations;
     c->uncertain += k->counts.uncertain;
 }
 
-static void rough_hit(const surface *base, const perturb *P, int n, const rays *x, const starts *from, int32_t id, hits *h,
-                      displace_counts *c)
+static void rough_hit(const surface *base, const bump *P, int n, const rays *x, const ray_origins *from, int32_t id, hits *h,
+                      displaced_counts *c)
 {
     int32_t index[LANES];
     tour k;
@@ -348,7 +348,7 @@ static void rough_hit(const surface *base, const perturb *P, int n, const rays *
         }
 }
 
-static void rough_occlude(const surface *base, const perturb *P, int n, const rays *x, bool from_it, real *lit, displace_counts *c)
+static void rough_occlude(const surface *base, const bump *P, int n, const rays *x, bool from_it, real *lit, displaced_counts *c)
 {
     int32_t index[LANES];
     real t[LANES];
@@ -365,7 +365,7 @@ static void rough_occlude(const surface *base, const perturb *P, int n, const ra
 }
 
 /* The height changes along N there, whatever the triangle itself is like: so the rough surface is as smooth as the mesh is shown. */
-static void rough_feet(const surface *base, const perturb *P, int n, const rays *x, const real *t, int32_t *part, feet *p)
+static void rough_feet(const surface *base, const bump *P, int n, const rays *x, const real *t, int32_t *part, closest_points *p)
 {
     (void)P;
     for (int i = 0; i < n; i++) {
@@ -377,4 +377,4 @@ static void rough_feet(const surface *base, const perturb *P, int n, const rays 
     }
 }
 
-const displaced mesh_displaced = {rough_prepare, rough_hit, rough_occlude, rough_feet};
+const displaced_ops mesh_displaced = {rough_prepare, rough_hit, rough_occlude, rough_feet};

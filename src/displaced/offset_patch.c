@@ -14,13 +14,13 @@
 #define AIR 1e-13 /* of what is summed: more than its roundings */
 
 typedef struct rough {
-    sheet base;
-    const sheet *q;
-    const perturb *P;
+    patch base;
+    const patch *q;
+    const bump *P;
 } rough;
 
 /* In place: the jets of Q, of order 2, become those of X, of order 1. */
-STAGE static void add_bump(int n, const expr_jets *restrict P, sheet_jets *restrict j)
+STAGE static void add_bump(int n, const expr_jets *restrict P, patch_jets *restrict j)
 {
     double *restrict x = j->axis[0].v, *restrict y = j->axis[1].v, *restrict z = j->axis[2].v;
     double *restrict xu = j->axis[0].u, *restrict yu = j->axis[1].u, *restrict zu = j->axis[2].u;
@@ -54,7 +54,7 @@ STAGE static void add_bump(int n, const expr_jets *restrict P, sheet_jets *restr
 }
 
 /* The same of order 0 from order 1: X alone. */
-STAGE static void add_height(int n, const double *restrict P, sheet_jets *restrict j)
+STAGE static void add_height(int n, const double *restrict P, patch_jets *restrict j)
 {
     double *restrict x = j->axis[0].v, *restrict y = j->axis[1].v, *restrict z = j->axis[2].v;
     const double *restrict xu = j->axis[0].u, *restrict yu = j->axis[1].u, *restrict zu = j->axis[2].u;
@@ -69,12 +69,12 @@ STAGE static void add_height(int n, const double *restrict P, sheet_jets *restri
     }
 }
 
-static void rough_eval(const sheet *base, int n, const int32_t *part, const double *u, const double *w, int order, sheet_jets *out)
+static void rough_eval(const patch *base, int n, const int32_t *part, const double *u, const double *w, int order, patch_jets *out)
 {
     const rough *k = (const rough *)base;
     expr_jets P;
-    k->q->is->eval(k->q, n, part, u, w, order ? 2 : 1, out);
-    k->P->is->jets(k->P, n, u, w, &P);
+    k->q->ops->eval(k->q, n, part, u, w, order ? 2 : 1, out);
+    k->P->ops->jets(k->P, n, u, w, &P);
     if (order)
         add_bump(n, &P, out);
     else
@@ -142,17 +142,17 @@ static void unknown(double range[2])
     range[1] = HUGE_VAL;
 }
 
-static void rough_bound(const sheet *base, int part, const double u[2], const double w[2], sheet_bounds *out, sheet_bends *second)
+static void rough_bound(const patch *base, int part, const double u[2], const double w[2], patch_bounds *out, patch_hessians *second)
 {
     const rough *k = (const rough *)base;
     const double none[2] = {0, 0};
-    sheet_bends z;
+    patch_hessians z;
     expr_bounds P;
     (void)second;
-    k->q->is->bound(k->q, part, u, w, out, &z);
-    k->P->is->bound(k->P, u, w, &P);
+    k->q->ops->bound(k->q, part, u, w, out, &z);
+    k->P->ops->bound(k->P, u, w, &P);
     const expr_bounds *X = &out->axis[0], *Y = &out->axis[1], *Z = &out->axis[2];
-    const expr_bends *x = &z.axis[0], *y = &z.axis[1], *t = &z.axis[2];
+    const expr_hessians *x = &z.axis[0], *y = &z.axis[1], *t = &z.axis[2];
     const ball Qu = ball_of(X->u, Y->u, Z->u), Qw = ball_of(X->w, Y->w, Z->w), Quw = ball_of(x->uw, y->uw, t->uw);
     const normals n = normals_of(ball_cross(Qu, Qw));
     const ball nu = turn_of(ball_sum(ball_cross(ball_of(x->uu, y->uu, t->uu), Qw), ball_cross(Qu, Quw)), &n);
@@ -175,17 +175,17 @@ static void rough_bound(const sheet *base, int part, const double u[2], const do
     }
 }
 
-static void rough_free(sheet *q) { free(q); }
+static void rough_free(patch *q) { free(q); }
 
-static const sheet_methods rough_methods = {rough_eval, rough_bound, rough_free};
+static const patch_ops rough_methods = {rough_eval, rough_bound, rough_free};
 
-sheet *sheet_rough(const sheet *q, const perturb *P)
+patch *patch_offset_new(const patch *q, const bump *P)
 {
     rough *k = calloc(1, sizeof *k);
     if (!k)
         return NULL;
     k->base = *q;
-    k->base.is = &rough_methods;
+    k->base.ops = &rough_methods;
     k->q = q;
     k->P = P;
     return &k->base;

@@ -1,4 +1,4 @@
-/* True displacement of a sheet: its rough surface is a sheet too (sheet_rough.c), and rays are searched for it as for any other. */
+/* True displacement of a sheet: its rough surface is a sheet too (patch_offset_new.c), and rays are searched for it as for any other. */
 #include "patch/surface.h"
 
 #include "displaced/march.h"
@@ -8,95 +8,95 @@
 
 #define FLAT 0.5 /* of leaves: what slopes of P turn is worth halving only where a ray comes */
 
-void searched_free_rough(rough_form *first)
+void patch_surface_free_displaced(displaced_form *first)
 {
     while (first) {
-        rough_form *k = first;
+        displaced_form *k = first;
         first = k->next;
         surface_free(k->shape);
         free(k);
     }
 }
 
-static const rough_form *form_of(const searched *f, const perturb *P)
+static const displaced_form *form_of(const patch_surface *f, const bump *P)
 {
-    const rough_form *k = f->rough;
+    const displaced_form *k = f->rough;
     while (k->P != P)
         k = k->next;
     return k;
 }
 
-static const searched *rough_of(const surface *base, const perturb *P)
+static const patch_surface *rough_of(const surface *base, const bump *P)
 {
-    return (const searched *)form_of((const searched *)base, P)->shape;
+    return (const patch_surface *)form_of((const patch_surface *)base, P)->shape;
 }
 
-static void drop(searched *f, const perturb *P)
+static void drop(patch_surface *f, const bump *P)
 {
-    for (rough_form **at = &f->rough; *at; at = &(*at)->next)
+    for (displaced_form **at = &f->rough; *at; at = &(*at)->next)
         if ((*at)->P == P) {
-            rough_form *k = *at;
+            displaced_form *k = *at;
             *at = k->next;
             k->next = NULL;
-            searched_free_rough(k);
+            patch_surface_free_displaced(k);
             return;
         }
 }
 
 /* A P that was there before may be another one in the same place. */
-static bool rough_prepare(surface *base, const perturb *P)
+static bool rough_prepare(surface *base, const bump *P)
 {
-    searched *f = (searched *)base;
+    patch_surface *f = (patch_surface *)base;
     drop(f, P);
-    rough_form *k = calloc(1, sizeof *k);
-    sheet *q = k ? sheet_rough(f->q, P) : NULL;
-    searched *shape = q ? searched_make(q, FLAT) : NULL;
+    displaced_form *k = calloc(1, sizeof *k);
+    patch *q = k ? patch_offset_new(f->q, P) : NULL;
+    patch_surface *shape = q ? patch_surface_make(q, FLAT) : NULL;
     if (!shape) {
         free(k);
         return false;
     }
     shape->broken = true;
-    *k = (rough_form){P, &shape->base, f->rough};
+    *k = (displaced_form){P, &shape->base, f->rough};
     f->rough = k;
     return true;
 }
 
-static void add_counts(displace_counts *c, quest_counts q)
+static void add_counts(displaced_counts *c, patch_counts q)
 {
-    c->heights += q.looks;
+    c->evaluations += q.evaluations;
     c->uncertain += q.unsure;
 }
 
-static void rough_hit(const surface *base, const perturb *P, int n, const rays *x, const starts *from, int32_t id, hits *h,
-                      displace_counts *c)
+static void rough_hit(const surface *base, const bump *P, int n, const rays *x, const ray_origins *from, int32_t id, hits *h,
+                      displaced_counts *c)
 {
-    const searched *f = rough_of(base, P);
-    quest_counts q = {0};
+    const patch_surface *f = rough_of(base, P);
+    patch_counts q = {0};
     if (from)
-        searched_hits_own(f, n, x, from, id, h, &q);
+        patch_surface_intersect_own(f, n, x, from, id, h, &q);
     else
-        searched_hits(f, n, x, id, h, &q);
+        patch_surface_intersect(f, n, x, id, h, &q);
     add_counts(c, q);
 }
 
-static void rough_occlude(const surface *base, const perturb *P, int n, const rays *x, bool own, real *lit, displace_counts *c)
+static void rough_occlude(const surface *base, const bump *P, int n, const rays *x, bool own, real *lit, displaced_counts *c)
 {
-    const searched *f = rough_of(base, P);
-    quest_counts q = {0};
+    const patch_surface *f = rough_of(base, P);
+    patch_counts q = {0};
     if (own)
-        searched_darken_own(f, n, x, NULL, lit, &q);
+        patch_surface_occlude_own(f, n, x, NULL, lit, &q);
     else
-        searched_darken(f, n, x, lit, &q);
+        patch_surface_occlude(f, n, x, lit, &q);
     add_counts(c, q);
 }
 
 /* The height, and how all change in space: the dual vectors of U, W and n at that height. */
-static void rough_feet(const surface *base, const perturb *P, int n, const rays *x, const real *t, int32_t *part, feet *p)
+static void rough_feet(const surface *base, const bump *P, int n, const rays *x, const real *t, int32_t *part, closest_points *p)
 {
-    const surface *shape = form_of((const searched *)base, P)->shape;
+    const surface *shape = form_of((const patch_surface *)base, P)->shape;
     partials q;
-    shape->is->locate(shape, n, x, t, part, p->u, p->w);
-    base->is->eval(base, n, part, p->u, p->w, 2, &q);
+    shape->ops->locate(shape, n, x, t, part, p->u, p->w);
+    base->ops->eval(base, n, part, p->u, p->w, 2, &q);
     for (int i = 0; i < n; i++) {
         const bs_vec3 at = lane_at(x, i, t[i]), Q = lane_get(&q.Q, i), up = {at.x - Q.x, at.y - Q.y, at.z - Q.z};
         const bs_vec3 Qu = lane_get(&q.Qu, i), Qw = lane_get(&q.Qw, i);
@@ -109,4 +109,4 @@ static void rough_feet(const surface *base, const perturb *P, int n, const rays 
     }
 }
 
-const displaced searched_displaced = {rough_prepare, rough_hit, rough_occlude, rough_feet};
+const displaced_ops patch_surface_displaced = {rough_prepare, rough_hit, rough_occlude, rough_feet};

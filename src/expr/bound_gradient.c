@@ -184,7 +184,7 @@ slope expr_slope_range(const expr_code *p, const interval *value, const slope *s
     return expr_chooses(p) ? choice(p, value, s) : chain(p, value, s, f);
 }
 
-void expr_range_gradient(const expr *e, double u0, double u1, double w0, double w1, expr_bounds *out)
+void expr_bound_gradient(const expr *e, double u0, double u1, double w0, double w1, expr_bounds *out)
 {
     interval value[EXPR_SLOTS] = {{u0, u1}, {w0, w1}};
     slope s[EXPR_SLOTS] = {{{one, zero}}, {{zero, one}}};

@@ -149,7 +149,7 @@ static bend choice(const expr_code *p, const interval *value, const slope *s, co
     return z;
 }
 
-void expr_range_bend(const expr *e, double u0, double u1, double w0, double w1, expr_bounds *out, expr_bends *second)
+void expr_bound_hessian(const expr *e, double u0, double u1, double w0, double w1, expr_bounds *out, expr_hessians *second)
 {
     interval value[EXPR_SLOTS] = {{u0, u1}, {w0, w1}};
     slope s[EXPR_SLOTS] = {{{one, zero}}, {{zero, one}}};
@@ -165,5 +165,5 @@ void expr_range_bend(const expr *e, double u0, double u1, double w0, double w1, 
     }
     const bend z = h[e->result];
     expr_put_bounds(value[e->result], s[e->result], out);
-    *second = (expr_bends){{z.d[UU].lo, z.d[UU].hi}, {z.d[UW].lo, z.d[UW].hi}, {z.d[WW].lo, z.d[WW].hi}};
+    *second = (expr_hessians){{z.d[UU].lo, z.d[UU].hi}, {z.d[UW].lo, z.d[UW].hi}, {z.d[WW].lo, z.d[WW].hi}};
 }

@@ -183,7 +183,7 @@ static interval range_of(const expr_code *p, const interval *slot)
 
 interval expr_value_range(const expr_code *p, const interval *slot) { return known(range_of(p, slot)); }
 
-void expr_range(const expr *e, double u0, double u1, double w0, double w1, double *lo, double *hi)
+void expr_bound_value(const expr *e, double u0, double u1, double w0, double w1, double *lo, double *hi)
 {
     interval slot[EXPR_SLOTS] = {{u0, u1}, {w0, w1}};
     for (int i = 0; i < e->count; i++)

@@ -15,9 +15,9 @@ void emitter_begin(emitter *e)
     e->problem = NULL;
 }
 
-operand emit_constant(double k) { return (operand){.constant = true, .k = k}; }
-operand emit_u(void) { return (operand){.slot = SLOT_U}; }
-operand emit_w(void) { return (operand){.slot = SLOT_W}; }
+operand expr_emit_constant(double k) { return (operand){.constant = true, .k = k}; }
+operand expr_emit_u(void) { return (operand){.slot = SLOT_U}; }
+operand expr_emit_w(void) { return (operand){.slot = SLOT_W}; }
 
 /* The second partials that the chain rule makes of first partials i of one operand and j of the other. */
 static int cross(int i, int j)
@@ -77,7 +77,7 @@ static operand append(emitter *e, enum expr_op op, int n, const operand *arg, do
 {
     if (e->count == EXPR_MAX_CODE) {
         e->problem = "expression too long, expected at most 1024 operations";
-        return emit_constant(0);
+        return expr_emit_constant(0);
     }
     expr_code c = {.op = (uint8_t)op, .k = k};
     for (int i = 0; i < n; i++) {
@@ -106,7 +106,7 @@ static operand fold(enum expr_op op, int n, const operand *arg)
     const double none = 0;
     expr_jets out;
     expr_eval(&e, 1, &none, &none, 0, &out);
-    return emit_constant(out.v[0]);
+    return expr_emit_constant(out.v[0]);
 }
 
 static operand with_constant(emitter *e, enum expr_op op, operand a, double k)
@@ -118,19 +118,19 @@ static operand with_constant(emitter *e, enum expr_op op, operand a, double k)
 static bool simple_power(emitter *e, operand a, double k, operand *z)
 {
     if (k == 0)
-        *z = emit_constant(1);
+        *z = expr_emit_constant(1);
     else if (k == 0.5)
         *z = append(e, OP_SQRT, 1, &a, 0);
     else if (k == floor(k) && fabs(k) <= EXPR_MAX_POWER) {
         *z = fabs(k) == 1 ? a : with_constant(e, OP_POWI, a, fabs(k));
         if (k < 0)
-            *z = emit(e, OP_DIV, 2, (operand[]){emit_constant(1), *z});
+            *z = expr_emit(e, OP_DIV, 2, (operand[]){expr_emit_constant(1), *z});
     } else
         return false;
     return true;
 }
 
-operand emit(emitter *e, enum expr_op op, int n, const operand *arg)
+operand expr_emit(emitter *e, enum expr_op op, int n, const operand *arg)
 {
     bool constant = true;
     for (int i = 0; i < n; i++)

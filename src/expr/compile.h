@@ -23,13 +23,13 @@ typedef struct emitter {
 
 void emitter_begin(emitter *e);
 
-operand emit_constant(double k);
-operand emit_u(void);
-operand emit_w(void);
+operand expr_emit_constant(double k);
+operand expr_emit_u(void);
+operand expr_emit_w(void);
 
 /* The result of op on n operands: one of enum expr_op that takes no constant. After a problem the results
  * have no meaning. */
-operand emit(emitter *e, enum expr_op op, int n, const operand *arg);
+operand expr_emit(emitter *e, enum expr_op op, int n, const operand *arg);
 
 /* The program that computes `result`; NULL: out of memory. */
 expr *emitter_end(emitter *e, operand result);

@@ -1,4 +1,4 @@
-/* Interval arithmetic, as far as bounds of a value (expr_range.c) and of its partials (expr_gradient.c) both need
+/* Interval arithmetic, as far as bounds of a value (expr_bound_value.c) and of its partials (expr_gradient.c) both need
  * it. Private to the expr_* files.
  *
  * An operation's bounds are computed in the usual rounding and then widened by more than its error, so

@@ -61,7 +61,7 @@ static operand fail(parser *p, const char *where, const char *fmt, ...)
         p->failed = true;
     }
     p->at += strlen(p->at);
-    return emit_constant(0);
+    return expr_emit_constant(0);
 }
 
 static void skip_blanks(parser *p) { p->at += strspn(p->at, " \t\r\n"); }
@@ -99,8 +99,8 @@ static found found_at(const char *at)
 static operand emit_op(parser *p, const char *where, enum expr_op op, int n, const operand *arg)
 {
     if (p->failed)
-        return emit_constant(0);
-    operand z = emit(&p->emitter, op, n, arg);
+        return expr_emit_constant(0);
+    operand z = expr_emit(&p->emitter, op, n, arg);
     return p->emitter.problem ? fail(p, where, "%s", p->emitter.problem) : z;
 }
 
@@ -128,7 +128,7 @@ static operand parse_number(parser *p)
     if (!(k < HUGE_VAL))
         return fail(p, start, "number out of range, expected at most 1.79e308");
     skip_blanks(p);
-    return emit_constant(k);
+    return expr_emit_constant(k);
 }
 
 /* How many characters must be inserted, left out or replaced to make a of b (Levenshtein), ignoring case. */
@@ -237,11 +237,11 @@ static operand parse_name(parser *p)
     skip_blanks(p);
 
     if (strcmp(name, "u") == 0)
-        return emit_u();
+        return expr_emit_u();
     if (strcmp(name, "w") == 0)
-        return emit_w();
+        return expr_emit_w();
     if (strcmp(name, "pi") == 0)
-        return emit_constant(3.14159265358979323846);
+        return expr_emit_constant(3.14159265358979323846);
     for (int i = 0; i < FUNCTIONS; i++)
         if (strcmp(name, functions[i].name) == 0) {
             if (*p->at != '(')
@@ -281,7 +281,7 @@ static operand parse_signed(parser *p)
         a = emit_op(p, caret, OP_POW, 2, (operand[]){a, exponent});
     }
     p->depth--;
-    return minus ? emit_op(p, where, OP_MUL, 2, (operand[]){emit_constant(-1), a}) : a;
+    return minus ? emit_op(p, where, OP_MUL, 2, (operand[]){expr_emit_constant(-1), a}) : a;
 }
 
 static operand parse_product(parser *p)

@@ -42,7 +42,7 @@ STAGE static void box_hit(const surface *base, int n, const rays *x, int32_t id,
 }
 
 /* From a point of a face into the box, to where it is left through the first of the other five; out of it, nowhere. */
-STAGE static void box_hit_own(const surface *base, int n, const rays *x, const starts *from, int32_t id, hits *h)
+STAGE static void box_hit_own(const surface *base, int n, const rays *x, const ray_origins *from, int32_t id, hits *h)
 {
     const box f = *(const box *)base;
     for (int i = 0; i < n; i++) {
@@ -174,7 +174,7 @@ static void box_shell(const surface *base, int part, int n, const rays *x, const
     }
 }
 
-static void box_foot(const surface *base, int part, int n, const rays *x, const real *t, feet *p)
+static void box_foot(const surface *base, int part, int n, const rays *x, const real *t, closest_points *p)
 {
     const box *f = (const box *)base;
     const face c = box_face(f, part);
@@ -194,7 +194,7 @@ static void box_foot(const surface *base, int part, int n, const rays *x, const 
     }
 }
 
-static void box_steep(const surface *base, int part, int n, const rays *x, const feet *p, real Pu_max, real Pw_max, real *rate,
+static void box_steep(const surface *base, int part, int n, const rays *x, const closest_points *p, real Pu_max, real Pw_max, real *rate,
                       real *reach)
 {
     const box *f = (const box *)base;
@@ -225,7 +225,7 @@ static void box_box(const surface *base, double lo[3], double hi[3])
     }
 }
 
-static const surface_methods box_methods = {
+static const surface_ops box_methods = {
     "box", box_hit,   box_hit_own, box_locate, box_eval,  box_occlude, box_occlude_own, box_extent, box_box,
     6,     box_shell, box_foot,   box_steep,  false,
 };
@@ -239,7 +239,7 @@ surface *box_new(vec3 from, vec3 to)
     box *f = calloc(1, sizeof *f);
     if (!f)
         return NULL;
-    f->base.is = &box_methods;
+    f->base.ops = &box_methods;
     for (int k = 0; k < 3; k++) {
         f->lo[k] = (real)(a[k] < b[k] ? a[k] : b[k]);
         f->hi[k] = (real)(a[k] < b[k] ? b[k] : a[k]);

@@ -262,7 +262,7 @@ KM_INLINE real cone_capped_far(const cone *f, local l, int part, int *met)
     return out;
 }
 
-KM_INLINE void hit_own(const surface *base, int capped, int n, const rays *x, const starts *from, int32_t id, hits *h)
+KM_INLINE void hit_own(const surface *base, int capped, int n, const rays *x, const ray_origins *from, int32_t id, hits *h)
 {
     const cone f = *(const cone *)base;
     for (int i = 0; i < n; i++) {
@@ -277,12 +277,12 @@ KM_INLINE void hit_own(const surface *base, int capped, int n, const rays *x, co
     }
 }
 
-STAGE static void cone_open_hit_own(const surface *base, int n, const rays *x, const starts *from, int32_t id, hits *h)
+STAGE static void cone_open_hit_own(const surface *base, int n, const rays *x, const ray_origins *from, int32_t id, hits *h)
 {
     hit_own(base, 0, n, x, from, id, h);
 }
 
-STAGE static void cone_capped_hit_own(const surface *base, int n, const rays *x, const starts *from, int32_t id, hits *h)
+STAGE static void cone_capped_hit_own(const surface *base, int n, const rays *x, const ray_origins *from, int32_t id, hits *h)
 {
     hit_own(base, 1, n, x, from, id, h);
 }
@@ -342,12 +342,12 @@ static void cone_shell(const surface *base, int part, int n, const rays *x, cons
         cone_side_shell((const cone *)base, n, x, end, Pmin, Pmax, t0, t1);
     else {
         const surface *cap = &cap_of(base, part)->base;
-        cap->is->shell(cap, 0, n, x, end, Pmin, Pmax, t0, t1);
+        cap->ops->shell(cap, 0, n, x, end, Pmin, Pmax, t0, t1);
     }
 }
 
 STAGE static void cone_side_foot(const cone *restrict base, int n, const rays *restrict x, const real *restrict t,
-                                 feet *restrict p)
+                                 closest_points *restrict p)
 {
     const cone f = *base;
     for (int i = 0; i < n; i++) {
@@ -364,19 +364,19 @@ STAGE static void cone_side_foot(const cone *restrict base, int n, const rays *r
     }
 }
 
-static void cone_foot(const surface *base, int part, int n, const rays *x, const real *t, feet *p)
+static void cone_foot(const surface *base, int part, int n, const rays *x, const real *t, closest_points *p)
 {
     if (part == 0)
         cone_side_foot((const cone *)base, n, x, t, p);
     else {
         const surface *cap = &cap_of(base, part)->base;
-        cap->is->foot(cap, 0, n, x, t, p);
+        cap->ops->foot(cap, 0, n, x, t, p);
     }
 }
 
 /* The directions of h, of w and around the axis are at right angles, so that the ray's way is shared between them (Cauchy and
  * Schwarz); |grad u| is 1/(distance to the axis), within half of which it at most doubles. */
-STAGE static void cone_side_steep(int n, const rays *restrict x, const feet *restrict p, real Pu_max, real Pw_max,
+STAGE static void cone_side_steep(int n, const rays *restrict x, const closest_points *restrict p, real Pu_max, real Pw_max,
                                   real *restrict rate, real *restrict reach)
 {
     for (int i = 0; i < n; i++) {
@@ -387,14 +387,14 @@ STAGE static void cone_side_steep(int n, const rays *restrict x, const feet *res
     }
 }
 
-static void cone_steep(const surface *base, int part, int n, const rays *x, const feet *p, real Pu_max, real Pw_max, real *rate,
+static void cone_steep(const surface *base, int part, int n, const rays *x, const closest_points *p, real Pu_max, real Pw_max, real *rate,
                        real *reach)
 {
     if (part == 0)
         cone_side_steep(n, x, p, Pu_max, Pw_max, rate, reach);
     else {
         const surface *cap = &cap_of(base, part)->base;
-        cap->is->steep(cap, 0, n, x, p, Pu_max, Pw_max, rate, reach);
+        cap->ops->steep(cap, 0, n, x, p, Pu_max, Pw_max, rate, reach);
     }
 }
 
@@ -408,7 +408,7 @@ static void cone_extent(const surface *base, int part, double u[2], double w[2])
         w[1] = (double)((const cone *)base)->side;
     } else {
         const surface *cap = &cap_of(base, part)->base;
-        cap->is->extent(cap, 0, u, w);
+        cap->ops->extent(cap, 0, u, w);
     }
 }
 
@@ -424,7 +424,7 @@ static void cone_box(const surface *base, double lo[3], double hi[3])
     }
 }
 
-static const surface_methods cone_methods[2][2] = {
+static const surface_ops cone_methods[2][2] = {
     {{"cylinder", cone_open_hit, cone_open_hit_own, cone_locate, cone_eval, cone_open_occlude, cone_open_occlude_own, cone_extent, cone_box,
       1,          cone_shell,    cone_foot,         cone_steep,  false},
      {"cylinder", cone_capped_hit, cone_capped_hit_own, cone_locate, cone_eval, cone_capped_occlude, cone_capped_occlude_own, cone_extent, cone_box,
@@ -451,7 +451,7 @@ surface *cone_new(vec3 from, double from_radius, vec3 to, double to_radius, bool
     if (!f)
         return NULL;
     const frame a = frame_about(axis);
-    f->base.is = &cone_methods[from_radius != to_radius][!open];
+    f->base.ops = &cone_methods[from_radius != to_radius][!open];
     store(f->F, from);
     store(f->X, a.x);
     store(f->Y, a.y);

@@ -49,7 +49,7 @@ static inline void hit(const surface *base, enum bounds end, int n, const rays *
 }
 
 /* A ray from the plane does not come back to it. */
-static inline void hit_own(const surface *base, enum bounds end, int n, const rays *x, const starts *from, int32_t id, hits *h)
+static inline void hit_own(const surface *base, enum bounds end, int n, const rays *x, const ray_origins *from, int32_t id, hits *h)
 {
     const plane f = *(const plane *)base;
     for (int i = 0; i < n; i++) {
@@ -69,17 +69,17 @@ STAGE static void rectangle_hit(const surface *base, int n, const rays *x, int32
 
 STAGE static void disc_hit(const surface *base, int n, const rays *x, int32_t id, hits *h) { hit(base, AT_RIM, n, x, id, h); }
 
-STAGE static void plane_hit_own(const surface *base, int n, const rays *x, const starts *from, int32_t id, hits *h)
+STAGE static void plane_hit_own(const surface *base, int n, const rays *x, const ray_origins *from, int32_t id, hits *h)
 {
     hit_own(base, NOWHERE, n, x, from, id, h);
 }
 
-STAGE static void rectangle_hit_own(const surface *base, int n, const rays *x, const starts *from, int32_t id, hits *h)
+STAGE static void rectangle_hit_own(const surface *base, int n, const rays *x, const ray_origins *from, int32_t id, hits *h)
 {
     hit_own(base, AT_SIDES, n, x, from, id, h);
 }
 
-STAGE static void disc_hit_own(const surface *base, int n, const rays *x, const starts *from, int32_t id, hits *h)
+STAGE static void disc_hit_own(const surface *base, int n, const rays *x, const ray_origins *from, int32_t id, hits *h)
 {
     hit_own(base, AT_RIM, n, x, from, id, h);
 }
@@ -189,7 +189,7 @@ static void disc_shell(const surface *base, int part, int n, const rays *x, cons
 }
 
 /* The dual basis is in the plane, so Du.(X - O) is u of the foot. */
-STAGE static void plane_foot(const surface *base, int part, int n, const rays *x, const real *restrict t, feet *restrict p)
+STAGE static void plane_foot(const surface *base, int part, int n, const rays *x, const real *restrict t, closest_points *restrict p)
 {
     const plane f = *(const plane *)base;
     (void)part;
@@ -205,7 +205,7 @@ STAGE static void plane_foot(const surface *base, int part, int n, const rays *x
 }
 
 /* u, w and the height are linear along a ray, so the rate holds for all of it. */
-STAGE static void plane_steep(const surface *base, int part, int n, const rays *x, const feet *p, real Pu_max, real Pw_max,
+STAGE static void plane_steep(const surface *base, int part, int n, const rays *x, const closest_points *p, real Pu_max, real Pw_max,
                               real *restrict rate, real *restrict reach)
 {
     const plane f = *(const plane *)base;
@@ -273,17 +273,17 @@ static void disc_box(const surface *base, double lo[3], double hi[3])
     }
 }
 
-static const surface_methods plane_methods = {
+static const surface_ops plane_methods = {
     "plane", plane_hit,   plane_hit_own, plane_locate, plane_eval, plane_occlude, NULL, plane_extent, plane_box,
     1,       plane_shell, plane_foot,    plane_steep,  false,
 };
 
-static const surface_methods rectangle_methods = {
+static const surface_ops rectangle_methods = {
     "rectangle", rectangle_hit,   rectangle_hit_own, plane_locate, plane_eval, rectangle_occlude, NULL, rectangle_extent, rectangle_box,
     1,           rectangle_shell, plane_foot,        plane_steep,  false,
 };
 
-static const surface_methods disc_methods = {
+static const surface_ops disc_methods = {
     "disc", disc_hit,   disc_hit_own, plane_locate, plane_eval, disc_occlude, NULL, disc_extent, disc_box,
     1,      disc_shell, plane_foot,   plane_steep,  false,
 };
@@ -318,15 +318,15 @@ surface *plane_new(vec3 origin, vec3 U, vec3 W, bool bounded)
         free(f);
         return NULL;
     }
-    f->base.is = bounded ? &rectangle_methods : &plane_methods;
+    f->base.ops = bounded ? &rectangle_methods : &plane_methods;
     return &f->base;
 }
 
-void rectangle_set(plane *f) { f->base.is = &rectangle_methods; }
+void rectangle_set(plane *f) { f->base.ops = &rectangle_methods; }
 
 void disc_set(plane *f, vec3 centre, vec3 U, vec3 W, double radius)
 {
-    f->base.is = &disc_methods;
+    f->base.ops = &disc_methods;
     store(f->O, centre);
     store(f->U, U);
     store(f->W, W);

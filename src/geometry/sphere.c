@@ -43,7 +43,7 @@ static inline real sphere_far(const sphere *f, real rx, real ry, real rz, real s
     return -2 * ((rx - f->C[0]) * sx + (ry - f->C[1]) * sy + (rz - f->C[2]) * sz) / (sx * sx + sy * sy + sz * sz);
 }
 
-STAGE static void sphere_hit_own(const surface *base, int n, const rays *x, const starts *from, int32_t id, hits *h)
+STAGE static void sphere_hit_own(const surface *base, int n, const rays *x, const ray_origins *from, int32_t id, hits *h)
 {
     const sphere f = *(const sphere *)base;
     for (int i = 0; i < n; i++) {
@@ -150,7 +150,7 @@ STAGE static void sphere_shell(const surface *base, int part, int n, const rays 
     }
 }
 
-STAGE static void sphere_foot(const surface *base, int part, int n, const rays *x, const real *restrict t, feet *restrict p)
+STAGE static void sphere_foot(const surface *base, int part, int n, const rays *x, const real *restrict t, closest_points *restrict p)
 {
     const sphere f = *(const sphere *)base;
     (void)part;
@@ -176,7 +176,7 @@ STAGE static void sphere_foot(const surface *base, int part, int n, const rays *
 }
 
 /* |grad u| is 1/(distance to the axis), |grad w| 1/(distance to the centre): within half of either they at most double. */
-STAGE static void sphere_steep(const surface *base, int part, int n, const rays *x, const feet *p, real Pu_max, real Pw_max,
+STAGE static void sphere_steep(const surface *base, int part, int n, const rays *x, const closest_points *p, real Pu_max, real Pw_max,
                                real *restrict rate, real *restrict reach)
 {
     (void)base;
@@ -210,7 +210,7 @@ static void sphere_box(const surface *base, double lo[3], double hi[3])
     }
 }
 
-static const surface_methods sphere_methods = {
+static const surface_ops sphere_methods = {
     "sphere", sphere_hit,   sphere_hit_own, sphere_locate, sphere_eval, sphere_occlude, sphere_occlude_own, sphere_extent, sphere_box,
     1,        sphere_shell, sphere_foot,    sphere_steep,  false,
 };
@@ -220,7 +220,7 @@ surface *sphere_new(vec3 centre, double radius)
     sphere *f = radius > 0 && radius < HUGE_VAL ? calloc(1, sizeof *f) : NULL;
     if (!f)
         return NULL;
-    f->base.is = &sphere_methods;
+    f->base.ops = &sphere_methods;
     f->C[0] = (real)centre.x;
     f->C[1] = (real)centre.y;
     f->C[2] = (real)centre.z;

@@ -17,7 +17,7 @@
 typedef struct surface surface;
 
 /* The methods of one kind of surface. Each is a stage: n lanes, no allocation, reentrant. */
-typedef struct surface_methods {
+typedef struct surface_ops {
     const char *kind; /* as in the scene file */
 
     /* The nearest hit with 0 < t < h->t: where there is one, set h->t, and h->id = id. */
@@ -25,7 +25,7 @@ typedef struct surface_methods {
 
     /* The same for rays that have left a surface. Those that have left this one, from->id[i] = id, begin at from->at on its
      * from->part, and this start does not count. */
-    void (*hit_own)(const surface *f, int n, const rays *x, const starts *from, int32_t id, hits *h);
+    void (*hit_own)(const surface *f, int n, const rays *x, const ray_origins *from, int32_t id, hits *h);
 
     /* Where on the surface the hits r + s t are: the part (the face of a box, 0 elsewhere), u and w. part[i] holds what `hit` told: a mesh's
      * triangle, which stays. */
@@ -58,21 +58,21 @@ typedef struct surface_methods {
 
     /* The foot of the perpendicular from each r + s t to the surface: (u,w), the height over it, and how these change in space
      * (gradients). (u,w) may lie outside the extent. */
-    void (*foot)(const surface *f, int part, int n, const rays *x, const real *t, feet *p);
+    void (*foot)(const surface *f, int part, int n, const rays *x, const real *t, closest_points *p);
 
     /* Bounds along each ray from r + s t on, for a P that changes by at most Pu_max and Pw_max per u and w: how fast
      * height - P can change with t, and how far in t that holds. */
-    void (*steep)(const surface *f, int part, int n, const rays *x, const feet *p, real Pu_max, real Pw_max, real *rate,
+    void (*steep)(const surface *f, int part, int n, const rays *x, const closest_points *p, real Pu_max, real Pw_max, real *rate,
                   real *reach);
 
     /* Whether a stretch may also lead over places beyond the part's extent, so that hits there are none. */
     bool loose;
-} surface_methods;
+} surface_ops;
 
 struct surface {
-    const surface_methods *is;
+    const surface_ops *ops;
     void (*free)(surface *f); /* NULL: it owns nothing but itself */
-    const struct displaced *rough; /* its own way to its rough surface (displace.h), in place of shell, foot and steep; NULL: none */
+    const struct displaced_ops *rough; /* its own way to its rough surface (displace.h), in place of shell, foot and steep; NULL: none */
 };
 
 /* Q = origin + u U + w W; over all (u,w), or over 0..1 where `bounded`. NULL where U and W are parallel, zero or not
@@ -107,12 +107,12 @@ surface *torus_new(vec3 centre, vec3 axis, double major, double minor);
 surface *surface_transformed(const surface *from, const affine *m);
 /* Q(u,w) from its points alone (sheet.h): three expressions, or Bezier patches, each a part. n = Qu x Qw is outward by definition.
  * Owns q, also on failure. NULL where Q has no bounds over its range, or is all in one place (then only: or out of memory). */
-struct sheet;
-surface *searched_new(struct sheet *q);
+struct patch;
+surface *patch_surface_new(struct patch *q);
 
 /* The image of such a surface by an affine map, in leaves of its own: what surface_transformed makes of it has no true displacement.
- * `from` must outlive it; as there, where the map mirrors u runs the other way. NULL: as searched_new. */
-surface *searched_moved(const surface *from, const affine *m);
+ * `from` must outlive it; as there, where the map mirrors u runs the other way. NULL: as patch_surface_new. */
+surface *patch_surface_affine(const surface *from, const affine *m);
 
 void surface_free(surface *f);
 

@@ -348,7 +348,7 @@ STAGE static void torus_own_step(double close, int n, cubics *restrict k)
 }
 
 /* Those from elsewhere by the quartic, those from the torus itself by the cubic; each kind has no way to go in the other's search. */
-static void torus_hit_own(const surface *base, int n, const rays *x, const starts *from, int32_t id, hits *h)
+static void torus_hit_own(const surface *base, int n, const rays *x, const ray_origins *from, int32_t id, hits *h)
 {
     const torus *f = (const torus *)base;
     const double close = CLOSE * (f->M + f->m);
@@ -418,7 +418,7 @@ static void torus_shell(const surface *base, int part, int n, const rays *x, con
     }
 }
 
-STAGE static void torus_foot(const surface *base, int part, int n, const rays *x, const real *t, feet *q)
+STAGE static void torus_foot(const surface *base, int part, int n, const rays *x, const real *t, closest_points *q)
 {
     const torus f = *(const torus *)base;
     (void)part;
@@ -437,7 +437,7 @@ STAGE static void torus_foot(const surface *base, int part, int n, const rays *x
 
 /* The directions of h, u and w are at right angles, so that the ray's way is shared between them (Cauchy and Schwarz). |grad u|
  * is 1/(distance to the axis), |grad w| 1/(distance to the tube's middle): within half of either they at most double. */
-STAGE static void torus_steep(const surface *base, int part, int n, const rays *x, const feet *p, real Pu_max, real Pw_max,
+STAGE static void torus_steep(const surface *base, int part, int n, const rays *x, const closest_points *p, real Pu_max, real Pw_max,
                               real *restrict rate, real *restrict reach)
 {
     (void)base;
@@ -471,7 +471,7 @@ static void torus_box(const surface *base, double lo[3], double hi[3])
     }
 }
 
-static const surface_methods torus_methods = {
+static const surface_ops torus_methods = {
     "torus", torus_hit,   torus_hit_own, torus_locate, torus_eval, torus_occlude, torus_occlude_own, torus_extent, torus_box,
     1,       torus_shell, torus_foot,    torus_steep,  false,
 };
@@ -491,7 +491,7 @@ surface *torus_new(vec3 centre, vec3 axis, double major, double minor)
     if (!f)
         return NULL;
     const frame a = frame_about(axis);
-    f->base.is = &torus_methods;
+    f->base.ops = &torus_methods;
     store(f->C, centre);
     store(f->X, a.x);
     store(f->Y, a.y);

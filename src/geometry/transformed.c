@@ -19,7 +19,7 @@ enum { FACES = 6 };
 
 typedef struct transformed {
     surface base;
-    surface_methods methods; /* of this one; the others of what is mapped */
+    surface_ops methods; /* of this one; the others of what is mapped */
     const surface *from;
     real to[3][3], back[3][3]; /* images of the axes; the rows of the way back */
     real o[3];                 /* the image of the origin */
@@ -112,19 +112,19 @@ static void transformed_hit(const surface *base, int n, const rays *x, int32_t i
     const transformed *f = of(base);
     rays y;
     rays_back(f, n, x, &y);
-    f->from->is->hit(f->from, n, &y, id, h);
+    f->from->ops->hit(f->from, n, &y, id, h);
 }
 
-static void transformed_hit_own(const surface *base, int n, const rays *x, const starts *from, int32_t id, hits *h)
+static void transformed_hit_own(const surface *base, int n, const rays *x, const ray_origins *from, int32_t id, hits *h)
 {
     const transformed *f = of(base);
     rays y;
-    starts there;
+    ray_origins there;
     rays_back(f, n, x, &y);
     memcpy(there.id, from->id, (size_t)n * sizeof *there.id);
     memcpy(there.part, from->part, (size_t)n * sizeof *there.part);
     places_back(f, n, &from->at, &there.at);
-    f->from->is->hit_own(f->from, n, &y, &there, id, h);
+    f->from->ops->hit_own(f->from, n, &y, &there, id, h);
 }
 
 static void transformed_locate(const surface *base, int n, const rays *x, const real *t, int32_t *part, real *u, real *w)
@@ -132,7 +132,7 @@ static void transformed_locate(const surface *base, int n, const rays *x, const 
     const transformed *f = of(base);
     rays y;
     rays_back(f, n, x, &y);
-    f->from->is->locate(f->from, n, &y, t, part, u, w);
+    f->from->ops->locate(f->from, n, &y, t, part, u, w);
     turn_u(f, n, u, u);
 }
 
@@ -141,7 +141,7 @@ static void transformed_eval(const surface *base, int n, const int32_t *part, co
     const transformed *f = of(base);
     real v[LANES];
     turn_u(f, n, u, v);
-    f->from->is->eval(f->from, n, part, v, w, order, q);
+    f->from->ops->eval(f->from, n, part, v, w, order, q);
     places_to(f, n, &q->Q);
     vectors_to(f, n, f->turn, &q->Qu);
     vectors_to(f, n, 1, &q->Qw);
@@ -157,7 +157,7 @@ static void transformed_occlude(const surface *base, int n, const rays *x, real 
     const transformed *f = of(base);
     rays y;
     rays_back(f, n, x, &y);
-    f->from->is->occlude(f->from, n, &y, lit);
+    f->from->ops->occlude(f->from, n, &y, lit);
 }
 
 static void transformed_occlude_own(const surface *base, int n, const rays *x, const int32_t *part, real *lit)
@@ -165,13 +165,13 @@ static void transformed_occlude_own(const surface *base, int n, const rays *x, c
     const transformed *f = of(base);
     rays y;
     rays_back(f, n, x, &y);
-    f->from->is->occlude_own(f->from, n, &y, part, lit);
+    f->from->ops->occlude_own(f->from, n, &y, part, lit);
 }
 
 /* As u turns about the middle of its extent this stays the same. */
 static void transformed_extent(const surface *base, int part, double u[2], double w[2])
 {
-    of(base)->from->is->extent(of(base)->from, part, u, w);
+    of(base)->from->ops->extent(of(base)->from, part, u, w);
 }
 
 /* ---- for true displacement, by maps that keep angles ---- */
@@ -182,15 +182,15 @@ static void similar_shell(const surface *base, int part, int n, const rays *x, c
     const transformed *f = of(base);
     rays y;
     rays_back(f, n, x, &y);
-    f->from->is->shell(f->from, part, n, &y, end, Pmin * f->over, Pmax * f->over, t0, t1);
+    f->from->ops->shell(f->from, part, n, &y, end, Pmin * f->over, Pmax * f->over, t0, t1);
 }
 
-static void similar_foot(const surface *base, int part, int n, const rays *x, const real *t, feet *p)
+static void similar_foot(const surface *base, int part, int n, const rays *x, const real *t, closest_points *p)
 {
     const transformed *f = of(base);
     rays y;
     rays_back(f, n, x, &y);
-    f->from->is->foot(f->from, part, n, &y, t, p);
+    f->from->ops->foot(f->from, part, n, &y, t, p);
     turn_u(f, n, p->u, p->u);
     stretch(n, f->scale, p->h);
     gradients_to(f, n, f->turn, &p->gu);
@@ -198,12 +198,12 @@ static void similar_foot(const surface *base, int part, int n, const rays *x, co
     gradients_to(f, n, f->scale, &p->gh);
 }
 
-static void similar_steep(const surface *base, int part, int n, const rays *x, const feet *p, real Pu_max, real Pw_max, real *rate,
+static void similar_steep(const surface *base, int part, int n, const rays *x, const closest_points *p, real Pu_max, real Pw_max, real *rate,
                           real *reach)
 {
     const transformed *f = of(base);
     rays y;
-    feet q;
+    closest_points q;
     rays_back(f, n, x, &y);
     turn_u(f, n, p->u, q.u);
     memcpy(q.w, p->w, (size_t)n * sizeof *q.w);
@@ -212,7 +212,7 @@ static void similar_steep(const surface *base, int part, int n, const rays *x, c
     gradients_back(f, n, f->turn, &p->gu, &q.gu);
     gradients_back(f, n, 1, &p->gw, &q.gw);
     gradients_back(f, n, f->over, &p->gh, &q.gh);
-    f->from->is->steep(f->from, part, n, &y, &q, Pu_max * f->over, Pw_max * f->over, rate, reach);
+    f->from->ops->steep(f->from, part, n, &y, &q, Pu_max * f->over, Pw_max * f->over, rate, reach);
     stretch(n, f->scale, rate);
 }
 
@@ -222,20 +222,20 @@ static void faces_shell(const surface *base, int part, int n, const rays *x, con
                         real *t1)
 {
     const surface *face = &of(base)->face[part].base;
-    face->is->shell(face, 0, n, x, end, Pmin, Pmax, t0, t1);
+    face->ops->shell(face, 0, n, x, end, Pmin, Pmax, t0, t1);
 }
 
-static void faces_foot(const surface *base, int part, int n, const rays *x, const real *t, feet *p)
+static void faces_foot(const surface *base, int part, int n, const rays *x, const real *t, closest_points *p)
 {
     const surface *face = &of(base)->face[part].base;
-    face->is->foot(face, 0, n, x, t, p);
+    face->ops->foot(face, 0, n, x, t, p);
 }
 
-static void faces_steep(const surface *base, int part, int n, const rays *x, const feet *p, real Pu_max, real Pw_max, real *rate,
+static void faces_steep(const surface *base, int part, int n, const rays *x, const closest_points *p, real Pu_max, real Pw_max, real *rate,
                         real *reach)
 {
     const surface *face = &of(base)->face[part].base;
-    face->is->steep(face, 0, n, x, p, Pu_max, Pw_max, rate, reach);
+    face->ops->steep(face, 0, n, x, p, Pu_max, Pw_max, rate, reach);
 }
 
 /* The image of the box of what is mapped. */
@@ -243,7 +243,7 @@ static void transformed_box(const surface *base, double lo[3], double hi[3])
 {
     const transformed *f = of(base);
     double a[3], b[3];
-    f->from->is->box(f->from, a, b);
+    f->from->ops->box(f->from, a, b);
     for (int k = 0; k < 3; k++) {
         lo[k] = hi[k] = (double)f->o[k];
         for (int j = 0; j < 3; j++) {
@@ -256,7 +256,7 @@ static void transformed_box(const surface *base, double lo[3], double hi[3])
 
 /* ---- making them ---- */
 
-static bool is(const surface *f, const char *kind) { return strcmp(f->is->kind, kind) == 0; }
+static bool is(const surface *f, const char *kind) { return strcmp(f->ops->kind, kind) == 0; }
 
 static vec3 lane(const vec3s *v) { return (vec3){(double)v->x[0], (double)v->y[0], (double)v->z[0]}; }
 
@@ -266,7 +266,7 @@ static bool flat_image(plane *to, const surface *f, int part, const affine *m, d
     const int32_t p = part;
     const real u = (real)ends, w = 0;
     partials q;
-    f->is->eval(f, 1, &p, &u, &w, 1, &q);
+    f->ops->eval(f, 1, &p, &u, &w, 1, &q);
     return plane_place(to, affine_point(m, lane(&q.Q)), vec3_scale(affine_vector(m, lane(&q.Qu)), turn), affine_vector(m, lane(&q.Qw)));
 }
 
@@ -303,14 +303,14 @@ static void store(real to[3], vec3 v)
 
 static void choose_methods(transformed *f, double scale)
 {
-    f->base.is = &f->methods;
-    f->methods = *f->from->is;
+    f->base.ops = &f->methods;
+    f->methods = *f->from->ops;
     f->methods.hit = transformed_hit;
     f->methods.hit_own = transformed_hit_own;
     f->methods.locate = transformed_locate;
     f->methods.eval = transformed_eval;
     f->methods.occlude = transformed_occlude;
-    f->methods.occlude_own = f->from->is->occlude_own ? transformed_occlude_own : NULL;
+    f->methods.occlude_own = f->from->ops->occlude_own ? transformed_occlude_own : NULL;
     f->methods.extent = transformed_extent;
     f->methods.box = transformed_box;
     f->methods.shell = scale > 0 ? similar_shell : NULL;
@@ -324,7 +324,7 @@ surface *surface_transformed(const surface *from, const affine *m)
     double u[2], w[2];
     if (!(fabs(volume) > 0) || !(fabs(volume) < HUGE_VAL))
         return NULL;
-    from->is->extent(from, 0, u, w);
+    from->ops->extent(from, 0, u, w);
     const double turn = volume < 0 ? -1 : 1, ends = volume < 0 && u[1] < HUGE_VAL ? u[0] + u[1] : 0;
     if (is(from, "plane") || is(from, "rectangle") || is(from, "disc"))
         return plane_image(from, m, turn, ends);

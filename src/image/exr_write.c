@@ -16,7 +16,7 @@ static int64_t write_at(exr_const_context_t ctx, void *data, const void *buffer,
                         exr_stream_error_func_ptr_t error)
 {
     (void)ctx, (void)error;
-    return image_file_write(data, buffer, (size_t)size, offset) ? (int64_t)size : -1;
+    return file_writer_write(data, buffer, (size_t)size, offset) ? (int64_t)size : -1;
 }
 
 static int by_name(const void *a, const void *b)
@@ -101,7 +101,7 @@ static exr_result_t write_chunks(exr_context_t ctx, int width, int height, const
     return result;
 }
 
-static exr_result_t encode(image_file *file, int width, int height, int channels, const image_channel *channel,
+static exr_result_t encode(file_writer *file, int width, int height, int channels, const image_channel *channel,
                            int texts, const image_text *text)
 {
     exr_context_t ctx = NULL;
@@ -144,14 +144,14 @@ bool image_write_exr(const char *path, int width, int height, int channels, cons
         sorted[c] = channel[c];
     qsort(sorted, n, sizeof *sorted, by_name); /* as the format wants them */
 
-    image_file file;
+    file_writer file;
     bool ok = false;
     const char *why = refuse(width, height, channels, sorted);
     if (why)
         errors_add(e, "%s: cannot be written: %s", path, why);
-    else if (image_file_open(&file, path, e)) {
+    else if (file_writer_open(&file, path, e)) {
         exr_result_t rv = encode(&file, width, height, channels, sorted, texts, text);
-        ok = image_file_close(&file, rv ? exr_get_default_error_message(rv) : NULL, e);
+        ok = file_writer_close(&file, rv ? exr_get_default_error_message(rv) : NULL, e);
     }
     free(sorted);
     return ok;

@@ -172,7 +172,7 @@ bool image_png_is_from(const char *path, const char *program)
 /* ------------------------------------------------------------------------------------------------ writing */
 
 typedef struct png_out {
-    image_file file;
+    file_writer file;
     uint64_t size; /* so far */
     srgb *curve;
     uint16_t *code;  /* of a row, one channel */
@@ -183,7 +183,7 @@ typedef struct png_out {
 static void write_bytes(png_structp png, png_bytep data, size_t size)
 {
     png_out *o = png_get_io_ptr(png);
-    if (!image_file_write(&o->file, data, size, o->size))
+    if (!file_writer_write(&o->file, data, size, o->size))
         png_error(png, "the file cannot be written");
     o->size += size;
 }
@@ -266,7 +266,7 @@ bool image_write_png(const char *path, int width, int height, int bits, const fl
     char why[IMAGE_WHY];
     png_job job = {.why = why};
     png_out o = {0};
-    if (!image_file_open(&o.file, path, e))
+    if (!file_writer_open(&o.file, path, e))
         return false;
     bool ok = encode(&job, &o, width, height, bits, (const float *const[3]){r, g, b}, texts, text);
     png_destroy_write_struct(&job.png, &job.info);
@@ -274,5 +274,5 @@ bool image_write_png(const char *path, int width, int height, int bits, const fl
     free(o.code);
     free(o.row);
     free(o.text);
-    return image_file_close(&o.file, ok ? NULL : why, e);
+    return file_writer_close(&o.file, ok ? NULL : why, e);
 }

@@ -106,14 +106,14 @@ static bool receive(int from, void *to, size_t size)
 }
 
 /* The letter that is the last; READ where none came. */
-static void receive_last(int from, const watch *w, files *opened, letter *l)
+static void receive_last(int from, const progress *w, files *opened, letter *l)
 {
     bool come = receive(from, l, sizeof *l), room = true;
     for (; come && room && (l->is == OPENED || l->is == READ); come = receive(from, l, sizeof *l))
         if (l->is == OPENED)
             room = files_add(opened, l->opened);
         else
-            watch_show(w, l->share < 1 ? "reading" : "unpacking", l->share);
+            progress_show(w, l->share < 1 ? "reading" : "unpacking", l->share);
     if (!room) {
         l->is = WRONG;
         snprintf(l->why, sizeof l->why, "out of memory");
@@ -121,7 +121,7 @@ static void receive_last(int from, const watch *w, files *opened, letter *l)
         l->is = READ;
 }
 
-static bool receive_all(int from, const watch *w, files *opened, letter *l, mesh_data *out)
+static bool receive_all(int from, const progress *w, files *opened, letter *l, mesh_data *out)
 {
     receive_last(from, w, opened, l);
     if (l->is != DONE)
@@ -176,14 +176,14 @@ static bool can_open(const char *path, size_t *size, char why[MESH_WHY])
     return *size > 0;
 }
 
-bool mesh_file_read(const char *path, const watch *w, files *opened, mesh_data *out, char why[MESH_WHY])
+bool mesh_file_read(const char *path, const progress *w, files *opened, mesh_data *out, char why[MESH_WHY])
 {
     letter l = {.is = READ};
     size_t size = 0;
     int ends[2], status = 0;
     if (!can_open(path, &size, why))
         return false;
-    watch_show(w, "reading", 0);
+    progress_show(w, "reading", 0);
     if (pipe(ends) != 0) {
         snprintf(why, MESH_WHY, "%s", strerror(errno));
         return false;

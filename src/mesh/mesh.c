@@ -76,18 +76,18 @@ static bool meets(const float at[3][3], const shear *k, double *t)
 /* ---- walks ---- */
 
 /* A ray on its way through the tree. Hits are looked for in from < t < to; `to` becomes that of the first one. */
-typedef struct quest {
+typedef struct patch_query {
     const mesh *f;
     shear k;
     int32_t but, index; /* a triangle that does not count; the one that was met, -1: none */
     double from, to;
     double enter, unit; /* t where the ray in the tree begins, and how long it is there for one of t */
     bool any;           /* whichever hit comes first will do */
-} quest;
+} patch_query;
 
 static float visit(void *user, int32_t index, float end)
 {
-    quest *q = user;
+    patch_query *q = user;
     double t;
     if (index == q->but || !meets((const float (*)[3])q->f->d.at[index], &q->k, &t) || !(t > q->from))
         return end;
@@ -102,7 +102,7 @@ static float visit(void *user, int32_t index, float end)
 }
 
 /* The first hit of r + s t in from < t < to, but for one triangle; in q->to and q->index. */
-static void seek(quest *q, vec3 r, vec3 s, double from, double to, int32_t but)
+static void seek(patch_query *q, vec3 r, vec3 s, double from, double to, int32_t but)
 {
     float at[3], way[3], end;
     double enter = from > 0 ? from : 0, leave = to;
@@ -118,7 +118,7 @@ static void seek(quest *q, vec3 r, vec3 s, double from, double to, int32_t but)
     bvh_toward(q->f->tree, at, way, end, visit, q);
 }
 
-static void take(const quest *q, int i, int32_t id, hits *h)
+static void take(const patch_query *q, int i, int32_t id, hits *h)
 {
     const real t = (real)q->to;
     if (q->index >= 0 && t > 0 && t < h->t[i]) {
@@ -130,7 +130,7 @@ static void take(const quest *q, int i, int32_t id, hits *h)
 
 static void mesh_hit(const surface *base, int n, const rays *x, int32_t id, hits *h)
 {
-    quest q = {.f = (const mesh *)base};
+    patch_query q = {.f = (const mesh *)base};
     for (int i = 0; i < n; i++) {
         seek(&q, get(&x->r, i), get(&x->s, i), 0, (double)h->t[i], -1);
         take(&q, i, id, h);
@@ -139,7 +139,7 @@ static void mesh_hit(const surface *base, int n, const rays *x, int32_t id, hits
 
 static void mesh_occlude(const surface *base, int n, const rays *x, real *lit)
 {
-    quest q = {.f = (const mesh *)base, .any = true};
+    patch_query q = {.f = (const mesh *)base, .any = true};
     for (int i = 0; i < n; i++) {
         seek(&q, get(&x->r, i), get(&x->s, i), 0, lit[i] > 0 ? 1 : -1, -1);
         lit[i] = q.index >= 0 ? 0 : lit[i];
@@ -179,9 +179,9 @@ static vec3 departure(const mesh *f, int32_t index, vec3 at, vec3 s, double *bey
     return from;
 }
 
-static void mesh_hit_own(const surface *base, int n, const rays *x, const starts *from, int32_t id, hits *h)
+static void mesh_hit_own(const surface *base, int n, const rays *x, const ray_origins *from, int32_t id, hits *h)
 {
-    quest q = {.f = (const mesh *)base};
+    patch_query q = {.f = (const mesh *)base};
     for (int i = 0; i < n; i++) {
         const bool own = from->id[i] == id;
         vec3 r = get(&x->r, i);
@@ -196,7 +196,7 @@ static void mesh_hit_own(const surface *base, int n, const rays *x, const starts
 
 static void mesh_occlude_own(const surface *base, int n, const rays *x, const int32_t *part, real *lit)
 {
-    quest q = {.f = (const mesh *)base, .any = true};
+    patch_query q = {.f = (const mesh *)base, .any = true};
     for (int i = 0; i < n; i++) {
         if (!(lit[i] > 0))
             continue;
@@ -363,9 +363,9 @@ static void mesh_box(const surface *base, double lo[3], double hi[3])
     }
 }
 
-static void show_tree(void *user, double share) { watch_show(user, "building", share); }
+static void show_tree(void *user, double share) { progress_show(user, "building", share); }
 
-static bvh *tree_of(const mesh *f, const watch *w)
+static bvh *tree_of(const mesh *f, const progress *w)
 {
     bvh_box *box = malloc(sizeof *box * (size_t)f->d.n);
     for (int k = 0; box && k < f->d.n; k++) {
@@ -377,8 +377,8 @@ static bvh *tree_of(const mesh *f, const watch *w)
         }
         box[k] = bvh_box_in(&f->space, lo, hi);
     }
-    watch to = w ? *w : (watch){NULL, NULL};
-    bvh *b = box ? bvh_new_watched(f->d.n, box, show_tree, &to) : NULL;
+    progress to = w ? *w : (progress){NULL, NULL};
+    bvh *b = box ? bvh_new_with_progress(f->d.n, box, show_tree, &to) : NULL;
     free(box);
     return b;
 }
@@ -392,7 +392,7 @@ static void mesh_free(surface *base)
     free(f);
 }
 
-static const surface_methods methods = {
+static const surface_ops methods = {
     .kind = "mesh",
     .hit = mesh_hit,
     .hit_own = mesh_hit_own,
@@ -406,9 +406,9 @@ static const surface_methods methods = {
 };
 
 /* Range and texture are known. */
-static surface *finish(mesh *f, const watch *w)
+static surface *finish(mesh *f, const progress *w)
 {
-    f->base.is = &methods;
+    f->base.ops = &methods;
     f->base.free = mesh_free;
     f->base.rough = &mesh_displaced;
     double lo[3], hi[3];
@@ -420,7 +420,7 @@ static surface *finish(mesh *f, const watch *w)
     return NULL;
 }
 
-surface *mesh_new(mesh_data *d, const watch *w)
+surface *mesh_new(mesh_data *d, const progress *w)
 {
     mesh *f = calloc(1, sizeof *f);
     if (!f) {

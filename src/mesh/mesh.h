@@ -27,14 +27,14 @@ typedef struct mesh {
 } mesh;
 
 /* Owns *d, also on failure. It must have been through mesh_clean, and have a triangle. NULL: out of memory. */
-surface *mesh_new(mesh_data *d, const watch *w);
+surface *mesh_new(mesh_data *d, const progress *w);
 
 /* The image of a mesh by an affine map, with arrays of its own: what surface_transformed makes of it has no true displacement. Where the map mirrors, u
  * runs the other way in its range, as there. NULL: out of memory. */
 surface *mesh_moved(const surface *from, const affine *m);
 
 /* For true displacement. */
-extern const struct displaced mesh_displaced;
+extern const struct displaced_ops mesh_displaced;
 
 /* A triangle in double: corners, what its normals are, and (u,w). */
 typedef struct mesh_triangle {

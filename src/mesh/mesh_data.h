@@ -42,7 +42,7 @@ typedef enum mesh_normals { MESH_NORMALS_FILE, MESH_NORMALS_SMOOTH, MESH_NORMALS
 
 /* Read a file of a model; it and those that it names are added to *opened. False, and why not in one line.
  * (mesh_file.c) */
-bool mesh_file_read(const char *path, const watch *w, files *opened, mesh_data *out, char why[MESH_WHY]);
+bool mesh_file_read(const char *path, const progress *w, files *opened, mesh_data *out, char why[MESH_WHY]);
 
 /* The importer itself, as it runs in a process of its own. What it tells: each file that it opens, and the share that
  * has been read. (mesh_import.c) */

@@ -3,7 +3,7 @@
 
 #include "wave/lane.h"
 
-STAGE static void normals_smooth(group *restrict g)
+STAGE static void normals_smooth(hit_group *restrict g)
 {
     for (int i = 0; i < g->n; i++) {
         bs_vec3 n = bs_normal(lane_get(&g->q.Qu, i), lane_get(&g->q.Qw, i));
@@ -12,7 +12,7 @@ STAGE static void normals_smooth(group *restrict g)
     }
 }
 
-STAGE static void normals_bump(group *restrict g)
+STAGE static void normals_bump(hit_group *restrict g)
 {
     for (int i = 0; i < g->n; i++) {
         bs_vec3 Qu = lane_get(&g->q.Qu, i), Qw = lane_get(&g->q.Qw, i), n = bs_normal(Qu, Qw);
@@ -26,20 +26,20 @@ STAGE static void normals_bump(group *restrict g)
     }
 }
 
-void shift_normals(group *g, const perturb *bump)
+void shift_normals(hit_group *g, const bump *P)
 {
-    if (bump)
+    if (P)
         normals_bump(g);
     else
         normals_smooth(g);
 }
 
-static inline bs_view view(const group *g, int i)
+static inline bs_view view(const hit_group *g, int i)
 {
     return bs_view_of(lane_get(&g->x.s, i), lane_get(&g->n_smooth, i), lane_get(&g->q.Qu, i), lane_get(&g->q.Qw, i));
 }
 
-static inline real curvature(const group *g, int i, bs_view v)
+static inline real curvature(const hit_group *g, int i, bs_view v)
 {
     return bs_curvature(v, lane_get(&g->n_smooth, i), lane_get(&g->q.Quu, i), lane_get(&g->q.Quw, i),
                         lane_get(&g->q.Qww, i));
@@ -47,7 +47,7 @@ static inline real curvature(const group *g, int i, bs_view v)
 
 /* Where the surface has no two directions the shift is 0, by order none. After the loops of the methods, not in them: there
  * the choice would become a branch, and keep them from being vectorised. */
-STAGE static void drop_irregular(group *restrict g)
+STAGE static void drop_irregular(hit_group *restrict g)
 {
     for (int i = 0; i < g->n; i++) {
         int regular = bs_regular(lane_get(&g->n_smooth, i), lane_get(&g->q.Qu, i), lane_get(&g->q.Qw, i));
@@ -59,7 +59,7 @@ STAGE static void drop_irregular(group *restrict g)
 }
 
 /* One lane by an order that is constant in each of the loops below; so no derivative is loaded that it does not use. */
-static inline void by_order(group *g, int i, int order, int guard, real Pmin, real Pmax)
+static inline void by_order(hit_group *g, int i, int order, int guard, real Pmin, real Pmax)
 {
     bs_view v = view(g, i);
     bs_bump p = {g->h.P[i], order >= 1 ? g->h.Pu[i] : 0,  order >= 1 ? g->h.Pw[i] : 0,
@@ -70,7 +70,7 @@ static inline void by_order(group *g, int i, int order, int guard, real Pmin, re
 }
 
 #define BY_ORDER(name, order, guard)                                          \
-    STAGE static void name(group *restrict g, real Pmin, real Pmax)           \
+    STAGE static void name(hit_group *restrict g, real Pmin, real Pmax)           \
     {                                                                         \
         for (int i = 0; i < g->n; i++)                                        \
             by_order(g, i, order, guard, Pmin, Pmax);                         \
@@ -84,7 +84,7 @@ BY_ORDER(order_1_bare, 1, 0)
 BY_ORDER(order_2_bare, 2, 0) /* alone not vectorised: gcc 12 finds no vector for its choice between 1 and 2 */
 BY_ORDER(order_2_plus_bare, 3, 0)
 
-typedef void by_order_stage(group *restrict g, real Pmin, real Pmax);
+typedef void by_order_stage(hit_group *restrict g, real Pmin, real Pmax);
 static by_order_stage *const by_orders[2][4] = {
     {order_0, order_1_bare, order_2_bare, order_2_plus_bare},
     {order_0, order_1, order_2, order_2_plus},
@@ -94,10 +94,10 @@ static by_order_stage *const by_orders[2][4] = {
 typedef struct walk {
     real sn[LANES], a[LANES], b[LANES], curvature[LANES];
     real tau[LANES], u[LANES], w[LANES];
-    heights h;
+    bump_values h;
 } walk;
 
-STAGE static void walk_start(const group *restrict g, walk *restrict k)
+STAGE static void walk_start(const hit_group *restrict g, walk *restrict k)
 {
     for (int i = 0; i < g->n; i++) {
         bs_view v = view(g, i);
@@ -109,7 +109,7 @@ STAGE static void walk_start(const group *restrict g, walk *restrict k)
 }
 
 /* P at (u0 + a tau, w0 + b tau). */
-STAGE static void walk_place(const group *restrict g, walk *restrict k)
+STAGE static void walk_place(const hit_group *restrict g, walk *restrict k)
 {
     for (int i = 0; i < g->n; i++) {
         k->u[i] = g->u[i] + k->a[i] * k->tau[i];
@@ -117,10 +117,10 @@ STAGE static void walk_place(const group *restrict g, walk *restrict k)
     }
 }
 
-static void walk_look_up(const group *g, walk *k, const perturb *bump)
+static void walk_look_up(const hit_group *g, walk *k, const bump *P)
 {
     walk_place(g, k);
-    bump->is->eval(bump, g->n, k->u, k->w, 0, &k->h);
+    P->ops->eval(P, g->n, k->u, k->w, 0, &k->h);
 }
 
 STAGE static void iter_step(int n, walk *restrict k, const real *restrict P)
@@ -131,13 +131,13 @@ STAGE static void iter_step(int n, walk *restrict k, const real *restrict P)
     }
 }
 
-static long iterate(group *g, const perturb *bump, method m)
+static long iterate(hit_group *g, const bump *P, method m)
 {
     walk k;
     walk_start(g, &k);
     iter_step(g->n, &k, g->h.P); /* the first look-up is the one that shading has made */
     for (int step = 1; step < m.n; step++) {
-        walk_look_up(g, &k, bump);
+        walk_look_up(g, &k, P);
         iter_step(g->n, &k, k.h.P);
     }
     for (int i = 0; i < g->n; i++) {
@@ -183,15 +183,15 @@ STAGE static void march_step(int n, const walk *restrict k, march_lanes *restric
     }
 }
 
-static long march(group *g, const perturb *bump, method m)
+static long march(hit_group *g, const bump *P, method m)
 {
     walk k;
     march_lanes x;
     walk_start(g, &k);
-    march_start(g->n, &k, bump->Pmin, bump->Pmax, &x);
+    march_start(g->n, &k, P->Pmin, P->Pmax, &x);
     for (int step = 0; step <= m.n; step++) {
-        march_place(g->n, &k, bump->Pmin, bump->Pmax, step, m.n);
-        walk_look_up(g, &k, bump);
+        march_place(g->n, &k, P->Pmin, P->Pmax, step, m.n);
+        walk_look_up(g, &k, P);
         march_step(g->n, &k, &x);
     }
     for (int i = 0; i < g->n; i++) {
@@ -202,10 +202,10 @@ static long march(group *g, const perturb *bump, method m)
     return (long)(m.n + 1) * g->n;
 }
 
-long shift_group(group *g, const perturb *bump, method m, bool guard)
+long shift_group(hit_group *g, const bump *P, method m, bool guard)
 {
-    long looks = 0;
-    if (!bump || m.kind == METHOD_NONE) {
+    long evaluations = 0;
+    if (!P || m.kind == METHOD_NONE) {
         for (int i = 0; i < g->n; i++) {
             g->tau[i] = 0;
             g->order[i] = -1;
@@ -213,11 +213,11 @@ long shift_group(group *g, const perturb *bump, method m, bool guard)
         return 0;
     }
     if (m.kind == METHOD_ORDER)
-        by_orders[guard][m.n](g, bump->Pmin, bump->Pmax);
+        by_orders[guard][m.n](g, P->Pmin, P->Pmax);
     else
-        looks = (m.kind == METHOD_ITER ? iterate : march)(g, bump, m);
+        evaluations = (m.kind == METHOD_ITER ? iterate : march)(g, P, m);
     drop_irregular(g);
-    return looks;
+    return evaluations;
 }
 
 STAGE static void within(int n, const real *restrict t, real *restrict tau)
@@ -226,4 +226,4 @@ STAGE static void within(int n, const real *restrict t, real *restrict tau)
         tau[i] = real_max(tau[i], -t[i]);
 }
 
-void shift_within(group *g) { within(g->n, g->t, g->tau); }
+void shift_within(hit_group *g) { within(g->n, g->t, g->tau); }

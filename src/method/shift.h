@@ -7,13 +7,13 @@
 #include "texture/bump.h"
 
 /* n and n' of a group from the partials of Q, and of P where `bump` is not NULL: g->n_smooth, g->n_bump. */
-void shift_normals(group *g, const perturb *bump);
+void shift_normals(hit_group *g, const bump *bump);
 
 /* g->tau and g->order, from all that is in g before them. Where the surface has no two directions (bs_regular) the
  * order is none. Returns the number of heights that were looked up on the way. */
-long shift_group(group *g, const perturb *bump, method m, bool guard);
+long shift_group(hit_group *g, const bump *bump, method m, bool guard);
 
 /* A secondary ray starts amid the scene; the shifted place is not before its start. */
-void shift_within(group *g);
+void shift_within(hit_group *g);
 
 #endif

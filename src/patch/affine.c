@@ -8,8 +8,8 @@
 #include <string.h>
 
 typedef struct moved {
-    sheet base;
-    const sheet *from;
+    patch base;
+    const patch *from;
     double M[3][3], o[3]; /* M[k]: how coordinate k goes by x, y and z */
     double turn, ends;    /* u there is ends + turn u here */
 } moved;
@@ -23,15 +23,15 @@ STAGE static void combine(int n, const double *restrict m, double o, const doubl
         to[i] = o + (a * x[i] + b * y[i] + c * z[i]);
 }
 
-static void moved_eval(const sheet *base, int n, const int32_t *part, const double *u, const double *w, int order, sheet_jets *out)
+static void moved_eval(const patch *base, int n, const int32_t *part, const double *u, const double *w, int order, patch_jets *out)
 {
     const moved *q = (const moved *)base;
-    double there[SHEET_BATCH];
-    sheet_jets j;
+    double there[PATCH_BATCH];
+    patch_jets j;
     const expr_jets *x = &j.axis[0], *y = &j.axis[1], *z = &j.axis[2];
     for (int i = 0; i < n; i++)
         there[i] = q->ends + q->turn * u[i];
-    q->from->is->eval(q->from, n, part, there, w, order, &j);
+    q->from->ops->eval(q->from, n, part, there, w, order, &j);
     for (int k = 0; k < 3; k++) {
         expr_jets *to = &out->axis[k];
         const double *m = q->M[k];
@@ -65,15 +65,15 @@ static void mix(const double m[3], double o, double *const v[3], double turn, do
     to[1] = known ? hi + 1e-15 * size : HUGE_VAL;
 }
 
-static void moved_bound(const sheet *base, int part, const double u[2], const double w[2], sheet_bounds *out, sheet_bends *second)
+static void moved_bound(const patch *base, int part, const double u[2], const double w[2], patch_bounds *out, patch_hessians *second)
 {
     const moved *q = (const moved *)base;
     const double a = q->ends + q->turn * u[0], b = q->ends + q->turn * u[1], there[2] = {lesser(a, b), greater(a, b)};
-    sheet_bounds f;
-    sheet_bends g;
-    q->from->is->bound(q->from, part, there, w, &f, second ? &g : NULL);
+    patch_bounds f;
+    patch_hessians g;
+    q->from->ops->bound(q->from, part, there, w, &f, second ? &g : NULL);
     expr_bounds *x = &f.axis[0], *y = &f.axis[1], *z = &f.axis[2];
-    expr_bends *a2 = &g.axis[0], *b2 = &g.axis[1], *c2 = &g.axis[2];
+    expr_hessians *a2 = &g.axis[0], *b2 = &g.axis[1], *c2 = &g.axis[2];
     for (int k = 0; k < 3; k++) {
         mix(q->M[k], q->o[k], (double *const[]){x->v, y->v, z->v}, 1, out->axis[k].v);
         mix(q->M[k], 0, (double *const[]){x->u, y->u, z->u}, q->turn, out->axis[k].u);
@@ -86,18 +86,18 @@ static void moved_bound(const sheet *base, int part, const double u[2], const do
     }
 }
 
-static void moved_free(sheet *q) { free(q); }
+static void moved_free(patch *q) { free(q); }
 
-static const sheet_methods moved_methods = {moved_eval, moved_bound, moved_free};
+static const patch_ops moved_methods = {moved_eval, moved_bound, moved_free};
 
-sheet *sheet_moved(const sheet *from, const affine *m)
+patch *patch_affine_new(const patch *from, const affine *m)
 {
     moved *q = calloc(1, sizeof *q);
     const double x[3][3] = {{m->x.x, m->y.x, m->z.x}, {m->x.y, m->y.y, m->z.y}, {m->x.z, m->y.z, m->z.z}}, o[3] = {m->o.x, m->o.y, m->o.z};
     if (!q)
         return NULL;
     q->base = *from;
-    q->base.is = &moved_methods;
+    q->base.ops = &moved_methods;
     q->from = from;
     q->turn = affine_volume(m) < 0 ? -1 : 1;
     q->ends = q->turn < 0 ? from->u[0] + from->u[1] : 0;

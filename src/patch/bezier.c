@@ -9,13 +9,13 @@
 typedef double net[16]; /* one coordinate of the control points of a patch; 4 j + i */
 
 typedef struct bezier {
-    sheet base;
+    patch base;
     net *axis[3]; /* by part */
 } bezier;
 
 /* Bernstein's polynomials and their first and second derivatives, for each lane. */
 typedef struct weights {
-    double b[3][4][SHEET_BATCH];
+    double b[3][4][PATCH_BATCH];
 } weights;
 
 STAGE static void bezier_weights(int n, const double *restrict x, weights *restrict k)
@@ -39,7 +39,7 @@ STAGE static void bezier_weights(int n, const double *restrict x, weights *restr
 
 /* The patches' control points, side by side: 16 loads that no two lanes share, so that this loop is memory's and not SIMD's
  * (SSE2 has no gathers at all). */
-static void bezier_gather(int n, const int32_t *part, const net *axis, double p[16][SHEET_BATCH])
+static void bezier_gather(int n, const int32_t *part, const net *axis, double p[16][PATCH_BATCH])
 {
     for (int i = 0; i < n; i++)
         for (int k = 0; k < 16; k++)
@@ -47,8 +47,8 @@ static void bezier_gather(int n, const int32_t *part, const net *axis, double p[
 }
 
 /* z = sum of a_i b_j p_ij, the rows first. */
-STAGE static void bezier_sum(int n, double (*restrict a)[SHEET_BATCH], double (*restrict b)[SHEET_BATCH],
-                             double (*restrict p)[SHEET_BATCH], double *restrict z)
+STAGE static void bezier_sum(int n, double (*restrict a)[PATCH_BATCH], double (*restrict b)[PATCH_BATCH],
+                             double (*restrict p)[PATCH_BATCH], double *restrict z)
 {
     for (int i = 0; i < n; i++) {
         double r0 = a[0][i] * p[0][i] + a[1][i] * p[1][i] + a[2][i] * p[2][i] + a[3][i] * p[3][i];
@@ -59,12 +59,12 @@ STAGE static void bezier_sum(int n, double (*restrict a)[SHEET_BATCH], double (*
     }
 }
 
-static void bezier_eval(const sheet *base, int n, const int32_t *part, const double *u, const double *w, int order,
-                        sheet_jets *out)
+static void bezier_eval(const patch *base, int n, const int32_t *part, const double *u, const double *w, int order,
+                        patch_jets *out)
 {
     const bezier *q = (const bezier *)base;
     weights a, b;
-    double p[16][SHEET_BATCH];
+    double p[16][PATCH_BATCH];
     bezier_weights(n, u, &a);
     bezier_weights(n, w, &b);
     for (int k = 0; k < 3; k++) {
@@ -127,7 +127,7 @@ static void finish(double range[2], double k, double air)
 }
 
 /* Quu, Quw and Qww in the hulls of second differences, as below. */
-static void bezier_bends(const double p[16], double air, double du, double dw, expr_bends *z)
+static void bezier_bends(const double p[16], double air, double du, double dw, expr_hessians *z)
 {
     double uu[2] = {nothing[0], nothing[1]}, uw[2] = {nothing[0], nothing[1]}, ww[2] = {nothing[0], nothing[1]};
     for (int j = 0; j < 4; j++)
@@ -143,12 +143,12 @@ static void bezier_bends(const double p[16], double air, double du, double dw, e
     finish(uu, 6 / (du * du), 4 * air);
     finish(uw, 9 / (du * dw), 4 * air);
     finish(ww, 6 / (dw * dw), 4 * air);
-    *z = (expr_bends){{uu[0], uu[1]}, {uw[0], uw[1]}, {ww[0], ww[1]}};
+    *z = (expr_hessians){{uu[0], uu[1]}, {uw[0], uw[1]}, {ww[0], ww[1]}};
 }
 
 /* Q is in the hull of the control points of the piece, Qu and Qw in those of their differences. The air is more than what
  * some thirty roundings come to. */
-static void bezier_bound(const sheet *base, int part, const double u[2], const double w[2], sheet_bounds *out, sheet_bends *second)
+static void bezier_bound(const patch *base, int part, const double u[2], const double w[2], patch_bounds *out, patch_hessians *second)
 {
     const bezier *q = (const bezier *)base;
     double a[4][4], b[4][4];
@@ -182,7 +182,7 @@ static void bezier_bound(const sheet *base, int part, const double u[2], const d
     }
 }
 
-static void bezier_free(sheet *base)
+static void bezier_free(patch *base)
 {
     bezier *q = (bezier *)base;
     for (int k = 0; k < 3; k++)
@@ -190,9 +190,9 @@ static void bezier_free(sheet *base)
     free(q);
 }
 
-static const sheet_methods bezier_methods = {bezier_eval, bezier_bound, bezier_free};
+static const patch_ops bezier_methods = {bezier_eval, bezier_bound, bezier_free};
 
-sheet *sheet_bezier(int patches, const vec3 *point)
+patch *patch_bezier_new(int patches, const vec3 *point)
 {
     bezier *q = calloc(1, sizeof *q);
     bool good = q;
@@ -210,6 +210,6 @@ sheet *sheet_bezier(int patches, const vec3 *point)
             q->axis[1][i][k] = p.y;
             q->axis[2][i][k] = p.z;
         }
-    q->base = (sheet){&bezier_methods, "patches", patches, {0, 1}, {0, 1}};
+    q->base = (patch){&bezier_methods, "patches", patches, {0, 1}, {0, 1}};
     return &q->base;
 }

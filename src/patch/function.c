@@ -4,12 +4,12 @@
 #include <stdlib.h>
 
 typedef struct function {
-    sheet base;
+    patch base;
     expr *axis[3]; /* x, y, z */
 } function;
 
-static void function_eval(const sheet *base, int n, const int32_t *part, const double *u, const double *w, int order,
-                          sheet_jets *out)
+static void function_eval(const patch *base, int n, const int32_t *part, const double *u, const double *w, int order,
+                          patch_jets *out)
 {
     const function *q = (const function *)base;
     (void)part;
@@ -17,18 +17,18 @@ static void function_eval(const sheet *base, int n, const int32_t *part, const d
         expr_eval(q->axis[k], n, u, w, order, &out->axis[k]);
 }
 
-static void function_bound(const sheet *base, int part, const double u[2], const double w[2], sheet_bounds *out, sheet_bends *second)
+static void function_bound(const patch *base, int part, const double u[2], const double w[2], patch_bounds *out, patch_hessians *second)
 {
     const function *q = (const function *)base;
     (void)part;
     for (int k = 0; k < 3; k++)
         if (second)
-            expr_range_bend(q->axis[k], u[0], u[1], w[0], w[1], &out->axis[k], &second->axis[k]);
+            expr_bound_hessian(q->axis[k], u[0], u[1], w[0], w[1], &out->axis[k], &second->axis[k]);
         else
-            expr_range_gradient(q->axis[k], u[0], u[1], w[0], w[1], &out->axis[k]);
+            expr_bound_gradient(q->axis[k], u[0], u[1], w[0], w[1], &out->axis[k]);
 }
 
-static void function_free(sheet *base)
+static void function_free(patch *base)
 {
     function *q = (function *)base;
     for (int k = 0; k < 3; k++)
@@ -36,9 +36,9 @@ static void function_free(sheet *base)
     free(q);
 }
 
-static const sheet_methods function_methods = {function_eval, function_bound, function_free};
+static const patch_ops function_methods = {function_eval, function_bound, function_free};
 
-sheet *sheet_function(const char *kind, expr *const xyz[3], const double u[2], const double w[2])
+patch *patch_function_new(const char *kind, expr *const xyz[3], const double u[2], const double w[2])
 {
     function *q = calloc(1, sizeof *q);
     for (int k = 0; k < 3; k++) {
@@ -49,6 +49,6 @@ sheet *sheet_function(const char *kind, expr *const xyz[3], const double u[2], c
     }
     if (!q)
         return NULL;
-    q->base = (sheet){&function_methods, kind, 1, {u[0], u[1]}, {w[0], w[1]}};
+    q->base = (patch){&function_methods, kind, 1, {u[0], u[1]}, {w[0], w[1]}};
     return &q->base;
 }

@@ -1,7 +1,7 @@
 /* Where a ray meets a sheet: Q(u,w) = r + s t.
  *
  * The hierarchy tells which leaves the ray may meet, and for each pair of ray and leaf there is a proof that they miss each other, or
- * that they meet once at the most (leaf_meets); otherwise, where the ray grazes, the leaf is halved. So no hit is lost, and none
+ * that they meet once at the most (piece_intersect); otherwise, where the ray grazes, the leaf is halved. So no hit is lost, and none
  * depends on how fine the leaves are. What is left are pairs with one root each, which Newton's iteration finds in three or four
  * steps, many pairs side by side.
  *
@@ -32,17 +32,17 @@ enum {
 /* Pairs of a ray and a range that are waiting to be solved, side by side. */
 typedef struct pairs {
     int n;
-    int32_t lane[SHEET_BATCH], part[SHEET_BATCH];
-    double u[SHEET_BATCH], w[SHEET_BATCH], t[SHEET_BATCH];
-    double mu[SHEET_BATCH], mw[SHEET_BATCH], hu[SHEET_BATCH], hw[SHEET_BATCH]; /* the range: its middle and half its width */
+    int32_t lane[PATCH_BATCH], part[PATCH_BATCH];
+    double u[PATCH_BATCH], w[PATCH_BATCH], t[PATCH_BATCH];
+    double mu[PATCH_BATCH], mw[PATCH_BATCH], hu[PATCH_BATCH], hw[PATCH_BATCH]; /* the range: its middle and half its width */
     double close_u, close_w; /* steps that are none but for rounding */
-    double rx[SHEET_BATCH], ry[SHEET_BATCH], rz[SHEET_BATCH], sx[SHEET_BATCH], sy[SHEET_BATCH], sz[SHEET_BATCH];
-    double open[SHEET_BATCH]; /* 1: under way; 0: settled; -1: has left its range for good */
-    bool tried[SHEET_BATCH];  /* that the root is the only one is not proved */
+    double rx[PATCH_BATCH], ry[PATCH_BATCH], rz[PATCH_BATCH], sx[PATCH_BATCH], sy[PATCH_BATCH], sz[PATCH_BATCH];
+    double open[PATCH_BATCH]; /* 1: under way; 0: settled; -1: has left its range for good */
+    bool tried[PATCH_BATCH];  /* that the root is the only one is not proved */
 } pairs;
 
 /* One step of Newton's iteration for each: Qu du + Qw dw - s dt = r + s t - Q, by Cramer's rule. */
-STAGE static void newton_step(pairs *restrict p, const sheet_jets *restrict q)
+STAGE static void newton_step(pairs *restrict p, const patch_jets *restrict q)
 {
     const double close_u = p->close_u, close_w = p->close_w;
     for (int i = 0; i < p->n; i++) {
@@ -94,7 +94,7 @@ typedef struct doubtful {
 } doubtful;
 
 typedef struct hunt {
-    quest *k;
+    patch_query *k;
     pairs p;
     int lane; /* whose ray is in the hierarchy */
     int waiting;
@@ -103,16 +103,16 @@ typedef struct hunt {
 
 static void solve(hunt *h)
 {
-    const sheet *q = h->k->f->q;
+    const patch *q = h->k->f->q;
     pairs *p = &h->p;
-    sheet_jets j;
+    patch_jets j;
     for (int step = 0; step < STEPS && any_open(p); step++) {
-        q->is->eval(q, p->n, p->part, p->u, p->w, 1, &j);
+        q->ops->eval(q, p->n, p->part, p->u, p->w, 1, &j);
         newton_step(p, &j);
-        h->k->looks += p->n;
+        h->k->evaluations += p->n;
     }
     for (int i = 0; i < p->n; i++) {
-        quest *k = h->k;
+        patch_query *k = h->k;
         const int lane = p->lane[i];
         const bool in = within(p->u[i], p->mu[i], p->hu[i], q->u) && within(p->w[i], p->mw[i], p->hw[i], q->w);
         if (p->open[i] == 0 && in && p->t[i] > k->from[lane] && p->t[i] < k->to[lane]) {
@@ -126,7 +126,7 @@ static void solve(hunt *h)
     p->n = 0;
 }
 
-static void wait(hunt *h, int lane, const leaf *f, double a, double b, bool tried)
+static void wait(hunt *h, int lane, const piece *f, double a, double b, bool tried)
 {
     pairs *p = &h->p;
     const int i = p->n++;
@@ -144,17 +144,17 @@ static void wait(hunt *h, int lane, const leaf *f, double a, double b, bool trie
     p->rx[i] = r.x, p->ry[i] = r.y, p->rz[i] = r.z;
     p->sx[i] = s.x, p->sy[i] = s.y, p->sz[i] = s.z;
     p->open[i] = 1;
-    if (p->n == SHEET_BATCH)
+    if (p->n == PATCH_BATCH)
         solve(h);
 }
 
 /* A piece that is a point, and still does not tell: at a pole, on an edge, where a ray just touches. It is met. What is no farther than
  * its own size from where the ray begins to count may be just the start. */
-static void take_point(quest *k, int lane, const leaf *f)
+static void take_point(patch_query *k, int lane, const piece *f)
 {
     const vec3 s = k->s[lane];
     const double s2 = vec3_dot(s, s), t = vec3_dot(vec3_sub(f->c, k->r[lane]), s) / s2;
-    if (t - leaf_size(f) / sqrt(s2) > k->from[lane] && t < k->to[lane]) {
+    if (t - piece_radius(f) / sqrt(s2) > k->from[lane] && t < k->to[lane]) {
         k->to[lane] = k->any ? -HUGE_VAL : t;
         k->found[lane] = true;
         k->unsure[lane] = false;
@@ -162,34 +162,34 @@ static void take_point(quest *k, int lane, const leaf *f)
 }
 
 /* Nothing is known of a piece that is so small. */
-static bool is_broken(const searched *f, const leaf *piece)
+static bool is_broken(const patch_surface *f, const piece *p)
 {
-    return f->broken && piece->ea + piece->eb == HUGE_VAL && piece->u[1] - piece->u[0] < SHRED * (f->q->u[1] - f->q->u[0]) &&
-           piece->w[1] - piece->w[0] < SHRED * (f->q->w[1] - f->q->w[0]);
+    return f->broken && p->ea + p->eb == HUGE_VAL && p->u[1] - p->u[0] < SHRED * (f->q->u[1] - f->q->u[0]) &&
+           p->w[1] - p->w[0] < SHRED * (f->q->w[1] - f->q->w[0]);
 }
 
 /* A leaf that the ray may meet more than once: its halves, until each tells. */
-static void descend(hunt *h, int lane, const leaf *whole)
+static void descend(hunt *h, int lane, const piece *whole)
 {
-    const searched *f = h->k->f;
-    quest *k = h->k;
+    const patch_surface *f = h->k->f;
+    patch_query *k = h->k;
     const double point = TINY * (f->l.radius + 0.1 * vec3_length(f->l.centre));
-    leaf open[DEPTH];
+    piece open[DEPTH];
     int n = 1;
     open[0] = *whole;
     for (int halvings = 0; n && halvings < HALVINGS; halvings++) {
-        const leaf one = open[--n];
+        const piece one = open[--n];
         for (int which = 0; which < 2; which++) {
             double a, b;
-            const leaf half = leaf_half(f->q, &one, which);
-            const leaf_answer answer = leaf_meets(&half, k->r[lane], k->s[lane], k->from[lane], k->to[lane], &a, &b);
-            if (answer == LEAF_ONCE)
+            const piece half = piece_half(f->q, &one, which);
+            const piece_answer answer = piece_intersect(&half, k->r[lane], k->s[lane], k->from[lane], k->to[lane], &a, &b);
+            if (answer == PIECE_ONCE)
                 wait(h, lane, &half, a, b, false);
-            else if (answer == LEAF_OPEN && is_broken(f, &half))
+            else if (answer == PIECE_OPEN && is_broken(f, &half))
                 wait(h, lane, &half, 0, 0, true);
-            else if (answer == LEAF_OPEN && n < DEPTH - 1 && leaf_size(&half) > point)
+            else if (answer == PIECE_OPEN && n < DEPTH - 1 && piece_radius(&half) > point)
                 open[n++] = half;
-            else if (answer == LEAF_OPEN)
+            else if (answer == PIECE_OPEN)
                 take_point(k, lane, &half);
         }
     }
@@ -208,7 +208,7 @@ static int by_lane_and_near(const void *a, const void *b)
 /* The leaves that wait: of each ray the nearest first, then the next ones as far as no root is nearer. */
 static void halve_all(hunt *h)
 {
-    const quest *k = h->k;
+    const patch_query *k = h->k;
     const int n = h->waiting;
     int start[LANES + 1], lanes = 0;
     solve(h);
@@ -223,7 +223,7 @@ static void halve_all(hunt *h)
             const doubtful *d = &h->queue[start[i] + round];
             if (start[i] + round >= start[i + 1] || !(d->near < k->to[d->lane]))
                 continue;
-            descend(h, d->lane, &k->f->l.leaf[d->index]);
+            descend(h, d->lane, &k->f->l.piece[d->index]);
             left++;
         }
         solve(h);
@@ -231,7 +231,7 @@ static void halve_all(hunt *h)
     h->waiting = 0;
 }
 
-static double near_end(const leaf *f, vec3 r, vec3 s)
+static double near_end(const piece *f, vec3 r, vec3 s)
 {
     const double s2 = vec3_dot(s, s), reach = fabs(vec3_dot(f->A, s)) + fabs(vec3_dot(f->B, s)) + f->e * sqrt(s2);
     return (vec3_dot(vec3_sub(f->c, r), s) - reach) / s2;
@@ -240,31 +240,31 @@ static double near_end(const leaf *f, vec3 r, vec3 s)
 static void visit(void *user, int32_t index)
 {
     hunt *h = user;
-    const quest *k = h->k;
-    const leaf *f = &k->f->l.leaf[index];
+    const patch_query *k = h->k;
+    const piece *f = &k->f->l.piece[index];
     double a, b;
-    switch (leaf_meets(f, k->r[h->lane], k->s[h->lane], k->from[h->lane], k->to[h->lane], &a, &b)) {
-    case LEAF_ONCE:
+    switch (piece_intersect(f, k->r[h->lane], k->s[h->lane], k->from[h->lane], k->to[h->lane], &a, &b)) {
+    case PIECE_ONCE:
         wait(h, h->lane, f, a, b, false);
         break;
-    case LEAF_OPEN:
+    case PIECE_OPEN:
         h->queue[h->waiting++] = (doubtful){h->lane, index, near_end(f, k->r[h->lane], k->s[h->lane])};
         if (h->waiting == QUEUE)
             halve_all(h);
         break;
-    case LEAF_MISSED:
+    case PIECE_MISSED:
         break;
     }
 }
 
-void quest_begin(quest *k, const searched *f, bool any)
+void patch_query_begin(patch_query *k, const patch_surface *f, bool any)
 {
     k->f = f;
     k->any = any;
-    k->looks = 0;
+    k->evaluations = 0;
 }
 
-void quest_add(quest *k, int i, vec3 r, vec3 s, double from, double to)
+void patch_query_add(patch_query *k, int i, vec3 r, vec3 s, double from, double to)
 {
     const vec3 o = vec3_sub(r, k->f->l.centre);
     const double start = -vec3_dot(o, s) / vec3_dot(s, s);
@@ -276,9 +276,9 @@ void quest_add(quest *k, int i, vec3 r, vec3 s, double from, double to)
     k->found[i] = k->unsure[i] = false;
 }
 
-void quest_run(quest *k, int n)
+void patch_query_run(patch_query *k, int n)
 {
-    const searched *f = k->f;
+    const patch_surface *f = k->f;
     const bvh_space space = {f->l.centre, f->l.radius};
     hunt h;
     h.k = k;

@@ -14,15 +14,15 @@ enum {
 
 static double length3(const double v[3]) { return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
 
-leaf leaf_of(const sheet *q, int32_t part, const double u[2], const double w[2])
+piece piece_of(const patch *q, int32_t part, const double u[2], const double w[2])
 {
     const double hu = 0.5 * (u[1] - u[0]), hw = 0.5 * (w[1] - w[0]), mu = u[0] + hu, mw = w[0] + hw;
-    leaf f = {.part = part, .u = {u[0], u[1]}, .w = {w[0], w[1]}};
-    sheet_bounds b;
-    sheet_jets q0;
+    piece f = {.part = part, .u = {u[0], u[1]}, .w = {w[0], w[1]}};
+    patch_bounds b;
+    patch_jets q0;
     double A[3], B[3], ra[3], rb[3], c[3], far[3];
-    q->is->bound(q, part, u, w, &b, NULL);
-    q->is->eval(q, 1, &part, &mu, &mw, 0, &q0);
+    q->ops->bound(q, part, u, w, &b, NULL);
+    q->ops->eval(q, 1, &part, &mu, &mw, 0, &q0);
     for (int k = 0; k < 3; k++) {
         const expr_bounds *z = &b.axis[k];
         const bool known = z->u[1] - z->u[0] < HUGE_VAL && z->w[1] - z->w[0] < HUGE_VAL;
@@ -46,7 +46,7 @@ leaf leaf_of(const sheet *q, int32_t part, const double u[2], const double w[2])
     return f;
 }
 
-leaf leaf_half(const sheet *q, const leaf *f, int which)
+piece piece_half(const patch *q, const piece *f, int which)
 {
     const double lu = vec3_length(f->A) + f->ea, lw = vec3_length(f->B) + f->eb;
     const double share_u = (f->u[1] - f->u[0]) / (q->u[1] - q->u[0]), share_w = (f->w[1] - f->w[0]) / (q->w[1] - q->w[0]);
@@ -55,20 +55,20 @@ leaf leaf_half(const sheet *q, const leaf *f, int which)
     double *x = along_u ? u : w;
     const double middle = x[0] + 0.5 * (x[1] - x[0]);
     x[1 - which] = middle;
-    return leaf_of(q, f->part, u, w);
+    return piece_of(q, f->part, u, w);
 }
 
-double leaf_size(const leaf *f) { return vec3_length(f->A) + vec3_length(f->B) + f->e; }
+double piece_radius(const piece *f) { return vec3_length(f->A) + vec3_length(f->B) + f->e; }
 
 /* ---- the whole sheet ---- */
 
-static void measure(leaves *l)
+static void measure(pieces *l)
 {
     double lo[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, hi[3] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}, size[3];
     for (int i = 0; i < l->n; i++)
         for (int k = 0; k < 3; k++) {
-            lo[k] = lesser(lo[k], l->leaf[i].box[0][k]);
-            hi[k] = greater(hi[k], l->leaf[i].box[1][k]);
+            lo[k] = lesser(lo[k], l->piece[i].box[0][k]);
+            hi[k] = greater(hi[k], l->piece[i].box[1][k]);
         }
     for (int k = 0; k < 3; k++)
         size[k] = 0.5 * (hi[k] - lo[k]);
@@ -76,23 +76,23 @@ static void measure(leaves *l)
     l->radius = length3(size);
 }
 
-static bool wants_halving(const leaves *l, double flat, const leaf *f)
+static bool wants_halving(const pieces *l, double flat, const piece *f)
 {
-    const double size = leaf_size(f);
+    const double size = piece_radius(f);
     if (l->n < AT_FIRST || !(size <= LARGEST * l->radius))
         return true;
     return size > SMALLEST * l->radius && (f->ea > flat * vec3_length(f->A) || f->eb > flat * vec3_length(f->B));
 }
 
 /* One halving for each leaf that wants it. False: out of memory; *any: there was one. */
-static bool halve(const sheet *q, double flat, leaves *l, bool *any)
+static bool halve(const patch *q, double flat, pieces *l, bool *any)
 {
     const int n = l->n;
-    leaf *more = realloc(l->leaf, sizeof *more * (size_t)(2 * n));
+    piece *more = realloc(l->piece, sizeof *more * (size_t)(2 * n));
     *any = false;
     if (!more)
         return false;
-    l->leaf = more;
+    l->piece = more;
     int32_t *whose = malloc(sizeof *whose * (size_t)n); /* which leaf is halved */
     if (!whose)
         return false;
@@ -102,9 +102,9 @@ static bool halve(const sheet *q, double flat, leaves *l, bool *any)
             whose[halved++] = i;
 #pragma omp parallel for schedule(static) if (halved > AT_FIRST)
     for (int k = 0; k < halved; k++) {
-        const leaf whole = more[whose[k]];
-        more[whose[k]] = leaf_half(q, &whole, 0);
-        more[n + k] = leaf_half(q, &whole, 1);
+        const piece whole = more[whose[k]];
+        more[whose[k]] = piece_half(q, &whole, 0);
+        more[n + k] = piece_half(q, &whole, 1);
     }
     free(whose);
     l->n = n + halved;
@@ -112,21 +112,21 @@ static bool halve(const sheet *q, double flat, leaves *l, bool *any)
     return true;
 }
 
-static bool has_bounds(const leaves *l)
+static bool has_bounds(const pieces *l)
 {
     for (int i = 0; i < l->n; i++)
-        if (!(vec3_length(l->leaf[i].c) < HUGE_VAL))
+        if (!(vec3_length(l->piece[i].c) < HUGE_VAL))
             return false;
     /* what is all in one place has but its roundings for a size */
     return l->radius > 1e-10 * vec3_length(l->centre) && l->radius < HUGE_VAL;
 }
 
-bool leaves_of(const sheet *q, double flat, leaves *l)
+bool pieces_of(const patch *q, double flat, pieces *l)
 {
-    *l = (leaves){.leaf = malloc(sizeof *l->leaf * (size_t)q->parts)};
-    bool good = l->leaf, any = true;
+    *l = (pieces){.piece = malloc(sizeof *l->piece * (size_t)q->parts)};
+    bool good = l->piece, any = true;
     for (int part = 0; good && part < q->parts; part++)
-        l->leaf[l->n++] = leaf_of(q, part, q->u, q->w);
+        l->piece[l->n++] = piece_of(q, part, q->u, q->w);
     while (good && any && l->n < AT_MOST) {
         measure(l);
         good = halve(q, flat, l, &any);
@@ -139,29 +139,29 @@ bool leaves_of(const sheet *q, double flat, leaves *l)
     return good;
 }
 
-void leaves_free(leaves *l)
+void pieces_free(pieces *l)
 {
-    free(l->leaf);
-    *l = (leaves){0};
+    free(l->piece);
+    *l = (pieces){0};
 }
 
 /* ---- a ray ---- */
 
-leaf_answer leaf_meets(const leaf *f, vec3 r, vec3 s, double lo, double hi, double *a, double *b)
+piece_answer piece_intersect(const piece *f, vec3 r, vec3 s, double lo, double hi, double *a, double *b)
 {
     /* Where it meets the parallelogram moved by some d, |d| <= e: c + a A + b B + d = r + s t. Cramer's rule. */
     const vec3 o = vec3_sub(r, f->c), Bs = vec3_cross(f->B, s), sA = vec3_cross(s, f->A);
     const double det = vec3_dot(f->A, Bs), lBs = vec3_length(Bs), lsA = vec3_length(sA), s2 = vec3_dot(s, s);
     const double across = vec3_dot(o, Bs), down = vec3_dot(o, sA);
     if (fabs(across) > fabs(det) + f->e * lBs || fabs(down) > fabs(det) + f->e * lsA)
-        return LEAF_MISSED;
+        return PIECE_MISSED;
     const double middle = -vec3_dot(o, s), reach = fabs(vec3_dot(f->A, s)) + fabs(vec3_dot(f->B, s)) + f->e * sqrt(s2);
     if (middle + reach < lo * s2 || middle - reach > hi * s2)
-        return LEAF_MISSED;
+        return PIECE_MISSED;
     *a = *b = 0;
     if (!(fabs(det) > 2 * (f->ea * lBs + f->eb * lsA + f->ea * f->eb * sqrt(s2))))
-        return LEAF_OPEN;
+        return PIECE_OPEN;
     *a = lesser(greater(across / det, -1), 1);
     *b = lesser(greater(down / det, -1), 1);
-    return LEAF_ONCE;
+    return PIECE_ONCE;
 }

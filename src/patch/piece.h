@@ -11,44 +11,44 @@
 
 #include "patch/patch.h"
 
-typedef struct leaf {
+typedef struct piece {
     int32_t part;
     double u[2], w[2]; /* the range */
     vec3 c, A, B;
     double e, ea, eb;
     double box[2][3]; /* Q is in it */
-} leaf;
+} piece;
 
 /* The leaf over a range. */
-leaf leaf_of(const sheet *q, int32_t part, const double u[2], const double w[2]);
+piece piece_of(const patch *q, int32_t part, const double u[2], const double w[2]);
 
 /* Its half, of two: `which` is 0 or 1; across the direction in which it is longer, or, where that
  * is not known, in which it has more of the sheet's range. */
-leaf leaf_half(const sheet *q, const leaf *f, int which);
+piece piece_half(const patch *q, const piece *f, int which);
 
 /* How far from its middle it reaches at most. */
-double leaf_size(const leaf *f);
+double piece_radius(const piece *f);
 
 /* A sheet as leaves. */
-typedef struct leaves {
+typedef struct pieces {
     int n;
-    leaf *leaf;  /* owned */
+    piece *piece;  /* owned */
     vec3 centre; /* all of Q is within `radius` of it */
     double radius;
-} leaves;
+} pieces;
 
 /* flat: by how much, in radians or as a share, Qu and Qw may change within a leaf that is not very small. False: out of memory, or Q
- * has no bounds, when n is 0. leaves_free in either case. */
-bool leaves_of(const sheet *q, double flat, leaves *out);
-void leaves_free(leaves *l);
+ * has no bounds, when n is 0. pieces_free in either case. */
+bool pieces_of(const patch *q, double flat, pieces *out);
+void pieces_free(pieces *l);
 
 /* A ray against a leaf. The ray is r + s t, lo <= t <= hi. */
-typedef enum leaf_answer {
-    LEAF_MISSED, /* it does not meet it: proved */
-    LEAF_ONCE,   /* once at the most, and Newton's iteration finds it: a and b are about where */
-    LEAF_OPEN,   /* not known */
-} leaf_answer;
+typedef enum piece_answer {
+    PIECE_MISSED, /* it does not meet it: proved */
+    PIECE_ONCE,   /* once at the most, and Newton's iteration finds it: a and b are about where */
+    PIECE_OPEN,   /* not known */
+} piece_answer;
 
-leaf_answer leaf_meets(const leaf *f, vec3 r, vec3 s, double lo, double hi, double *a, double *b);
+piece_answer piece_intersect(const piece *f, vec3 r, vec3 s, double lo, double hi, double *a, double *b);
 
 #endif

@@ -13,23 +13,23 @@ enum { STEPS = 16 };
 
 typedef struct pairs {
     int n;
-    int32_t lane[SHEET_BATCH], part[SHEET_BATCH];
-    double u[SHEET_BATCH], w[SHEET_BATCH], step[SHEET_BATCH];
-    double u0[SHEET_BATCH], u1[SHEET_BATCH], w0[SHEET_BATCH], w1[SHEET_BATCH];
-    double x[SHEET_BATCH], y[SHEET_BATCH], z[SHEET_BATCH], off[SHEET_BATCH];
+    int32_t lane[PATCH_BATCH], part[PATCH_BATCH];
+    double u[PATCH_BATCH], w[PATCH_BATCH], step[PATCH_BATCH];
+    double u0[PATCH_BATCH], u1[PATCH_BATCH], w0[PATCH_BATCH], w1[PATCH_BATCH];
+    double x[PATCH_BATCH], y[PATCH_BATCH], z[PATCH_BATCH], off[PATCH_BATCH];
 } pairs;
 
 typedef struct errand {
-    const searched *f;
+    const patch_surface *f;
     const int32_t *only;
-    spots *s;
+    projections *s;
     double best[LANES]; /* how far off, squared */
     int lane;
     pairs p;
 } errand;
 
 /* One step within each range, and how far the place was off before it, squared. */
-STAGE static void settle_step(pairs *restrict p, const sheet_jets *restrict q)
+STAGE static void settle_step(pairs *restrict p, const patch_jets *restrict q)
 {
     for (int i = 0; i < p->n; i++) {
         const double ux = q->axis[0].u[i], uy = q->axis[1].u[i], uz = q->axis[2].u[i];
@@ -66,7 +66,7 @@ static bool any_open(const pairs *p)
 static bool better(const errand *e, int i, int lane)
 {
     const pairs *p = &e->p;
-    const spots *s = e->s;
+    const projections *s = e->s;
     if (p->off[i] != e->best[lane])
         return p->off[i] < e->best[lane];
     if (p->part[i] != s->part[lane])
@@ -76,11 +76,11 @@ static bool better(const errand *e, int i, int lane)
 
 static void solve(errand *e)
 {
-    const sheet *q = e->f->q;
+    const patch *q = e->f->q;
     pairs *p = &e->p;
-    sheet_jets j;
+    patch_jets j;
     for (int step = 0; step < STEPS && any_open(p); step++) {
-        q->is->eval(q, p->n, p->part, p->u, p->w, 1, &j);
+        q->ops->eval(q, p->n, p->part, p->u, p->w, 1, &j);
         settle_step(p, &j);
     }
     for (int i = 0; i < p->n; i++) {
@@ -98,10 +98,10 @@ static void solve(errand *e)
 static void visit(void *user, int32_t index)
 {
     errand *e = user;
-    const leaf *f = &e->f->l.leaf[index];
+    const piece *f = &e->f->l.piece[index];
     const int lane = e->lane;
     const vec3 at = e->s->place[lane], d = vec3_sub(at, f->c);
-    if ((e->only && e->only[lane] != f->part) || vec3_length(d) > leaf_size(f) + e->s->off[lane])
+    if ((e->only && e->only[lane] != f->part) || vec3_length(d) > piece_radius(f) + e->s->off[lane])
         return;
     pairs *p = &e->p;
     const int i = p->n++;
@@ -117,11 +117,11 @@ static void visit(void *user, int32_t index)
     p->y[i] = at.y;
     p->z[i] = at.z;
     p->step[i] = 1;
-    if (p->n == SHEET_BATCH)
+    if (p->n == PATCH_BATCH)
         solve(e);
 }
 
-void settle(const searched *f, int n, const int32_t *only, spots *s)
+void patch_project(const patch_surface *f, int n, const int32_t *only, projections *s)
 {
     errand e;
     e.f = f;

@@ -30,7 +30,7 @@ void pov_clip_rim(pov_text *t, const object *o, int part)
     const pov_flat p = pov_flat_of(o, part);
     double y[2];
     pov_levels(o, y);
-    pov_print(t, "  clipped_by { cylinder { <0, %g, 0>, <0, %g, 0>, %g\n  ", y[0], y[1], pov_rim(&o->shape_said, part));
+    pov_print(t, "  clipped_by { cylinder { <0, %g, 0>, <0, %g, 0>, %g\n  ", y[0], y[1], pov_rim(&o->shape_spec, part));
     pov_matrix(t, p.U, p.y, p.W, p.O);
     pov_print(t, " } }\n");
 }
@@ -71,7 +71,7 @@ const char *pov_around(const object *o) { return pov_mirrored(o) ? "atan2(-z, x)
 shape_spec pov_sized(const object *o)
 {
     const double k = pov_scale(o);
-    shape_spec f = o->shape_said;
+    shape_spec f = o->shape_spec;
     f.a = vec3_scale(f.a, k);
     f.u = vec3_scale(f.u, k);
     f.radius[0] *= k;
@@ -81,7 +81,7 @@ shape_spec pov_sized(const object *o)
 
 pov_flat pov_flat_of(const object *o, int part)
 {
-    const shape_spec *f = &o->shape_said;
+    const shape_spec *f = &o->shape_spec;
     pov_flat p = f->kind == SHAPE_BOX        ? box_face(f, part)
                  : pov_rim(f, part) >= 0 ? disc(f, part)
                                          : (pov_flat){.O = f->a, .U = f->u, .W = f->w};

@@ -15,13 +15,13 @@
 bool pov_function(pov_text *t, const object *o, const char *name)
 {
     expr_error wrong;
-    expr *e = expr_parse(o->bump_said.function, &wrong);
+    expr *e = expr_parse(o->bump_spec.function, &wrong);
     char *text = e ? expr_pov(e) : NULL;
     expr_free(e);
-    if (text && o->bump_said.scale == 1)
+    if (text && o->bump_spec.scale == 1)
         pov_print(t, "#declare %s = function(u, w) { %s }\n", name, text);
     else if (text)
-        pov_print(t, "#declare %s = function(u, w) { %s*(%s) }\n", name, pov_exact(o->bump_said.scale).text, text);
+        pov_print(t, "#declare %s = function(u, w) { %s*(%s) }\n", name, pov_exact(o->bump_spec.scale).text, text);
     free(text);
     return text;
 }
@@ -43,7 +43,7 @@ static double of_zone(const expr *e, double scale, double r, double w0, double w
     double worst = 0;
     for (int i = 0; i < CELLS; i++) {
         expr_bounds b;
-        expr_range_gradient(e, pi * (2.0 * i / CELLS - 1), pi * (2.0 * (i + 1) / CELLS - 1), w0, w1, &b);
+        expr_bound_gradient(e, pi * (2.0 * i / CELLS - 1), pi * (2.0 * (i + 1) / CELLS - 1), w0, w1, &b);
         double x = fmax(fabs(b.u[0]), fabs(b.u[1])) / (r * sine), z = fmax(fabs(b.w[0]), fabs(b.w[1])) / r;
         worst = fmax(worst, sqrt(1 + scale * scale * (x * x + z * z)));
     }
@@ -72,10 +72,10 @@ static double least_hole(const object *o)
 static double of_sphere(const object *o)
 {
     const double CAP = 1e-3, GROWTH = 1.05, WIDEST = 0.05, half = 3.14159265358979323846 / 2;
-    const double r = (1 - LEVEL) * least_within(o), scale = fabs(o->bump_said.scale);
+    const double r = (1 - LEVEL) * least_within(o), scale = fabs(o->bump_spec.scale);
     double worst = 0;
     expr_error wrong;
-    expr *e = r > 0 ? expr_parse(o->bump_said.function, &wrong) : NULL;
+    expr *e = r > 0 ? expr_parse(o->bump_spec.function, &wrong) : NULL;
     if (!e)
         return HUGE_VAL;
     for (double w = CAP; w < half && worst < STEEPEST;) {
@@ -105,7 +105,7 @@ static double of_torus(const object *o)
 
 static double of_part(const object *o, int part)
 {
-    const shape_spec *f = &o->shape_said;
+    const shape_spec *f = &o->shape_spec;
     if (pov_is_flat(f, part))
         return of_flat(o, part);
     if (f->kind == SHAPE_SPHERE)
@@ -117,7 +117,7 @@ static double of_part(const object *o, int part)
 
 double pov_isosurface_gradient(const object *o, int part)
 {
-    if (!o->bump_said.function)
+    if (!o->bump_spec.function)
         return HUGE_VAL;
     double g = of_part(o, part);
     return g < STEEPEST ? g * (1 + 1e-6) : HUGE_VAL;
@@ -142,12 +142,12 @@ static void put_flat(pov_text *t, const scene *s, const object *o, int part, con
     const double lu = vec3_length(p.U), lw = vec3_length(p.W);
     double u[2] = {0, 1}, w[2] = {0, 1}, y[2];
     pov_levels(o, y);
-    const double rim = pov_rim(&o->shape_said, part);
+    const double rim = pov_rim(&o->shape_spec, part);
     if (rim >= 0) {
         u[0] = w[0] = -rim;
         u[1] = w[1] = rim;
     }
-    if (o->shape_said.kind == SHAPE_PLANE) {
+    if (o->shape_spec.kind == SHAPE_PLANE) {
         pov_plane_region(s, o, u, w);
         pov_print(t, "// The plane has no end; here it is cut to what the camera sees and what can shade that.\n");
     }
@@ -178,13 +178,13 @@ static void put_motion(pov_text *t, const object *o)
 /* A round one's function begins, and ends. */
 static void begin_function(pov_text *t, const object *o)
 {
-    pov_print(t, "isosurface {\n  function {\n    %smax(", o->shape_said.kind == SHAPE_TORUS ? "min(" : "");
+    pov_print(t, "isosurface {\n  function {\n    %smax(", o->shape_spec.kind == SHAPE_TORUS ? "min(" : "");
 }
 
 static void end_function(pov_text *t, const object *o)
 {
     pov_print(t, ", -%s)", pov_exact(LEVEL * least_within(o)).text);
-    if (o->shape_said.kind == SHAPE_TORUS)
+    if (o->shape_spec.kind == SHAPE_TORUS)
         pov_print(t, ", %s)", pov_exact(LEVEL * least_hole(o)).text);
     pov_print(t, "\n  }\n");
 }
@@ -247,8 +247,8 @@ static void put_torus(pov_text *t, const scene *s, const object *o, const char *
 
 static void put_part(pov_text *t, const scene *s, const object *o, int part, const char *name)
 {
-    const shape_kind kind = o->shape_said.kind;
-    if (pov_is_flat(&o->shape_said, part))
+    const shape_kind kind = o->shape_spec.kind;
+    if (pov_is_flat(&o->shape_spec, part))
         put_flat(t, s, o, part, name);
     else
         (kind == SHAPE_SPHERE ? put_sphere : kind == SHAPE_TORUS ? put_torus : put_side)(t, s, o, name);
@@ -256,7 +256,7 @@ static void put_part(pov_text *t, const scene *s, const object *o, int part, con
 
 void pov_isosurface(pov_text *t, const scene *s, const object *o, const char *name)
 {
-    const int parts = o->shape->is->parts;
+    const int parts = o->shape->ops->parts;
     if (parts > 1)
         pov_print(t, "union {\n");
     for (int part = 0; part < parts; part++) {

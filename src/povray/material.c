@@ -16,7 +16,7 @@ static bool covers(const object *o)
 {
     double u[2], w[2];
     const map_layout *l = &o->color_layout;
-    o->shape->is->extent(o->shape, 0, u, w);
+    o->shape->ops->extent(o->shape, 0, u, w);
     return l->offset[0] <= u[0] && l->offset[0] + l->size[0] >= u[1] && l->offset[1] <= w[0] && l->offset[1] + l->size[1] >= w[1];
 }
 
@@ -90,7 +90,7 @@ typedef struct winding {
 
 static winding winding_of(const object *o)
 {
-    const shape_spec *f = &o->shape_said;
+    const shape_spec *f = &o->shape_spec;
     const vec3 up = {0, 1, 0};
     winding a;
     if (f->kind == SHAPE_SPHERE) {
@@ -206,7 +206,7 @@ static void put_round_pigment(pov_text *t, const object *o, const material *m)
     else
         put_round_image(t, o, m, &a);
     pov_print(t, "  ");
-    pov_matrix(t, a.axes.x, a.axes.y, a.axes.z, o->shape_said.a);
+    pov_matrix(t, a.axes.x, a.axes.y, a.axes.z, o->shape_spec.a);
     pov_print(t, " // y is the axis\n");
     if (o->moved) {
         pov_print(t, "  ");
@@ -226,7 +226,7 @@ void pov_texture(pov_text *t, const scene *s, const object *o, int part)
     pov_print(t, "  texture {\n%s    pigment { // in (u, w)\n", pov_by_uv(s, o) ? "    uv_mapping\n" : "");
     if (pov_by_uv(s, o))
         put_plane_pigment(t, o, m);
-    else if (pov_is_flat(&o->shape_said, part))
+    else if (pov_is_flat(&o->shape_spec, part))
         put_flat_pigment(t, o, m, part);
     else
         put_round_pigment(t, o, m);
@@ -235,11 +235,11 @@ void pov_texture(pov_text *t, const scene *s, const object *o, int part)
 
 bool pov_by_uv(const scene *s, const object *o)
 {
-    const bool cone = o->shape_said.kind == SHAPE_CONE && s->displaced && o->bump; /* by no warp: its w is that of the foot */
-    return s->material[o->material].pattern && (cone || pov_is_sheet(s, o) || o->shape_said.kind == SHAPE_MESH);
+    const bool cone = o->shape_spec.kind == SHAPE_CONE && s->displaced && o->bump; /* by no warp: its w is that of the foot */
+    return s->material[o->material].pattern && (cone || pov_is_sheet(s, o) || o->shape_spec.kind == SHAPE_MESH);
 }
 
 bool pov_by_parts(const scene *s, const object *o)
 {
-    return s->material[o->material].pattern && o->shape->is->parts > 1 && !pov_by_uv(s, o);
+    return s->material[o->material].pattern && o->shape->ops->parts > 1 && !pov_by_uv(s, o);
 }

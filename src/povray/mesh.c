@@ -143,12 +143,12 @@ static void rough_places(const object *o, const mesh *f, int index, int n, pov_v
     for (int j = 0; j <= n; j++)
         for (int i = 0; i <= n - j; i++) {
             const double b = (double)i / n, c = (double)j / n;
-            heights h;
+            bump_values h;
             u[lane] = (real)(x.u[0] + b * (x.u[1] - x.u[0]) + c * (x.u[2] - x.u[0]));
             w[lane++] = (real)(x.w[0] + b * (x.w[1] - x.w[0]) + c * (x.w[2] - x.w[0]));
             if (lane < LANES && j < n)
                 continue;
-            o->bump->is->eval(o->bump, lane, u, w, 1, &h);
+            o->bump->ops->eval(o->bump, lane, u, w, 1, &h);
             for (int k = 0; k < lane; k++)
                 *out++ = rough_vertex(f, &x, u[k], w[k], h.P[k], h.Pu[k], h.Pw[k]);
             lane = 0;
@@ -191,7 +191,7 @@ static void put_mesh(pov_text *t, const pile *p, bool uv)
     pov_print(t, " }\n");
 }
 
-bool pov_triangles(pov_text *t, const scene *s, const object *o)
+bool pov_triangle_mesh(pov_text *t, const scene *s, const object *o)
 {
     const bool rough = s->displaced && o->bump;
     const mesh *f = (const mesh *)(rough ? o->shape : o->own);
@@ -203,7 +203,7 @@ bool pov_triangles(pov_text *t, const scene *s, const object *o)
     else if (good)
         add_smooth(&p, f);
     if (good) {
-        pov_print(t, "// the triangles of %s", o->shape_said.file);
+        pov_print(t, "// the triangles of %s", o->shape_spec.file);
         if (rough)
             pov_print(t, ", each in %d x %d for %d x %d pixels", n, n, s->width, s->height);
         pov_print(t, "\n");

@@ -47,11 +47,11 @@ typedef struct pov_identifier {
 
 pov_identifier pov_identify(const char *kind, const char *name, int index);
 
-/* Whether an object is made by pov_sheet: POV-Ray has no shape for it, or none for its displacement. */
+/* Whether an object is made by pov_patch: POV-Ray has no shape for it, or none for its displacement. */
 static inline bool pov_is_sheet(const scene *s, const object *o)
 {
-    const shape_kind kind = o->shape_said.kind;
-    return kind == SHAPE_SEARCHED || (s->displaced && o->shape->rough && kind != SHAPE_MESH);
+    const shape_kind kind = o->shape_spec.kind;
+    return kind == SHAPE_PATCH || (s->displaced && o->shape->rough && kind != SHAPE_MESH);
 }
 
 /* All materials; and that of an object, on a part of its surface. pov_by_parts: each part has its own; pov_by_uv: its mesh must say
@@ -73,10 +73,10 @@ void pov_isosurface(pov_text *t, const scene *s, const object *o, const char *na
 bool pov_mesh(pov_text *t, const scene *s, const object *o, pov_report *report);
 
 /* An object without a shape of POV-Ray's, smooth or displaced as the scene says, as one mesh. False: out of memory. */
-bool pov_sheet(pov_text *t, const scene *s, const object *o);
+bool pov_patch(pov_text *t, const scene *s, const object *o);
 
 /* A mesh from a file likewise. */
-bool pov_triangles(pov_text *t, const scene *s, const object *o);
+bool pov_triangle_mesh(pov_text *t, const scene *s, const object *o);
 
 /* A transformation that puts x, y, z and 0 where these are; without a new line. */
 void pov_matrix(pov_text *t, vec3 x, vec3 y, vec3 z, vec3 origin);

@@ -36,22 +36,22 @@ static void evaluate(const grid *g, int part, int row, pov_vertex *out)
 {
     double U[2], W[2];
     const surface *f = g->o->shape;
-    f->is->extent(f, part, U, W);
+    f->ops->extent(f, part, U, W);
     for (int first = 0; first <= g->n[0]; first += LANES) {
         const int n = g->n[0] + 1 - first < LANES ? g->n[0] + 1 - first : LANES;
         real u[LANES], w[LANES];
         int32_t parts[LANES];
         partials q;
-        heights h;
+        bump_values h;
         for (int i = 0; i < n; i++) {
             u[i] = (real)line(U, first + i, g->n[0]);
             w[i] = (real)line(W, row, g->n[1]);
             parts[i] = part;
             h.P[i] = h.Pu[i] = h.Pw[i] = 0;
         }
-        f->is->eval(f, n, parts, u, w, 2, &q);
+        f->ops->eval(f, n, parts, u, w, 2, &q);
         if (g->rough)
-            g->o->bump->is->eval(g->o->bump, n, u, w, 1, &h);
+            g->o->bump->ops->eval(g->o->bump, n, u, w, 1, &h);
         for (int i = 0; i < n; i++) {
             const bs_vec3 Qu = lane_get(&q.Qu, i), Qw = lane_get(&q.Qw, i);
             const offset o = offset_of(Qu, Qw, lane_get(&q.Quu, i), lane_get(&q.Quw, i), lane_get(&q.Qww, i), h.P[i]);
@@ -89,7 +89,7 @@ static void probe(const pov_vertex *a, const pov_vertex *b, const grid *g, doubl
 /* So many cells along u and w that the coarsest of them is fine enough, by a grid of probes on each part. */
 static bool measure(grid *g)
 {
-    const int parts = g->o->shape->is->parts;
+    const int parts = g->o->shape->ops->parts;
     pov_vertex *row = malloc(sizeof *row * 2 * (PROBES + 1)), *last = row + PROBES + 1;
     double most[2] = {0, 0};
     if (!row)
@@ -119,10 +119,10 @@ static bool measure(grid *g)
 static void fit_map(grid *g)
 {
     const object *o = g->o;
-    const map_layout *m = &o->bump_said.layout;
+    const map_layout *m = &o->bump_spec.layout;
     const int samples[2] = {o->map.width, o->map.height};
     double range[2][2];
-    o->shape->is->extent(o->shape, 0, range[0], range[1]);
+    o->shape->ops->extent(o->shape, 0, range[0], range[1]);
     for (int a = 0; a < 2; a++) {
         /* in the middle of cells: two lines for each */
         const double lines = (range[a][1] - range[a][0]) / m->size[a] * (m->corners ? samples[a] - 1 : 2 * samples[a]);
@@ -141,7 +141,7 @@ static int faces(pov_text *t, const grid *g, const pov_vertex *v)
 {
     const int row = g->n[0] + 1, all = (g->n[1] + 1) * row;
     int n = 0;
-    for (int part = 0; part < g->o->shape->is->parts; part++)
+    for (int part = 0; part < g->o->shape->ops->parts; part++)
         for (int j = 0; j < g->n[1]; j++)
             for (int i = 0; i < g->n[0]; i++) {
                 const int a = part * all + j * row + i, corner[2][3] = {{a, a + 1, a + row + 1}, {a, a + row + 1, a + row}};
@@ -160,21 +160,21 @@ static int faces(pov_text *t, const grid *g, const pov_vertex *v)
 static void put_mesh(pov_text *t, const grid *g, const pov_vertex *v, int n)
 {
     pov_print(t, "// a mesh made for %d x %d pixels: %d x %d cells%s\n", g->s->width, g->s->height, g->n[0], g->n[1],
-              g->o->shape->is->parts > 1 ? " a part" : "");
+              g->o->shape->ops->parts > 1 ? " a part" : "");
     pov_begin_mesh(t, v, n, pov_by_uv(g->s, g->o));
     pov_print(t, "  face_indices { %d,", faces(NULL, g, v));
     faces(t, g, v);
     pov_print(t, " }\n");
 }
 
-bool pov_sheet(pov_text *t, const scene *s, const object *o)
+bool pov_patch(pov_text *t, const scene *s, const object *o)
 {
     grid g = {.s = s, .o = o, .rough = s->displaced && o->bump};
     if (!measure(&g))
         return false;
     if (g.rough && o->map.file)
         fit_map(&g);
-    const int row = g.n[0] + 1, all = (g.n[1] + 1) * row, parts = o->shape->is->parts;
+    const int row = g.n[0] + 1, all = (g.n[1] + 1) * row, parts = o->shape->ops->parts;
     pov_vertex *v = malloc(sizeof *v * (size_t)all * (size_t)parts);
     for (int part = 0; v && part < parts; part++)
         for (int j = 0; j <= g.n[1]; j++)

@@ -55,7 +55,7 @@ static corners block_corners(const tessellation *x, int64_t i, int64_t j, int64_
 {
     corners c;
     partials q;
-    heights h;
+    bump_values h;
     int32_t part[4];
     real u[4], w[4];
     for (int k = 0; k < 4; k++) {
@@ -63,8 +63,8 @@ static corners block_corners(const tessellation *x, int64_t i, int64_t j, int64_
         u[k] = (real)pov_lattice_at(&x->v.lattice, 0, i + (k == 1 || k == 2 ? size : 0), 0);
         w[k] = (real)pov_lattice_at(&x->v.lattice, 1, j + (k >= 2 ? size : 0), 0);
     }
-    x->o->shape->is->eval(x->o->shape, 4, part, u, w, 1, &q);
-    x->o->bump->is->eval(x->o->bump, 4, u, w, 1, &h);
+    x->o->shape->ops->eval(x->o->shape, 4, part, u, w, 1, &q);
+    x->o->bump->ops->eval(x->o->bump, 4, u, w, 1, &h);
     for (int k = 0; k < 4; k++) {
         vec3 U = {(double)q.Qu.x[k], (double)q.Qu.y[k], (double)q.Qu.z[k]}, W = {(double)q.Qw.x[k], (double)q.Qw.y[k], (double)q.Qw.z[k]};
         c.Q[k] = (vec3){(double)q.Q.x[k], (double)q.Q.y[k], (double)q.Q.z[k]};
@@ -268,14 +268,14 @@ static void add_block(tessellation *x, int64_t i, int64_t j, int64_t size)
 static void lay(tessellation *x, int part)
 {
     const object *o = x->o;
-    const map_layout *m = &o->bump_said.layout;
+    const map_layout *m = &o->bump_spec.layout;
     const int samples[2] = {o->map.width, o->map.height};
     double range[2][2];
     pov_lattice *l = &x->v.lattice;
     l->part = part;
-    x->flat = pov_is_flat(&o->shape_said, part);
-    x->closed = !x->flat && !o->shape_said.open;
-    o->shape->is->extent(o->shape, part, range[0], range[1]);
+    x->flat = pov_is_flat(&o->shape_spec, part);
+    x->closed = !x->flat && !o->shape_spec.open;
+    o->shape->ops->extent(o->shape, part, range[0], range[1]);
     for (int a = 0; a < 2; a++) {
         l->lo[a] = range[a][0];
         l->hi[a] = range[a][1];
@@ -283,7 +283,7 @@ static void lay(tessellation *x, int part)
     if (x->unbounded)
         pov_plane_region(x->s, o, range[0], range[1]);
     for (int a = 0; a < 2; a++) {
-        if (o->bump_said.function) {
+        if (o->bump_spec.function) {
             const pov_flat f = pov_flat_of(o, 0);
             double edge = vec3_length(a ? f.W : f.U), away = vec3_length(vec3_sub(x->s->view.at, x->s->camera.from));
             l->step[a] = x->unbounded ? away / edge / FUNCTION_CELLS : (range[a][1] - range[a][0]) / FUNCTION_CELLS;
@@ -330,8 +330,8 @@ static void fit(tessellation *x)
     do {
         x->before = 0;
         x->full = false;
-        for (int part = 0; part < x->o->shape->is->parts && !x->full; part++) {
-            if (pov_rim(&x->o->shape_said, part) == 0)
+        for (int part = 0; part < x->o->shape->ops->parts && !x->full; part++) {
+            if (pov_rim(&x->o->shape_spec, part) == 0)
                 continue;
             tessellate(x, part);
             x->before += x->faces;
@@ -356,8 +356,8 @@ static void put_note(pov_text *t, const tessellation *x)
 
 bool pov_mesh(pov_text *t, const scene *s, const object *o, pov_report *report)
 {
-    const int parts = o->shape->is->parts;
-    tessellation x = {.s = s, .o = o, .memory = true, .unbounded = o->shape_said.kind == SHAPE_PLANE};
+    const int parts = o->shape->ops->parts;
+    tessellation x = {.s = s, .o = o, .memory = true, .unbounded = o->shape_spec.kind == SHAPE_PLANE};
     x.v.f = o->shape;
     x.v.P = o->bump;
     fit(&x);
@@ -369,7 +369,7 @@ bool pov_mesh(pov_text *t, const scene *s, const object *o, pov_report *report)
     if (parts > 1)
         pov_print(t, "union {\n");
     for (int part = 0; part < parts && x.memory; part++) {
-        const double rim = pov_rim(&o->shape_said, part);
+        const double rim = pov_rim(&o->shape_spec, part);
         if (rim == 0)
             continue;
         tessellate(&x, part);

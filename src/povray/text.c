@@ -8,12 +8,12 @@ bool pov_begin(pov_text *t, const char *path, errors *e)
 {
     t->size = 0;
     t->used = 0;
-    return image_file_open(&t->file, path, e);
+    return file_writer_open(&t->file, path, e);
 }
 
 static void flush(pov_text *t)
 {
-    image_file_write(&t->file, t->buffer, t->used, t->size);
+    file_writer_write(&t->file, t->buffer, t->used, t->size);
     t->size += t->used;
     t->used = 0;
 }
@@ -21,7 +21,7 @@ static void flush(pov_text *t)
 bool pov_end(pov_text *t, const char *why, errors *e)
 {
     flush(t);
-    return image_file_close(&t->file, why, e);
+    return file_writer_close(&t->file, why, e);
 }
 
 static void put(pov_text *t, const char *from, size_t n)

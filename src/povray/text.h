@@ -6,7 +6,7 @@
 #include "base/vec3.h"
 
 typedef struct pov_text {
-    image_file file;
+    file_writer file;
     uint64_t size; /* bytes already in the file */
     size_t used;   /* bytes in the buffer */
     char buffer[1 << 16];
@@ -15,7 +15,7 @@ typedef struct pov_text {
 /* False with a message in *e; then there is nothing to end. */
 bool pov_begin(pov_text *t, const char *path, errors *e);
 
-/* With `why` NULL the file takes its place, otherwise it is dropped; errors as from image_file_close. */
+/* With `why` NULL the file takes its place, otherwise it is dropped; errors as from file_writer_close. */
 bool pov_end(pov_text *t, const char *why, errors *e);
 
 /* Add a text in which %s is a string, %d an int, %g a double, %v a vec3, all with a point in numbers. */

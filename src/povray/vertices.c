@@ -42,24 +42,24 @@ double pov_lattice_at(const pov_lattice *l, int axis, int64_t i, int s)
 static void evaluate(pov_vertices *v, int n, const real *u, const real *w, pov_vertex *out)
 {
     partials q;
-    heights h;
+    bump_values h;
     rays x;
-    feet p;
+    closest_points p;
     int32_t part[LANES] = {0};
     real t[LANES];
     for (int i = 0; i < n; i++) {
         part[i] = v->lattice.part;
         t[i] = 0;
     }
-    v->f->is->eval(v->f, n, part, u, w, 1, &q);
-    v->P->is->eval(v->P, n, u, w, 1, &h);
+    v->f->ops->eval(v->f, n, part, u, w, 1, &q);
+    v->P->ops->eval(v->P, n, u, w, 1, &h);
     for (int i = 0; i < n; i++) {
         bs_vec3 Q = lane_get(&q.Q, i), up = lane_unit(bs_normal(lane_get(&q.Qu, i), lane_get(&q.Qw, i)));
         bs_vec3 X = {Q.x + h.P[i] * up.x, Q.y + h.P[i] * up.y, Q.z + h.P[i] * up.z};
         lane_set(&x.r, i, X);
         lane_set(&x.s, i, up);
     }
-    v->f->is->foot(v->f, v->lattice.part, n, &x, t, &p);
+    v->f->ops->foot(v->f, v->lattice.part, n, &x, t, &p);
     for (int i = 0; i < n; i++) {
         bs_vec3 Qu = lane_get(&q.Qu, i), Qw = lane_get(&q.Qw, i), X = lane_get(&x.r, i), m = lane_get(&x.s, i);
         bs_vec3 gu = lane_get(&p.gu, i), gw = lane_get(&p.gw, i), gh = lane_get(&p.gh, i);

@@ -30,7 +30,7 @@ void pov_begin_mesh(pov_text *t, const pov_vertex *v, int n, bool uv);
 
 typedef struct pov_vertices {
     const surface *f;
-    const perturb *P;
+    const bump *P;
     pov_lattice lattice;
     pov_vertex *vertex;
     int64_t *key;

@@ -90,7 +90,7 @@ void pov_object_end(pov_text *t, const scene *s, const pov_options *how, const o
     const material *m = &s->material[o->material];
     if (!pov_by_parts(s, o))
         pov_texture(t, s, o, 0);
-    if (material_clear(m) && shape_has_inside(&o->shape_said))
+    if (material_clear(m) && shape_has_inside(&o->shape_spec))
         pov_print(t, "  interior { ior %g }\n", m->ior);
     if ((o->bump && !s->self_shadow) || (!o->bump && how->no_cast))
         pov_print(t, "  no_shadow\n");
@@ -135,12 +135,12 @@ static void put_transform(pov_text *t, const object *o)
 static void put_parts(pov_text *t, const scene *s, const object *o)
 {
     pov_print(t, "union {\n");
-    for (int part = 0; part < o->shape->is->parts; part++) {
-        const double rim = pov_rim(&o->shape_said, part);
+    for (int part = 0; part < o->shape->ops->parts; part++) {
+        const double rim = pov_rim(&o->shape_spec, part);
         if (rim == 0)
             continue;
-        if (!pov_is_flat(&o->shape_said, part)) {
-            put_side(t, &o->shape_said, true);
+        if (!pov_is_flat(&o->shape_spec, part)) {
+            put_side(t, &o->shape_spec, true);
             put_transform(t, o);
         } else {
             const pov_flat p = pov_flat_of(o, part);
@@ -156,7 +156,7 @@ static void put_parts(pov_text *t, const scene *s, const object *o)
 
 static void put_smooth(pov_text *t, const scene *s, const object *o)
 {
-    const shape_spec *f = &o->shape_said;
+    const shape_spec *f = &o->shape_spec;
     if (pov_by_parts(s, o)) {
         put_parts(t, s, o);
         return;
@@ -190,8 +190,8 @@ static void put_smooth(pov_text *t, const scene *s, const object *o)
         pov_print(t, " // y is the axis\n");
         break;
     }
-    case SHAPE_SEARCHED: /* pov_sheet.c */
-    case SHAPE_MESH:     /* pov_triangles.c */
+    case SHAPE_PATCH: /* pov_patch.c */
+    case SHAPE_MESH:     /* pov_triangle_mesh.c */
         break;
     }
     put_transform(t, o);
@@ -202,7 +202,7 @@ static bool put_displaced(pov_text *t, const scene *s, int k, pov_report *report
     const object *o = &s->object[k];
     pov_identifier P = pov_identify("P", o->name, k);
     double gradient = 0;
-    for (int part = 0; part < o->shape->is->parts; part++)
+    for (int part = 0; part < o->shape->ops->parts; part++)
         gradient = fmax(gradient, pov_isosurface_gradient(o, part));
     if (gradient < HUGE_VAL && pov_function(t, o, P.text)) {
         pov_isosurface(t, s, o, P.text);
@@ -224,12 +224,12 @@ bool pov_write(const scene *s, const pov_options *how, const char *path, pov_rep
     pov_materials(&t, s);
     for (int k = 0; good && k < s->objects; k++) {
         const object *o = &s->object[k];
-        pov_print(&t, "// object %s: %s%s%s\n", o->name, o->shape->is->kind, o->bump ? ", bump by " : "",
-                  o->bump ? o->bump->is->kind : "");
+        pov_print(&t, "// object %s: %s%s%s\n", o->name, o->shape->ops->kind, o->bump ? ", bump by " : "",
+                  o->bump ? o->bump->ops->kind : "");
         if (pov_is_sheet(s, o))
-            good = pov_sheet(&t, s, o);
-        else if (o->shape_said.kind == SHAPE_MESH)
-            good = pov_triangles(&t, s, o);
+            good = pov_patch(&t, s, o);
+        else if (o->shape_spec.kind == SHAPE_MESH)
+            good = pov_triangle_mesh(&t, s, o);
         else if (s->displaced && o->bump)
             good = put_displaced(&t, s, k, report);
         else

@@ -134,23 +134,23 @@ static bool lay_image(reader *r, node *at, const material *m, const object *o, m
 {
     double u[2], w[2];
     node *said = yaml_get(yaml_get(yaml_get(yaml_get(yaml_root(r->y), "materials"), m->name), "color"), "image");
-    reader_extent(o->shape, &o->shape_said, u, w);
+    reader_extent(o->shape, &o->shape_spec, u, w);
     if (!yaml_get(said, "size") && !(u[1] - u[0] < HUGE_VAL && w[1] - w[0] < HUGE_VAL))
         return yaml_error(r->y, at, "the image of '%s' has no 'size', expected one for a surface without ends", m->name);
     *l = (map_layout){.size = {1, 1}};
     return reader_layout(r, said, u, w, l);
 }
 
-void reader_pigment(reader *r, node *at, object *o)
+void reader_color_texture(reader *r, node *at, object *o)
 {
     const material *m = &r->s->material[o->material];
     o->color_layout = m->layout;
     if (m->pattern && !reader_textured(r, at, o))
         return;
     if (m->pattern == PATTERN_CHECKER)
-        o->color = pigment_checker(m->field, m->layout.size, m->layout.offset);
+        o->color = color_checker_new(m->field, m->layout.size, m->layout.offset);
     else if (m->pattern == PATTERN_IMAGE && m->texels && m->name && lay_image(r, at, m, o, &o->color_layout))
-        o->color = pigment_image(m->texels, &o->color_layout, m->nearest);
+        o->color = color_image_new(m->texels, &o->color_layout, m->nearest);
     else
         return;
     if (!o->color)

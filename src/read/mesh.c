@@ -40,9 +40,9 @@ surface *reader_mesh(reader *r, node *at, shape_spec *said)
     if (!read_normals(r, at, &normals, &crease) || !name)
         return NULL;
     char *path = reader_beside(r, name);
-    bool good = path && mesh_file_read(path, r->watch, &r->s->made_from, &d, why);
+    bool good = path && mesh_file_read(path, r->progress, &r->s->made_from, &d, why);
     if (good)
-        watch_show(r->watch, "checking", 1);
+        progress_show(r->progress, "checking", 1);
     good = good && mesh_clean(&d, normals, crease, BIG, why);
     if (path && !good)
         yaml_error(r->y, file, "'%s' can't be used: %s", name, why);
@@ -53,7 +53,7 @@ surface *reader_mesh(reader *r, node *at, shape_spec *said)
         mesh_data_free(&d);
         return NULL;
     }
-    surface *f = mesh_new(&d, r->watch);
+    surface *f = mesh_new(&d, r->progress);
     if (!f) {
         errors_add(r->e, "out of memory");
         return NULL;
@@ -64,7 +64,7 @@ surface *reader_mesh(reader *r, node *at, shape_spec *said)
 
 bool reader_textured(reader *r, node *at, const object *o)
 {
-    const shape_spec *f = &o->shape_said;
+    const shape_spec *f = &o->shape_spec;
     if (f->kind != SHAPE_MESH || f->found.bare == 0)
         return true;
     return yaml_error(r->y, at, "%d of the %d triangles of '%s' have no texture coordinates, expected them for what lies on (u,w)", f->found.bare,
@@ -75,33 +75,33 @@ bool reader_textured(reader *r, node *at, const object *o)
 static bool find_folds(const object *o, double *lo, double *hi)
 {
     double u[2], w[2];
-    if (o->shape_said.kind != SHAPE_MESH || o->shape_said.found.folded == 0)
+    if (o->shape_spec.kind != SHAPE_MESH || o->shape_spec.found.folded == 0)
         return false;
-    o->own->is->extent(o->own, 0, u, w);
+    o->own->ops->extent(o->own, 0, u, w);
     *lo = u[0] - (u[1] - u[0]);
     *hi = u[1] + (u[1] - u[0]);
     return true;
 }
 
-perturb *reader_fold_bump(reader *r, const object *o, perturb *p)
+bump *reader_fold_bump(reader *r, const object *o, bump *p)
 {
     double lo, hi;
-    if (p && find_folds(o, &lo, &hi) && !(p = perturb_folded(p, lo, hi)))
+    if (p && find_folds(o, &lo, &hi) && !(p = bump_mirrored_uv(p, lo, hi)))
         errors_add(r->e, "out of memory");
     return p;
 }
 
-pigment *reader_fold_color(reader *r, const object *o, pigment *c)
+color_texture *reader_fold_color(reader *r, const object *o, color_texture *c)
 {
     double lo, hi;
-    if (c && find_folds(o, &lo, &hi) && !(c = pigment_folded(c, lo, hi)))
+    if (c && find_folds(o, &lo, &hi) && !(c = color_mirrored_uv(c, lo, hi)))
         errors_add(r->e, "out of memory");
     return c;
 }
 
 void reader_extent(const surface *f, const shape_spec *said, double u[2], double w[2])
 {
-    f->is->extent(f, 0, u, w);
+    f->ops->extent(f, 0, u, w);
     if (said->kind == SHAPE_MESH) {
         u[0] = w[0] = 0;
         u[1] = w[1] = 1;

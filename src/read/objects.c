@@ -82,7 +82,7 @@ static bool read_samples(reader *r, node *at, image *out, map_note *note)
 }
 
 /* Scale, zero level and sign: without them a map is no height, so none has a default. */
-static perturb *read_map(reader *r, node *at, const double u[2], const double w[2], map_note *note, bump_spec *said)
+static bump *read_map(reader *r, node *at, const double u[2], const double w[2], map_note *note, bump_spec *said)
 {
     image samples;
     map_layout l = {.size = {1, 1}};
@@ -102,7 +102,7 @@ static perturb *read_map(reader *r, node *at, const double u[2], const double w[
         good = yaml_error(r->y, scale, "heights from %.4g to %.4g, expected them within 1000000 scene units", fmin(low, high),
                           fmax(low, high));
     said->layout = l;
-    perturb *p = good ? perturb_map(&samples, &l) : NULL;
+    bump *p = good ? bump_map_new(&samples, &l) : NULL;
     if (good && !p)
         errors_add(r->e, "out of memory");
     free(samples.v);
@@ -112,10 +112,10 @@ static perturb *read_map(reader *r, node *at, const double u[2], const double w[
 /* All the (u,w) of a surface's parts, on which a function must have its bounds. */
 static void widest_extent(const surface *f, double u[2], double w[2])
 {
-    f->is->extent(f, 0, u, w);
-    for (int part = 1; part < f->is->parts; part++) {
+    f->ops->extent(f, 0, u, w);
+    for (int part = 1; part < f->ops->parts; part++) {
         double pu[2], pw[2];
-        f->is->extent(f, part, pu, pw);
+        f->ops->extent(f, part, pu, pw);
         u[0] = fmin(u[0], pu[0]);
         u[1] = fmax(u[1], pu[1]);
         w[0] = fmin(w[0], pw[0]);
@@ -123,7 +123,7 @@ static void widest_extent(const surface *f, double u[2], double w[2])
     }
 }
 
-static perturb *read_function(reader *r, node *at, const surface *f, bump_spec *said)
+static bump *read_function(reader *r, node *at, const surface *f, bump_spec *said)
 {
     double scale = 1, u[2], w[2];
     bool good = yaml_map(r->y, at, "a bump with a function", "function scale");
@@ -141,13 +141,13 @@ static perturb *read_function(reader *r, node *at, const surface *f, bump_spec *
     said->function = reader_copy(r, text);
     said->scale = scale;
     widest_extent(f, u, w);
-    perturb *p = perturb_function(e, scale, u, w);
+    bump *p = bump_function_new(e, scale, u, w);
     if (!p)
         errors_add(r->e, "out of memory");
     return p;
 }
 
-static perturb *read_bump(reader *r, node *at, object *o)
+static bump *read_bump(reader *r, node *at, object *o)
 {
     const surface *f = o->own;
     double u[2], w[2];
@@ -160,8 +160,8 @@ static perturb *read_bump(reader *r, node *at, object *o)
     }
     if (!reader_textured(r, at, o))
         return NULL;
-    reader_extent(f, &o->shape_said, u, w);
-    return reader_fold_bump(r, o, map ? read_map(r, at, u, w, &o->map, &o->bump_said) : read_function(r, at, f, &o->bump_said));
+    reader_extent(f, &o->shape_spec, u, w);
+    return reader_fold_bump(r, o, map ? read_map(r, at, u, w, &o->map, &o->bump_spec) : read_function(r, at, f, &o->bump_spec));
 }
 
 /* ---- objects ---- */
@@ -250,16 +250,16 @@ static void place(reader *r, node *v, object *o)
     }
     if (!good || !o->moved || !o->own || !reader_place(r, at, o))
         return;
-    if (o->bump && !o->shape->is->foot && !o->shape->rough && scene_wants_truth(r->s))
+    if (o->bump && !o->shape->ops->foot && !o->shape->rough && scene_wants_truth(r->s))
         yaml_error(r->y, at, "a %s with caps and a bump is stretched more one way than another, expected the same scale all ways, or 'open: true', for %s",
-                   o->shape->is->kind, r->s->displaced ? "surface displaced" : "shadow exact");
+                   o->shape->ops->kind, r->s->displaced ? "surface displaced" : "shadow exact");
 }
 
 static void read_object(reader *r, const queue *q, int i)
 {
     scene *s = r->s;
     object *o = &s->object[i];
-    node *key, *v = yaml_pair(q->at, i, &key), *m, *bump, *copy;
+    node *key, *v = yaml_pair(q->at, i, &key), *m, *at_bump, *copy;
     q->state[i] = BEGUN;
     o->placed = affine_identity();
     if (yaml_map(r->y, v, "an object", READER_SHAPES " material bump transform copy")) {
@@ -268,24 +268,24 @@ static void read_object(reader *r, const queue *q, int i)
             if (from)
                 take(o, from);
         } else
-            o->shape = o->own = reader_surface(r, v, &o->shape_said);
+            o->shape = o->own = reader_surface(r, v, &o->shape_spec);
         if ((m = copy ? yaml_get(v, "material") : yaml_need(r->y, v, "material", "an object")))
             o->material = find_material(r, m);
         o->color = NULL;
         if ((m || copy) && o->own && s->material)
-            reader_pigment(r, m ? m : copy, o);
-        if ((bump = yaml_get(v, "bump")) && o->own) {
+            reader_color_texture(r, m ? m : copy, o);
+        if ((at_bump = yaml_get(v, "bump")) && o->own) {
             o->shares_bump = false;
             o->map = (map_note){0};
-            o->bump_said = (bump_spec){0};
-            o->bump = read_bump(r, bump, o);
+            o->bump_spec = (bump_spec){0};
+            o->bump = read_bump(r, at_bump, o);
         }
-        if (bump && o->bump && scene_wants_truth(s) && !displace_possible(o->bump))
-            yaml_error(r->y, bump, "no bounds of P or of its slope are known, expected them for %s: a function that is bounded, "
+        if (at_bump && o->bump && scene_wants_truth(s) && !displaced_possible(o->bump))
+            yaml_error(r->y, at_bump, "no bounds of P or of its slope are known, expected them for %s: a function that is bounded, "
                                    "without jumps, over the whole surface",
                        s->displaced ? "surface displaced" : "shadow exact");
         place(r, v, o);
-        if (o->shape && o->bump && scene_wants_truth(s) && !displace_prepare(o->shape, o->bump))
+        if (o->shape && o->bump && scene_wants_truth(s) && !displaced_prepare(o->shape, o->bump))
             errors_add(r->e, "out of memory");
     }
     q->state[i] = DONE;

@@ -53,9 +53,9 @@ static bool read_range(reader *r, node *at, const char *key, double x[2])
 }
 
 /* The tree of leaves, or why there is none. */
-static surface *search(reader *r, node *at, sheet *q, const char *what)
+static surface *search(reader *r, node *at, patch *q, const char *what)
 {
-    surface *f = q ? searched_new(q) : NULL;
+    surface *f = q ? patch_surface_new(q) : NULL;
     if (!q)
         errors_add(r->e, "out of memory");
     else if (!f)
@@ -78,13 +78,13 @@ surface *reader_parametric(reader *r, node *at, shape_spec *said)
     }
     good = read_range(r, at, "u", u) && good;
     good = read_range(r, at, "w", w) && good;
-    *said = (shape_spec){.kind = SHAPE_SEARCHED};
+    *said = (shape_spec){.kind = SHAPE_PATCH};
     if (!good) {
         for (int k = 0; k < 3; k++)
             expr_free(e[k]);
         return NULL;
     }
-    return search(r, at, sheet_function("parametric", e, u, w),
+    return search(r, at, patch_function_new("parametric", e, u, w),
                   "a surface without bounds, or all in one place, expected functions that are bounded over the range of u and w");
 }
 
@@ -154,11 +154,11 @@ surface *reader_patches(reader *r, node *at, shape_spec *said)
         yaml_error(r->y, at, "patches with %s, expected either 'file' or 'points'", file ? "both file and points" : "neither file nor points");
         return NULL;
     }
-    *said = (shape_spec){.kind = SHAPE_SEARCHED};
+    *said = (shape_spec){.kind = SHAPE_PATCH};
     vec3 *point = file ? read_file(r, file, &n) : read_points(r, points, &n);
     if (!point)
         return NULL;
-    sheet *q = sheet_bezier(n, point);
+    patch *q = patch_bezier_new(n, point);
     free(point);
     return search(r, at, q, "patches that are all in one place, expected some extent");
 }

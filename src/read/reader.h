@@ -13,7 +13,7 @@ typedef struct reader {
     yaml *y;
     scene *s;
     errors *e;
-    const watch *watch; /* NULL: nobody */
+    const progress *progress; /* NULL: nobody */
 } reader;
 
 /* An owned copy of a text; NULL of NULL. */
@@ -46,7 +46,7 @@ bool reader_layout(reader *r, node *at, const double u[2], const double w[2], ma
 
 /* (scene_materials.c) The materials; the colour of an object's, where it is not constant. `at`: the object's material, for errors. */
 void reader_materials(reader *r);
-void reader_pigment(reader *r, node *at, object *o);
+void reader_color_texture(reader *r, node *at, object *o);
 
 /* The surface of an object, by the one key of READER_SHAPES that it has. NULL: an error is told. (scene_surfaces.c) */
 #define READER_SHAPES "plane rectangle disc box sphere cylinder cone torus parametric patches mesh"
@@ -58,7 +58,7 @@ bool reader_transform(reader *r, node *at, affine *m);
 
 /* A round shape about the origin as a sheet, which bears every transform truly displaced. NULL: it has ends (caps) or is not round, or
  * out of memory. (scene_turned.c) */
-surface *reader_turned(const shape_spec *f);
+surface *reader_revolution(const shape_spec *f);
 
 /* Put an object's shape where `placed` says. False: an error is told, at the node. */
 bool reader_place(reader *r, node *at, object *o);
@@ -77,8 +77,8 @@ void reader_extent(const surface *f, const shape_spec *said, double u[2], double
 bool reader_textured(reader *r, node *at, const object *o);
 
 /* A bump, or a colour, for a mesh some of whose texture is mirrored: it is folded (fold.h). */
-perturb *reader_fold_bump(reader *r, const object *o, perturb *p);
-pigment *reader_fold_color(reader *r, const object *o, pigment *c);
+bump *reader_fold_bump(reader *r, const object *o, bump *p);
+color_texture *reader_fold_color(reader *r, const object *o, color_texture *c);
 
 /* The objects with their surfaces and bumps; after the materials, whose names they give. (scene_objects.c) */
 void reader_objects(reader *r);

@@ -46,7 +46,7 @@ static bool outline_of(const shape_spec *f, outline *a)
     }
 }
 
-surface *reader_turned(const shape_spec *f)
+surface *reader_revolution(const shape_spec *f)
 {
     outline a;
     expr *e[3] = {NULL, NULL, NULL};
@@ -67,6 +67,6 @@ surface *reader_turned(const shape_spec *f)
             expr_free(e[k]);
         return NULL;
     }
-    sheet *q = sheet_function(a.kind, e, u, a.w);
-    return q ? searched_new(q) : NULL;
+    patch *q = patch_function_new(a.kind, e, u, a.w);
+    return q ? patch_surface_new(q) : NULL;
 }

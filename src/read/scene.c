@@ -199,14 +199,14 @@ static void note_secondary(scene *s)
 static void note_crowd(reader *r)
 {
     bool good = true;
-    r->s->crowd = crowd_new(r->s, &good);
+    r->s->object_bvh = object_bvh_new(r->s, &good);
     if (!good)
         errors_add(r->e, "out of memory");
 }
 
-scene *scene_read(const char *path, int sets, char *const *set, const watch *w, errors *e)
+scene *scene_read(const char *path, int sets, char *const *set, const progress *w, errors *e)
 {
-    reader r = {.e = e, .watch = w, .s = calloc(1, sizeof *r.s)};
+    reader r = {.e = e, .progress = w, .s = calloc(1, sizeof *r.s)};
     int before = e->count;
     r.y = r.s ? yaml_open(path, sets, set, "image render", e) : NULL;
     if (r.y) {
@@ -241,7 +241,7 @@ void scene_free(scene *s)
 {
     if (!s)
         return;
-    crowd_free(s->crowd);
+    object_bvh_free(s->object_bvh);
     for (int i = 0; i < s->lights; i++)
         free(s->light[i].name);
     for (int i = 0; i < s->materials; i++) {
@@ -257,13 +257,13 @@ void scene_free(scene *s)
         surface_free(o->centred);
         if (!o->copy_of) {
             surface_free(o->own);
-            free(o->shape_said.file);
+            free(o->shape_spec.file);
         }
-        pigment_free(o->color);
+        color_texture_free(o->color);
         if (o->shares_bump)
             continue;
-        perturb_free(o->bump);
-        free(o->bump_said.function);
+        bump_free(o->bump);
+        free(o->bump_spec.function);
         free(o->map.file);
     }
     free(s->light);

@@ -123,14 +123,14 @@ static double length(const vec3s *v) { return vec3_length((vec3){(double)v->x[0]
 /* The lengths of Qu and Qw in the middle of each part, within what a shape's own keys allow. */
 static bool is_sized(const surface *f, double *wrong)
 {
-    for (int32_t part = 0; part < f->is->parts; part++) {
+    for (int32_t part = 0; part < f->ops->parts; part++) {
         double U[2], W[2];
         partials q;
-        f->is->extent(f, part, U, W);
+        f->ops->extent(f, part, U, W);
         if (!(U[0] < U[1])) /* a cap of a cone that ends in a point */
             continue;
         const real u = U[1] < HUGE_VAL ? (real)(0.5 * (U[0] + U[1])) : 0, w = W[1] < HUGE_VAL ? (real)(0.5 * (W[0] + W[1])) : 0;
-        f->is->eval(f, 1, &part, &u, &w, 1, &q);
+        f->ops->eval(f, 1, &part, &u, &w, 1, &q);
         const double l[2] = {length(&q.Qu), length(&q.Qw)};
         for (int k = 0; k < 2; k++)
             if (!(l[k] >= SMALL / 4 && l[k] <= BIG * 4)) {
@@ -164,7 +164,7 @@ static surface *centred(const shape_spec *f, vec3 *middle)
         return cone_new(other, f->radius[0], half, f->radius[1], f->open);
     case SHAPE_TORUS:
         return torus_new(here, f->u, f->radius[0], f->radius[1]);
-    case SHAPE_SEARCHED: /* in double anyway */
+    case SHAPE_PATCH: /* in double anyway */
     case SHAPE_MESH:
         break;
     }
@@ -177,17 +177,17 @@ static bool wants_truth(const reader *r, const object *o) { return o->bump && sc
 static surface *image_of(const reader *r, object *o, const surface *from, const affine *m)
 {
     const bool truth = wants_truth(r, o);
-    if (truth && o->shape_said.kind == SHAPE_MESH)
+    if (truth && o->shape_spec.kind == SHAPE_MESH)
         return mesh_moved(from, m);
-    if (truth && o->shape_said.kind == SHAPE_SEARCHED)
-        return searched_moved(from, m);
-    surface *f = surface_transformed(from, m), *turned = f && truth && !f->is->foot ? reader_turned(&o->shape_said) : NULL;
+    if (truth && o->shape_spec.kind == SHAPE_PATCH)
+        return patch_surface_affine(from, m);
+    surface *f = surface_transformed(from, m), *turned = f && truth && !f->ops->foot ? reader_revolution(&o->shape_spec) : NULL;
     if (!turned)
         return f;
     surface_free(f);
     surface_free(o->centred);
     o->centred = turned;
-    return searched_moved(turned, m);
+    return patch_surface_affine(turned, m);
 }
 
 /* A mesh has no edges of its own: its size is that of the sphere around it. */
@@ -206,9 +206,9 @@ bool reader_place(reader *r, node *at, object *o)
     affine whole = affine_identity();
     double wrong = 0;
     const surface *from = o->own;
-    const bool is_mesh = o->shape_said.kind == SHAPE_MESH;
-    if (o->shape_said.kind != SHAPE_SEARCHED && !is_mesh)
-        from = o->centred = centred(&o->shape_said, &whole.o);
+    const bool is_mesh = o->shape_spec.kind == SHAPE_MESH;
+    if (o->shape_spec.kind != SHAPE_PATCH && !is_mesh)
+        from = o->centred = centred(&o->shape_spec, &whole.o);
     const vec3 to = affine_point(m, is_mesh ? ((const mesh *)from)->space.centre : whole.o);
     const double far = fmax(fabs(to.x), fmax(fabs(to.y), fabs(to.z)));
     if (!(far <= BIG))

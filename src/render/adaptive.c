@@ -47,7 +47,7 @@ static void mark_row(const display *d, int x, int y, int n, int limit, unsigned 
     compare(d, n, limit, x, y, x, y + 1, out);
 }
 
-unsigned char *contrast_find(const film *f, window part, double threshold, int threads, errors *e)
+unsigned char *adaptive_find(const film *f, window part, double threshold, int threads, errors *e)
 {
     display d = {f->part.x1 - f->part.x0, f->part.y1 - f->part.y0, {NULL}};
     const size_t pixels = (size_t)d.width * (size_t)d.height;

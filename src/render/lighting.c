@@ -7,7 +7,7 @@
 /* ---- shadow rays ---- */
 
 /* No offset is added to the start: it would shorten each shadow by offset/tan(elevation), and P is small, too. */
-STAGE static void aim_at_place(group *restrict g, const light *l, int shifted)
+STAGE static void aim_at_place(hit_group *restrict g, const light *l, int shifted)
 {
     const real lx = (real)l->at.x, ly = (real)l->at.y, lz = (real)l->at.z;
     for (int i = 0; i < g->n; i++) {
@@ -19,7 +19,7 @@ STAGE static void aim_at_place(group *restrict g, const light *l, int shifted)
 
 /* Up to the light's plane. Beyond it there is light and no shadow, as in POV-Ray: a segment too short to meet a thing, which still
  * has its direction. */
-STAGE static void aim_along(group *restrict g, const light *l, int shifted)
+STAGE static void aim_along(hit_group *restrict g, const light *l, int shifted)
 {
     const real lx = (real)l->at.x, ly = (real)l->at.y, lz = (real)l->at.z;
     const real ax = (real)l->axis.x, ay = (real)l->axis.y, az = (real)l->axis.z;
@@ -32,7 +32,7 @@ STAGE static void aim_along(group *restrict g, const light *l, int shifted)
     }
 }
 
-void light_aim(const light *l, group *g, bool shifted)
+void light_aim(const light *l, hit_group *g, bool shifted)
 {
     (l->kind == LIGHT_PARALLEL ? aim_along : aim_at_place)(g, l, shifted);
 }
@@ -63,15 +63,15 @@ light light_sample(const light *l, int k, real *share)
     return one;
 }
 
-STAGE static void gather(const group *restrict g, real share, real *restrict sum)
+STAGE static void gather(const hit_group *restrict g, real share, real *restrict sum)
 {
     for (int i = 0; i < g->n; i++)
         sum[i] += share * g->lit[i];
 }
 
-void light_gather(const group *g, real share, real *sum) { gather(g, share, sum); }
+void light_gather(const hit_group *g, real share, real *sum) { gather(g, share, sum); }
 
-STAGE static void gather_tint(const group *restrict g, real share, vec3s *restrict sum)
+STAGE static void gather_tint(const hit_group *restrict g, real share, vec3s *restrict sum)
 {
     for (int i = 0; i < g->n; i++) {
         real x = share * g->lit[i];
@@ -81,7 +81,7 @@ STAGE static void gather_tint(const group *restrict g, real share, vec3s *restri
     }
 }
 
-void light_gather_tint(const group *g, real share, vec3s *sum) { gather_tint(g, share, sum); }
+void light_gather_tint(const hit_group *g, real share, vec3s *sum) { gather_tint(g, share, sum); }
 
 int light_corners(const light *l) { return l->samples[0] * l->samples[1] > 1 ? 4 : 1; }
 
@@ -97,7 +97,7 @@ vec3 light_corner(const light *l, int k, vec3 p)
 /* ---- what arrives ---- */
 
 /* How far p1 is from the light, or from its plane, and the cosine between the way there and its axis. */
-STAGE static void place(const group *restrict g, const light *l, double *restrict distance, double *restrict cosine)
+STAGE static void place(const hit_group *restrict g, const light *l, double *restrict distance, double *restrict cosine)
 {
     const real lx = (real)l->at.x, ly = (real)l->at.y, lz = (real)l->at.z;
     const real ax = (real)l->axis.x, ay = (real)l->axis.y, az = (real)l->axis.z, flat = l->kind == LIGHT_PARALLEL;
@@ -133,13 +133,13 @@ STAGE static void fade(int n, double reach, double power, const double *restrict
     }
 }
 
-STAGE static void dim(group *restrict g, const double *restrict share)
+STAGE static void dim(hit_group *restrict g, const double *restrict share)
 {
     for (int i = 0; i < g->n; i++)
         g->lit[i] = (real)((double)g->lit[i] * share[i]);
 }
 
-void light_fade(const light *l, group *g)
+void light_fade(const light *l, hit_group *g)
 {
     double distance[LANES], cosine[LANES], share[LANES];
     const double degree = 3.14159265358979323846 / 180;

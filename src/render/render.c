@@ -32,22 +32,22 @@ static workspace *workspace_chain(int lights, int deeper)
 workspace *workspace_new(const scene *s)
 {
     workspace *v = workspace_chain(s->lights, s->sends && s->depth > 1 ? s->depth : 0);
-    meetings *m = v && s->crowd ? meetings_new(s->crowd) : NULL;
-    if (v && s->crowd && !m) {
+    candidates *m = v && s->object_bvh ? candidates_new(s->object_bvh) : NULL;
+    if (v && s->object_bvh && !m) {
         workspace_free(v);
         return NULL;
     }
     if (v)
         v->left = s->depth - 1;
     for (workspace *w = v; w; w = w->deeper)
-        w->meetings = m;
+        w->candidates = m;
     return v;
 }
 
 void workspace_free(workspace *v)
 {
     if (v)
-        meetings_free(v->meetings);
+        candidates_free(v->candidates);
     while (v) {
         workspace *next = v->deeper;
         free(v->visibility);
@@ -327,7 +327,7 @@ static bool render_adaptive(const tracer *k, const render_options *o, film *f, s
     bool good = margin && run(k, o, &first, margin, sum, e);
     if (good && margin != f)
         film_copy(f, margin);
-    unsigned char *marked = good ? contrast_find(margin, part, o->threshold, o->threads, e) : NULL;
+    unsigned char *marked = good ? adaptive_find(margin, part, o->threshold, o->threads, e) : NULL;
     second.marked = marked;
     good = marked && run(k, o, &second, f, sum, e);
     free(marked);

@@ -27,10 +27,10 @@ static inline bs_vec3 turned_over(bs_vec3 d, bs_vec3 n)
 
 /* s mirrored at n'. What goes below the smooth surface then is turned over at it; where n' itself is turned away from the viewer, s is
  * mirrored at the smooth surface. Both as in POV-Ray. */
-static inline bs_vec3 mirrored(bs_vec3 s, bs_vec3 smooth, bs_vec3 bump)
+static inline bs_vec3 mirrored(bs_vec3 s, bs_vec3 smooth, bs_vec3 bumped)
 {
-    bs_vec3 d = turned_over(s, bump), again, plain = turned_over(s, smooth);
-    real side = bs_dot(s, smooth), below = side * bs_dot(d, smooth), away = side * bs_dot(s, bump);
+    bs_vec3 d = turned_over(s, bumped), again, plain = turned_over(s, smooth);
+    real side = bs_dot(s, smooth), below = side * bs_dot(d, smooth), away = side * bs_dot(s, bumped);
     again = turned_over(d, smooth);
     again.x = away < 0 ? plain.x : again.x;
     again.y = away < 0 ? plain.y : again.y;
@@ -41,14 +41,14 @@ static inline bs_vec3 mirrored(bs_vec3 s, bs_vec3 smooth, bs_vec3 bump)
     return d;
 }
 
-STAGE static void mirror(const group *restrict g, ways *restrict y)
+STAGE static void mirror(const hit_group *restrict g, ways *restrict y)
 {
     for (int i = 0; i < g->n; i++)
         lane_set(&y->mirrored, i, mirrored(lane_get(&g->x.s, i), lane_get(&g->n_smooth, i), lane_get(&g->n_bump, i)));
 }
 
 /* Snell's law with n' on the viewer's side, whichever that is. What stays on the viewer's side of the smooth surface is turned over. */
-STAGE static void bend(const group *restrict g, ways *restrict y)
+STAGE static void bend(const hit_group *restrict g, ways *restrict y)
 {
     for (int i = 0; i < g->n; i++) {
         bs_vec3 s = lane_unit(lane_get(&g->x.s, i)), n = lane_get(&g->n_bump, i), smooth = lane_get(&g->n_smooth, i);
@@ -71,7 +71,7 @@ static double cross(const scene *sc, int id, bool out, media *in, int i)
 {
     const double own = sc->material[sc->object[id].material].ior;
     int n = in->n[i], at = n - 1;
-    if (!shape_has_inside(&sc->object[id].shape_said))
+    if (!shape_has_inside(&sc->object[id].shape_spec))
         return 1;
     if (!out) {
         const double around = n ? sc->material[sc->object[in->id[n - 1][i]].material].ior : 1;
@@ -119,10 +119,10 @@ static bool is_zero(bs_vec3 w) { return !(w.x > 0 || w.y > 0 || w.z > 0); }
 
 /* Lane i of the group goes on in direction s. For other things it starts at r + s t0, the shifted place; for its own smooth surface, where it
  * has met that. */
-static void send(const group *g, int i, int id, real t0, bs_vec3 s, bs_vec3 weight, const media *in, int j, bounce *b)
+static void send(const hit_group *g, int i, int id, real t0, bs_vec3 s, bs_vec3 weight, const media *in, int j, ray_queue *b)
 {
     const int to = b->n++;
-    b->lane[to] = group_place(g, i);
+    b->lane[to] = hit_group_place(g, i);
     lane_set(&b->weight, to, weight);
     lane_set(&b->x.r, to, lane_at(&g->x, i, t0));
     lane_set(&b->x.s, to, s);
@@ -141,7 +141,7 @@ STAGE static void through_plain(int n, real kr, real kg, real kb, vec3s *restric
     }
 }
 
-STAGE static void through_pattern(const group *restrict g, real filter, real transmit, vec3s *restrict w)
+STAGE static void through_pattern(const hit_group *restrict g, real filter, real transmit, vec3s *restrict w)
 {
     for (int i = 0; i < g->n; i++) {
         w->x[i] = g->color.x[i] * filter + transmit;
@@ -154,12 +154,12 @@ static void send_clear(const tracer *k, int id, workspace *v, ways *y)
 {
     const scene *sc = k->scene;
     const material *m = &sc->material[sc->object[id].material];
-    const group *g = &v->g;
+    const hit_group *g = &v->g;
     const bs_vec3 mirror_weight = weight_of(m->reflection), one = {1, 1, 1};
     const media *before = v->of ? &v->of->in : NULL;
     media in;
     for (int i = 0; i < g->n; i++) {
-        copy_media(before, group_place(g, i), &in, i);
+        copy_media(before, hit_group_place(g, i), &in, i);
         /* what has been entered is left, as in POV-Ray, also through a gap between rough parts; the eye may be in what it has not entered */
         bool out = is_in(&in, i, id) || bs_dot(lane_get(&g->x.s, i), lane_get(&g->n_smooth, i)) > 0;
         y->ratio[i] = (real)cross(sc, id, out, &in, i);
@@ -174,7 +174,7 @@ static void send_clear(const tracer *k, int id, workspace *v, ways *y)
         bs_vec3 through = lane_get(&y->through, i);
         const bool total = y->ratio[i] != 1 && y->total[i] && !is_zero(through);
         if (total)
-            send(g, i, id, g->t[i] + g->tau[i], lane_get(&y->mirrored, i), one, before, group_place(g, i), &v->refracted);
+            send(g, i, id, g->t[i] + g->tau[i], lane_get(&y->mirrored, i), one, before, hit_group_place(g, i), &v->refracted);
         else if (is_zero(through))
             ;
         else if (y->ratio[i] == 1) /* the same ray: what is before the surface it has passed already */
@@ -182,14 +182,14 @@ static void send_clear(const tracer *k, int id, workspace *v, ways *y)
         else
             send(g, i, id, g->t[i] + g->tau[i], lane_get(&y->bent, i), through, &in, i, &v->refracted);
         if (!total && !is_zero(mirror_weight))
-            send(g, i, id, g->t[i] + g->tau[i], lane_get(&y->mirrored, i), mirror_weight, before, group_place(g, i), &v->reflected);
+            send(g, i, id, g->t[i] + g->tau[i], lane_get(&y->mirrored, i), mirror_weight, before, hit_group_place(g, i), &v->reflected);
     }
 }
 
 void secondary_send(const tracer *k, int id, workspace *v)
 {
     const material *m = &k->scene->material[k->scene->object[id].material];
-    const group *g = &v->g;
+    const hit_group *g = &v->g;
     ways y;
     if (v->left == 0 || !material_sends(m))
         return;
@@ -199,12 +199,12 @@ void secondary_send(const tracer *k, int id, workspace *v)
         return;
     }
     for (int i = 0; i < g->n; i++)
-        send(g, i, id, g->t[i] + g->tau[i], lane_get(&y.mirrored, i), weight_of(m->reflection), v->of ? &v->of->in : NULL, group_place(g, i), &v->reflected);
+        send(g, i, id, g->t[i] + g->tau[i], lane_get(&y.mirrored, i), weight_of(m->reflection), v->of ? &v->of->in : NULL, hit_group_place(g, i), &v->reflected);
 }
 
 /* ---- following ---- */
 
-static void add_light(const bounce *b, const vec3s *from, vec3s *to)
+static void add_light(const ray_queue *b, const vec3s *from, vec3s *to)
 {
     for (int i = 0; i < b->n; i++) {
         const int at = b->lane[i];
@@ -215,7 +215,7 @@ static void add_light(const bounce *b, const vec3s *from, vec3s *to)
 }
 
 /* What goes straight on of b becomes b. */
-static void go_on(const bounce *on, bounce *b)
+static void go_on(const ray_queue *on, ray_queue *b)
 {
     int32_t lane[LANES];
     vec3s weight;
@@ -232,7 +232,7 @@ static void go_on(const bounce *on, bounce *b)
 
 /* Trace a wave that `left` more may follow. A ray that goes straight on through a surface is none more, as in POV-Ray; so it is
  * traced in the same workspace, in a loop. */
-static void follow(const tracer *k, bounce *b, int left, workspace *v)
+static void follow(const tracer *k, ray_queue *b, int left, workspace *v)
 {
     workspace *d = v->deeper;
     tracer inner = *k;

@@ -18,14 +18,14 @@ typedef struct media {
 } media;
 
 /* A wave of secondary rays. */
-typedef struct bounce {
+typedef struct ray_queue {
     int n;
     int32_t lane[LANES]; /* in the wave to whose light they add, */
     vec3s weight;        /* with this weight */
     rays x;              /* from the shifted place r + s t0 */
-    starts from;
+    ray_origins from;
     media in;
-} bounce;
+} ray_queue;
 
 struct tracer;
 struct workspace;

@@ -3,7 +3,7 @@
 #include "math/kmath.h"
 #include "wave/lane.h"
 
-STAGE static void ambient_pattern(group *restrict g, real share)
+STAGE static void ambient_pattern(hit_group *restrict g, real share)
 {
     for (int i = 0; i < g->n; i++) {
         g->rgb.x[i] = share * g->color.x[i];
@@ -12,7 +12,7 @@ STAGE static void ambient_pattern(group *restrict g, real share)
     }
 }
 
-void shade_ambient(group *g, const material *m)
+void shade_ambient(hit_group *g, const material *m)
 {
     const double share = m->ambient * material_opacity(m);
     if (m->pattern) {
@@ -42,23 +42,23 @@ static inline way way_against(const light *l)
 
 /* The place of a light against a lane: L, the unit vector to it, and n' on the viewer's side. Returns g->lit, or 0 where
  * the smooth surface lies between the light and the viewer. */
-static inline real facing(const group *g, int i, way to, bs_vec3 *L, bs_vec3 *n)
+static inline real facing(const hit_group *g, int i, way to, bs_vec3 *L, bs_vec3 *n)
 {
     bs_vec3 p = lane_at(&g->x, i, g->t[i]);
     bs_vec3 d = {to.at.x - to.near * p.x, to.at.y - to.near * p.y, to.at.z - to.near * p.z};
-    bs_vec3 smooth = lane_get(&g->n_smooth, i), bump = lane_get(&g->n_bump, i);
+    bs_vec3 smooth = lane_get(&g->n_smooth, i), bumped = lane_get(&g->n_bump, i);
     real lit = g->lit[i]; /* read in any case: a reading that depends is a branch */
     real side = bs_dot(smooth, lane_get(&g->x.s, i)) < 0 ? R(1) : R(-1);
     *L = lane_unit(d);
-    n->x = side * bump.x;
-    n->y = side * bump.y;
-    n->z = side * bump.z;
+    n->x = side * bumped.x;
+    n->y = side * bumped.y;
+    n->z = side * bumped.z;
     return side * bs_dot(smooth, d) > 0 ? lit : 0;
 }
 
 /* Call it with constants: a choice in the loop would keep it from being vectorised. `own`: times a colour for each lane, which with a
  * pattern is all, as the material's own is 1 then. */
-static inline void diffuse(group *restrict g, const material *m, const light *l, const way to, bool own, const vec3s *color)
+static inline void diffuse(hit_group *restrict g, const material *m, const light *l, const way to, bool own, const vec3s *color)
 {
     const double share = m->diffuse * material_opacity(m);
     const real kr = (real)(share * m->color.x * l->color.x), kg = (real)(share * m->color.y * l->color.y),
@@ -73,10 +73,10 @@ static inline void diffuse(group *restrict g, const material *m, const light *l,
     }
 }
 
-STAGE static void diffuse_to(group *g, const material *m, const light *l) { diffuse(g, m, l, way_to(l), false, NULL); }
-STAGE static void diffuse_against(group *g, const material *m, const light *l) { diffuse(g, m, l, way_against(l), false, NULL); }
-STAGE static void diffuse_color_to(group *g, const material *m, const light *l, const vec3s *c) { diffuse(g, m, l, way_to(l), true, c); }
-STAGE static void diffuse_color_against(group *g, const material *m, const light *l, const vec3s *c)
+STAGE static void diffuse_to(hit_group *g, const material *m, const light *l) { diffuse(g, m, l, way_to(l), false, NULL); }
+STAGE static void diffuse_against(hit_group *g, const material *m, const light *l) { diffuse(g, m, l, way_against(l), false, NULL); }
+STAGE static void diffuse_color_to(hit_group *g, const material *m, const light *l, const vec3s *c) { diffuse(g, m, l, way_to(l), true, c); }
+STAGE static void diffuse_color_against(hit_group *g, const material *m, const light *l, const vec3s *c)
 {
     diffuse(g, m, l, way_against(l), true, c);
 }
@@ -90,7 +90,7 @@ STAGE static void product(int n, const vec3s *restrict a, const vec3s *restrict 
     }
 }
 
-static void shade_diffuse(group *g, const material *m, const light *l, bool tinted)
+static void shade_diffuse(hit_group *g, const material *m, const light *l, bool tinted)
 {
     const bool along = l->kind == LIGHT_PARALLEL;
     const vec3s *color = m->pattern ? &g->color : &g->tint;
@@ -106,7 +106,7 @@ static void shade_diffuse(group *g, const material *m, const light *l, bool tint
 }
 
 /* Phong's highlight: the mirrored view against the light. */
-static inline void phong(const group *restrict g, const way to, double *restrict c, real *restrict lit)
+static inline void phong(const hit_group *restrict g, const way to, double *restrict c, real *restrict lit)
 {
     for (int i = 0; i < g->n; i++) {
         bs_vec3 L, n, s = lane_unit(lane_get(&g->x.s, i));
@@ -115,13 +115,13 @@ static inline void phong(const group *restrict g, const way to, double *restrict
     }
 }
 
-STAGE static void phong_to(const group *g, const light *l, double *c, real *lit) { phong(g, way_to(l), c, lit); }
-STAGE static void phong_against(const group *g, const light *l, double *c, real *lit) { phong(g, way_against(l), c, lit); }
+STAGE static void phong_to(const hit_group *g, const light *l, double *c, real *lit) { phong(g, way_to(l), c, lit); }
+STAGE static void phong_against(const hit_group *g, const light *l, double *c, real *lit) { phong(g, way_against(l), c, lit); }
 
 /* Blinn's: the half-way vector between light and viewer, h = L - s, against the normal. |h|^2 = 2 - 2 s.L and
  * n.h = n.L - n.s have no digits left where L is near s: the light is behind the surface. There they come from h itself,
  * so that c is a cosine, no more than 1, and its power stays finite. */
-static inline void blinn(const group *restrict g, const way to, double *restrict c, real *restrict lit)
+static inline void blinn(const hit_group *restrict g, const way to, double *restrict c, real *restrict lit)
 {
     for (int i = 0; i < g->n; i++) {
         bs_vec3 L, n, s = lane_unit(lane_get(&g->x.s, i));
@@ -136,8 +136,8 @@ static inline void blinn(const group *restrict g, const way to, double *restrict
     }
 }
 
-STAGE static void blinn_to(const group *g, const light *l, double *c, real *lit) { blinn(g, way_to(l), c, lit); }
-STAGE static void blinn_against(const group *g, const light *l, double *c, real *lit) { blinn(g, way_against(l), c, lit); }
+STAGE static void blinn_to(const hit_group *g, const light *l, double *c, real *lit) { blinn(g, way_to(l), c, lit); }
+STAGE static void blinn_against(const hit_group *g, const light *l, double *c, real *lit) { blinn(g, way_against(l), c, lit); }
 
 /* c to a power, in a loop of its own: mixed with float it would not be vectorised. log 0 is -inf, and its exp 0. */
 STAGE static void raise(int n, double *c, double power)
@@ -146,7 +146,7 @@ STAGE static void raise(int n, double *c, double power)
         c[i] = km_exp(power * km_log(c[i]));
 }
 
-STAGE static void highlight_plain(group *restrict g, real kr, real kg, real kb, const double *restrict c, const real *restrict lit)
+STAGE static void highlight_plain(hit_group *restrict g, real kr, real kg, real kb, const double *restrict c, const real *restrict lit)
 {
     for (int i = 0; i < g->n; i++) {
         real x = lit[i] * (real)c[i];
@@ -156,7 +156,7 @@ STAGE static void highlight_plain(group *restrict g, real kr, real kg, real kb, 
     }
 }
 
-STAGE static void highlight_tinted(group *restrict g, real kr, real kg, real kb, const double *restrict c, const real *restrict lit)
+STAGE static void highlight_tinted(hit_group *restrict g, real kr, real kg, real kb, const double *restrict c, const real *restrict lit)
 {
     for (int i = 0; i < g->n; i++) {
         real x = lit[i] * (real)c[i];
@@ -166,13 +166,13 @@ STAGE static void highlight_tinted(group *restrict g, real kr, real kg, real kb,
     }
 }
 
-static void add_highlight(group *g, const light *l, bool tinted, double share, const double *c, const real *lit)
+static void add_highlight(hit_group *g, const light *l, bool tinted, double share, const double *c, const real *lit)
 {
     (tinted ? highlight_tinted : highlight_plain)(g, (real)(share * l->color.x), (real)(share * l->color.y), (real)(share * l->color.z),
                                                   c, lit);
 }
 
-void shade_light(group *g, const material *m, const light *l, bool tinted)
+void shade_light(hit_group *g, const material *m, const light *l, bool tinted)
 {
     const bool along = l->kind == LIGHT_PARALLEL;
     double c[LANES];

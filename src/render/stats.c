@@ -32,8 +32,8 @@ void stats_add(stats *sum, const stats *part)
     sum->rays += part->rays;
     sum->shadow_rays += part->shadow_rays;
     sum->secondary_rays += part->secondary_rays;
-    sum->heights += part->heights;
-    sum->displaced.heights += part->displaced.heights;
+    sum->evaluations += part->evaluations;
+    sum->displaced.evaluations += part->displaced.evaluations;
     sum->displaced.uncertain += part->displaced.uncertain;
     sum->bumped += part->bumped;
     sum->fell_back += part->fell_back;

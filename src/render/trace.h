@@ -30,16 +30,16 @@ typedef struct samples {
 typedef struct workspace {
     rays x; /* the wave */
     hits h;
-    group g;
+    hit_group g;
     samples out;
     real (*visibility)[LANES]; /* for each light of the scene */
     stats stats;
-    struct meetings *meetings; /* of a scene with many objects (crowd.h); else NULL; shared by the chain of workspaces */
+    struct candidates *candidates; /* of a scene with many objects (crowd.h); else NULL; shared by the chain of workspaces */
 
     /* secondary rays (secondary.h) */
-    const bounce *of; /* what the rays x are; NULL: the camera's */
+    const ray_queue *of; /* what the rays x are; NULL: the camera's */
     int left;         /* how many rays may still follow these */
-    bounce reflected, refracted, straight;
+    ray_queue reflected, refracted, straight;
     struct workspace *deeper; /* for the waves that follow this one; NULL: none does */
 } workspace;
 
@@ -56,6 +56,6 @@ int32_t trace_nearest(const tracer *k, int n, workspace *v);
 void trace_group(const tracer *k, int id, workspace *v);
 
 /* The nearest hits with object `id`, smooth or rough as it is taken, into h. from: of rays that have left a surface, or NULL. */
-void trace_hit(const tracer *k, int32_t id, int n, const rays *x, const starts *from, hits *h, stats *st);
+void trace_hit(const tracer *k, int32_t id, int n, const rays *x, const ray_origins *from, hits *h, stats *st);
 
 #endif

@@ -11,16 +11,16 @@ typedef struct segments {
     int n;
     int32_t lane[LANES];
     rays x;
-    starts from;
+    ray_origins from;
     hits h;
     int32_t part[LANES];
     real u[LANES], w[LANES];
     vec3s color;
 } segments;
 
-void filter_begin(group *g) { vec3s_fill(&g->tint, g->n, 1, 1, 1); }
+void transmittance_begin(hit_group *g) { vec3s_fill(&g->tint, g->n, 1, 1, 1); }
 
-static void begin(const group *g, int id, bool own, segments *a)
+static void begin(const hit_group *g, int id, bool own, segments *a)
 {
     a->n = 0;
     for (int i = 0; i < g->n; i++) {
@@ -56,7 +56,7 @@ static void cross(int id, bool rough, segments *a)
     a->n = n;
 }
 
-static void tint(const material *m, const segments *a, group *g)
+static void tint(const material *m, const segments *a, hit_group *g)
 {
     const real filter = (real)m->filter, transmit = (real)m->transmit;
     const bs_vec3 plain = {(real)m->color.x, (real)m->color.y, (real)m->color.z};
@@ -71,7 +71,7 @@ static void tint(const material *m, const segments *a, group *g)
     }
 }
 
-void filter_light(const tracer *k, int id, bool own, group *g, stats *st)
+void transmittance_light(const tracer *k, int id, bool own, hit_group *g, stats *st)
 {
     const object *o = &k->scene->object[id];
     const material *m = &k->scene->material[o->material];
@@ -85,9 +85,9 @@ void filter_light(const tracer *k, int id, bool own, group *g, stats *st)
         }
         trace_hit(k, id, a.n, &a.x, &a.from, &a.h, st);
         memcpy(a.part, a.h.part, sizeof a.part);
-        o->shape->is->locate(o->shape, a.n, &a.x, a.h.t, a.part, a.u, a.w);
+        o->shape->ops->locate(o->shape, a.n, &a.x, a.h.t, a.part, a.u, a.w);
         if (o->color)
-            o->color->is->eval(o->color, a.n, a.u, a.w, &a.color);
+            o->color->ops->eval(o->color, a.n, a.u, a.w, &a.color);
         tint(m, &a, g);
         cross(id, k->displaced && o->bump, &a);
     }

@@ -27,14 +27,14 @@ typedef struct light {
 light light_sample(const light *l, int k, real *share);
 
 /* sum += what of a sample is lit. */
-void light_gather(const group *g, real share, real *sum);
-void light_gather_tint(const group *g, real share, vec3s *sum); /* in its tint */
+void light_gather(const hit_group *g, real share, real *sum);
+void light_gather_tint(const hit_group *g, real share, vec3s *sum); /* in its tint */
 
 /* The segments r + s t, 0 < t < 1, from the lanes' smooth hits (or from the shifted ones, r + s (t_hit + tau)) to the light. */
-void light_aim(const light *l, group *g, bool shifted);
+void light_aim(const light *l, hit_group *g, bool shifted);
 
 /* g->lit = the share of the light's colour that gets to p1, by direction and distance, of what was lit. */
-void light_fade(const light *l, group *g);
+void light_fade(const light *l, hit_group *g);
 
 /* For exports: the ends of a light's area as seen from p; how many there are. */
 int light_corners(const light *l);

@@ -16,7 +16,7 @@ typedef struct box {
     double lo[3], hi[3];
 } box;
 
-struct crowd {
+struct object_bvh {
     int objects, bounded;
     int32_t *object; /* of each box; then those that have none, as they have no end */
     box *box;
@@ -24,7 +24,7 @@ struct crowd {
     bvh *tree;       /* over them */
 };
 
-struct meetings {
+struct candidates {
     int objects;
     uint64_t *met;           /* a bit for each object */
     uint64_t (*lane)[WORDS]; /* and for each ray of those objects */
@@ -35,7 +35,7 @@ struct meetings {
 static box box_of(const scene *s, const object *o)
 {
     box b;
-    o->shape->is->box(o->shape, b.lo, b.hi);
+    o->shape->ops->box(o->shape, b.lo, b.hi);
     const double high = s->displaced && o->bump ? fmax(fabs((double)o->bump->Pmin), fabs((double)o->bump->Pmax)) : 0;
     for (int k = 0; k < 3; k++) {
         b.lo[k] -= high;
@@ -52,7 +52,7 @@ static bool has_end(const box *b)
     return ends;
 }
 
-static void measure(crowd *c)
+static void measure(object_bvh *c)
 {
     box all = c->box[0];
     for (int i = 1; i < c->bounded; i++)
@@ -63,7 +63,7 @@ static void measure(crowd *c)
     c->space = bvh_space_about(all.lo, all.hi);
 }
 
-static bvh *tree_of(const crowd *c)
+static bvh *tree_of(const object_bvh *c)
 {
     bvh_box *b = malloc(sizeof *b * (size_t)c->bounded);
     for (int i = 0; b && i < c->bounded; i++)
@@ -73,10 +73,10 @@ static bvh *tree_of(const crowd *c)
     return tree;
 }
 
-crowd *crowd_new(const scene *s, bool *good)
+object_bvh *object_bvh_new(const scene *s, bool *good)
 {
     const size_t n = (size_t)s->objects;
-    crowd *c = calloc(1, sizeof *c);
+    object_bvh *c = calloc(1, sizeof *c);
     *good = c && (c->object = malloc(sizeof *c->object * n)) && (c->box = malloc(sizeof *c->box * n));
     for (int i = 0, endless = 0; *good && i < s->objects; i++) {
         const box b = box_of(s, &s->object[i]);
@@ -93,11 +93,11 @@ crowd *crowd_new(const scene *s, bool *good)
     }
     if (c && c->tree)
         return c;
-    crowd_free(c);
+    object_bvh_free(c);
     return NULL;
 }
 
-void crowd_free(crowd *c)
+void object_bvh_free(object_bvh *c)
 {
     if (!c)
         return;
@@ -111,9 +111,9 @@ void crowd_free(crowd *c)
 
 static size_t words_for(int objects) { return ((size_t)objects + BITS - 1) / BITS; }
 
-meetings *meetings_new(const crowd *c)
+candidates *candidates_new(const object_bvh *c)
 {
-    meetings *m = calloc(1, sizeof *m);
+    candidates *m = calloc(1, sizeof *m);
     if (!m)
         return NULL;
     m->objects = c->objects;
@@ -121,11 +121,11 @@ meetings *meetings_new(const crowd *c)
     m->lane = calloc((size_t)c->objects, sizeof *m->lane);
     if (m->met && m->lane)
         return m;
-    meetings_free(m);
+    candidates_free(m);
     return NULL;
 }
 
-void meetings_free(meetings *m)
+void candidates_free(candidates *m)
 {
     if (!m)
         return;
@@ -134,23 +134,23 @@ void meetings_free(meetings *m)
     free(m);
 }
 
-static void note(meetings *m, int32_t id, int lane)
+static void note(candidates *m, int32_t id, int lane)
 {
     m->met[id / BITS] |= (uint64_t)1 << (id % BITS);
     m->lane[id][lane / BITS] |= (uint64_t)1 << (lane % BITS);
 }
 
-static void clear(meetings *m)
+static void clear(candidates *m)
 {
-    for (int32_t k = meetings_next(m, -1); k >= 0; k = meetings_next(m, k))
+    for (int32_t k = candidates_next(m, -1); k >= 0; k = candidates_next(m, k))
         memset(m->lane[k], 0, sizeof m->lane[k]);
     memset(m->met, 0, words_for(m->objects) * sizeof *m->met);
 }
 
 /* A ray on its way through the hierarchy. */
 typedef struct passage {
-    const crowd *c;
-    meetings *m;
+    const object_bvh *c;
+    candidates *m;
     int lane;
     double r[3], s[3], end, size; /* size: of r's coordinates */
 } passage;
@@ -180,7 +180,7 @@ static void visit(void *user, int32_t index)
         note(p->m, p->c->object[index], p->lane);
 }
 
-void crowd_meet(const crowd *c, int n, const rays *x, const real *end, const int32_t *own, meetings *m)
+void object_bvh_find(const object_bvh *c, int n, const rays *x, const real *end, const int32_t *own, candidates *m)
 {
     clear(m);
     for (int k = c->bounded; k < c->objects; k++)
@@ -199,7 +199,7 @@ void crowd_meet(const crowd *c, int n, const rays *x, const real *end, const int
     }
 }
 
-int32_t meetings_next(const meetings *m, int32_t after)
+int32_t candidates_next(const candidates *m, int32_t after)
 {
     for (int32_t k = after + 1; k < m->objects; k++) {
         const uint64_t rest = m->met[k / BITS] >> (k % BITS);
@@ -211,7 +211,7 @@ int32_t meetings_next(const meetings *m, int32_t after)
     return -1;
 }
 
-int meetings_of(const meetings *m, int32_t id, int32_t *lane)
+int candidates_rays(const candidates *m, int32_t id, int32_t *lane)
 {
     int n = 0;
     for (int i = 0; i < LANES; i++) { /* without a branch */

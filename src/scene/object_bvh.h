@@ -10,25 +10,25 @@
 #include "wave/wave.h"
 
 struct scene;
-typedef struct crowd crowd;
+typedef struct object_bvh object_bvh;
 
 /* The boxes of the scene's objects, with their heights where they are displaced. NULL with *good: so few that trying all is faster. NULL
  * without: out of memory. */
-crowd *crowd_new(const struct scene *s, bool *good);
-void crowd_free(crowd *c);
+object_bvh *object_bvh_new(const struct scene *s, bool *good);
+void object_bvh_free(object_bvh *c);
 
 /* For each object the rays of a wave that may meet it. One for each thread. */
-typedef struct meetings meetings;
-meetings *meetings_new(const crowd *c); /* NULL: out of memory */
-void meetings_free(meetings *m);
+typedef struct candidates candidates;
+candidates *candidates_new(const object_bvh *c); /* NULL: out of memory */
+void candidates_free(candidates *m);
 
 /* Find them, for n rays r + s t, 0 < t < end[i]. own: the object that each ray has left, which is told whatever its box; NULL: none. */
-void crowd_meet(const crowd *c, int n, const rays *x, const real *end, const int32_t *own, meetings *m);
+void object_bvh_find(const object_bvh *c, int n, const rays *x, const real *end, const int32_t *own, candidates *m);
 
 /* The next object after `after` (-1: the first) that some ray may meet; -1: there is none. */
-int32_t meetings_next(const meetings *m, int32_t after);
+int32_t candidates_next(const candidates *m, int32_t after);
 
 /* The rays, in order, that may meet it, and how many. */
-int meetings_of(const meetings *m, int32_t id, int32_t *lane);
+int candidates_rays(const candidates *m, int32_t id, int32_t *lane);
 
 #endif

@@ -80,7 +80,7 @@ typedef enum shape_kind {
     SHAPE_CYLINDER,
     SHAPE_CONE,
     SHAPE_TORUS,
-    SHAPE_SEARCHED, /* parametric, patches */
+    SHAPE_PATCH, /* parametric, patches */
     SHAPE_MESH,
 } shape_kind;
 
@@ -98,7 +98,7 @@ typedef struct shape_spec {
 /* Whether light that goes through it goes into it. An endless plane has an inside, the side away from n. */
 static inline bool shape_has_inside(const shape_spec *f)
 {
-    return f->kind != SHAPE_RECTANGLE && f->kind != SHAPE_DISC && f->kind != SHAPE_SEARCHED && f->kind != SHAPE_MESH && !f->open;
+    return f->kind != SHAPE_RECTANGLE && f->kind != SHAPE_DISC && f->kind != SHAPE_PATCH && f->kind != SHAPE_MESH && !f->open;
 }
 
 /* A bump likewise: a function's text and scale, or where a map's samples lie (how many: map_note). */
@@ -115,12 +115,12 @@ typedef struct object {
     surface *centred;     /* what a moved shape is the image of: the same about the origin */
     const char *copy_of;  /* the object whose `own` it is; NULL: its own */
     bool moved;           /* it has a transform, or what it copies has: `placed` */
-    bool shares_bump;     /* bump, the texts of bump_said and map are another's */
+    bool shares_bump;     /* bump, the texts of bump_spec and map are another's */
     affine placed;
-    shape_spec shape_said; /* before the transform */
-    bump_spec bump_said;
-    perturb *bump; /* NULL: smooth */
-    pigment *color;          /* NULL: the material's */
+    shape_spec shape_spec; /* before the transform */
+    bump_spec bump_spec;
+    bump *bump; /* NULL: smooth */
+    color_texture *color;          /* NULL: the material's */
     map_layout color_layout; /* how its image, or its fields, lie on (u,w) */
     int material;
     map_note map;
@@ -148,7 +148,7 @@ typedef struct scene {
     int materials;
     object *object;
     int objects;
-    struct crowd *crowd; /* where there are many (crowd.h); NULL: few */
+    struct object_bvh *object_bvh; /* where there are many (crowd.h); NULL: few */
 } scene;
 
 /* Whether true hits of bumped objects are asked for (displace.h). */
@@ -159,7 +159,7 @@ enum { SCENE_MAX_SIDE = 32768, SCENE_MAX_ITEMS = 4096, SCENE_MAX_AA = 16, SCENE_
 
 /* Read the scene in the file at `path`, with `sets` changes of the form PATH=VALUE made to it first. NULL, and every
  * error that can be told at once in *e, as `file:line:col: ...`, the line and a caret. w: sees how large files come in; may be NULL. */
-scene *scene_read(const char *path, int sets, char *const *set, const watch *w, errors *e);
+scene *scene_read(const char *path, int sets, char *const *set, const progress *w, errors *e);
 
 void scene_free(scene *s);
 

@@ -10,26 +10,26 @@
 #include "image/image.h"
 #include "texture/table.h"
 
-typedef struct perturb perturb;
+typedef struct bump bump;
 
-typedef struct perturb_methods {
+typedef struct bump_ops {
     const char *kind; /* as in the scene file: "map" or "function" */
 
     /* P at (u,w); order 1: also Pu and Pw; order 2: also Puu, Puw and Pww. A stage: n lanes, no allocation, reentrant. */
-    void (*eval)(const perturb *p, int n, const real *u, const real *w, int order, heights *h);
+    void (*eval)(const bump *p, int n, const real *u, const real *w, int order, bump_values *h);
 
     /* P, Pu and Pw at up to EXPR_BATCH places, in double: the rough surface as it is between any two places, so that a map's slopes are
      * those of its bilinear cells. */
-    void (*jets)(const perturb *p, int n, const double *u, const double *w, expr_jets *out);
+    void (*jets)(const bump *p, int n, const double *u, const double *w, expr_jets *out);
 
-    /* What these can be over a box of (u,w): Lipschitz bounds, as expr_range_gradient's. */
-    void (*bound)(const perturb *p, const double u[2], const double w[2], expr_bounds *out);
+    /* What these can be over a box of (u,w): Lipschitz bounds, as expr_bound_gradient's. */
+    void (*bound)(const bump *p, const double u[2], const double w[2], expr_bounds *out);
 
-    void (*free)(perturb *p);
-} perturb_methods;
+    void (*free)(bump *p);
+} bump_ops;
 
-struct perturb {
-    const perturb_methods *is;
+struct bump {
+    const bump_ops *ops;
     real Pmin, Pmax; /* bounds of P, for the slab; infinite where none is known */
 
     /* Lipschitz constants of P as it is looked up: for any two places on the surface
@@ -44,16 +44,16 @@ struct perturb {
  * partials interpolated bilinearly. Beyond the outermost samples of a clamped map P is level, and its partials that way are 0.
  * u goes along the rows from left to right, w down the columns. `samples` is only read here. NULL: out of memory, fewer than
  * 2 x 2 samples, or more than 2^29 (a mirrored map counts four times). */
-perturb *perturb_map(const image *samples, const map_layout *layout);
+bump *bump_map_new(const image *samples, const map_layout *layout);
 
 /* P = scale f(u,w), with exact partials. Owns f, also on failure. The bounds (Pmin to Pw_max) hold for u and w in
  * the extent given (infinite ends allowed). NULL: out of memory. */
-perturb *perturb_function(expr *f, double scale, const double u[2], const double w[2]);
+bump *bump_function_new(expr *f, double scale, const double u[2], const double w[2]);
 
-void perturb_free(perturb *p);
+void bump_free(bump *p);
 
 /* For the constructors: a bound of slope |scale|, rounded up. */
-static inline real perturb_slope(double slope, double scale)
+static inline real bump_slope(double slope, double scale)
 {
     double x = scale == 0 ? 0 : slope * fabs(scale) * (1 + 1e-15); /* more than the roundings that led here */
 #ifdef KAGE_DOUBLE

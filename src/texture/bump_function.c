@@ -6,7 +6,7 @@
 #include <stdlib.h>
 
 typedef struct function {
-    perturb base;
+    bump base;
     expr *f;
     double scale;
 } function;
@@ -17,7 +17,7 @@ static void function_copy(int n, double scale, const double *restrict from, real
         to[i] = (real)(scale * from[i]);
 }
 
-static void function_eval(const perturb *base, int n, const real *u, const real *w, int order, heights *h)
+static void function_eval(const bump *base, int n, const real *u, const real *w, int order, bump_values *h)
 {
     const function *p = (const function *)base;
     for (int at = 0; at < n; at += EXPR_BATCH) {
@@ -42,7 +42,7 @@ static void function_eval(const perturb *base, int n, const real *u, const real 
     }
 }
 
-static void function_jets(const perturb *base, int n, const double *u, const double *w, expr_jets *out)
+static void function_jets(const bump *base, int n, const double *u, const double *w, expr_jets *out)
 {
     const function *p = (const function *)base;
     const double scale = p->scale;
@@ -62,22 +62,22 @@ static void scaled(double scale, double range[2])
     range[1] = greater(a, b);
 }
 
-static void function_bound(const perturb *base, const double u[2], const double w[2], expr_bounds *out)
+static void function_bound(const bump *base, const double u[2], const double w[2], expr_bounds *out)
 {
     const function *p = (const function *)base;
-    expr_range_gradient(p->f, u[0], u[1], w[0], w[1], out);
+    expr_bound_gradient(p->f, u[0], u[1], w[0], w[1], out);
     scaled(p->scale, out->v);
     scaled(p->scale, out->u);
     scaled(p->scale, out->w);
 }
 
-static void function_free(perturb *base)
+static void function_free(bump *base)
 {
     expr_free(((function *)base)->f);
     free(base);
 }
 
-static const perturb_methods function_methods = {"function", function_eval, function_jets, function_bound, function_free};
+static const bump_ops function_methods = {"function", function_eval, function_jets, function_bound, function_free};
 
 static double widest(const double range[2], double so_far) { return greater(so_far, greater(fabs(range[0]), fabs(range[1]))); }
 
@@ -100,7 +100,7 @@ static void function_bounds(const expr *f, const double u[2], const double w[2],
     for (int j = 0; j < nw; j++)
         for (int i = 0; i < nu; i++) {
             expr_bounds b;
-            expr_range_gradient(f, part(u, i, nu), part(u, i + 1, nu), part(w, j, nw), part(w, j + 1, nw), &b);
+            expr_bound_gradient(f, part(u, i, nu), part(u, i + 1, nu), part(w, j, nw), part(w, j + 1, nw), &b);
             P[0] = lesser(P[0], b.v[0]);
             P[1] = greater(P[1], b.v[1]);
             slope[0] = widest(b.u, slope[0]);
@@ -108,7 +108,7 @@ static void function_bounds(const expr *f, const double u[2], const double w[2],
         }
 }
 
-perturb *perturb_function(expr *f, double scale, const double u[2], const double w[2])
+bump *bump_function_new(expr *f, double scale, const double u[2], const double w[2])
 {
     function *p = calloc(1, sizeof *p);
     if (!p) {
@@ -117,13 +117,13 @@ perturb *perturb_function(expr *f, double scale, const double u[2], const double
     }
     double P[2], slope[2];
     function_bounds(f, u, w, P, slope);
-    p->base.is = &function_methods;
+    p->base.ops = &function_methods;
     if (scale != 0) { /* 0 times an infinite bound is no bound */
         p->base.Pmin = (real)(scale < 0 ? scale * P[1] : scale * P[0]);
         p->base.Pmax = (real)(scale < 0 ? scale * P[0] : scale * P[1]);
     }
-    p->base.Pu_max = perturb_slope(slope[0], scale);
-    p->base.Pw_max = perturb_slope(slope[1], scale);
+    p->base.Pu_max = bump_slope(slope[0], scale);
+    p->base.Pw_max = bump_slope(slope[1], scale);
     p->f = f;
     p->scale = scale;
     return &p->base;

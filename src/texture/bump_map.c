@@ -14,7 +14,7 @@
 enum { P_PU_PW, PUU_PUW_PWW, TABLES };
 
 typedef struct map {
-    perturb base;
+    bump base;
     table_grid grid;
     real *table[TABLES]; /* row 0 at the lowest w, as in the image */
 } map;
@@ -29,7 +29,7 @@ STAGE static void level_beyond(int n, real k, real o, int last, const real *rest
     }
 }
 
-static void clamp_derivatives(const table_grid *g, int n, const real *u, const real *w, int order, heights *h)
+static void clamp_derivatives(const table_grid *g, int n, const real *u, const real *w, int order, bump_values *h)
 {
     real *const along_u[] = {h->Pu, h->Puu, h->Puw}, *const along_w[] = {h->Pw, h->Puw, h->Pww};
     for (int k = 0; k < (order == 2 ? 3 : 1); k++) {
@@ -38,7 +38,7 @@ static void clamp_derivatives(const table_grid *g, int n, const real *u, const r
     }
 }
 
-static void map_eval(const perturb *base, int n, const real *u, const real *w, int order, heights *h)
+static void map_eval(const bump *base, int n, const real *u, const real *w, int order, bump_values *h)
 {
     const map *m = (const map *)base;
     int32_t at[LANES];
@@ -64,7 +64,7 @@ static int cell(double x, int n, int repeat, double *fraction, double *k)
     return i;
 }
 
-static void map_jets(const perturb *base, int n, const double *u, const double *w, expr_jets *out)
+static void map_jets(const bump *base, int n, const double *u, const double *w, expr_jets *out)
 {
     const map *m = (const map *)base;
     const table_grid *g = &m->grid;
@@ -112,7 +112,7 @@ static void widen(double range[2], double x)
 }
 
 /* Over a few cells their samples tell; over many the bounds of the whole are close enough. */
-static void map_bound(const perturb *base, const double u[2], const double w[2], expr_bounds *out)
+static void map_bound(const bump *base, const double u[2], const double w[2], expr_bounds *out)
 {
     enum { FEW = 1024 };
     const map *m = (const map *)base;
@@ -142,7 +142,7 @@ static void map_bound(const perturb *base, const double u[2], const double w[2],
         widen(out->w, 0);
 }
 
-static void map_free(perturb *base)
+static void map_free(bump *base)
 {
     map *m = (map *)base;
     for (int k = 0; k < TABLES; k++)
@@ -150,7 +150,7 @@ static void map_free(perturb *base)
     free(m);
 }
 
-static const perturb_methods map_methods = {"map", map_eval, map_jets, map_bound, map_free};
+static const bump_ops map_methods = {"map", map_eval, map_jets, map_bound, map_free};
 
 /* The tables. ku, kw: samples per u and per w, for the chain rule. */
 static void map_differences(map *m, const image *s, const map_layout *l, double ku, double kw)
@@ -197,17 +197,17 @@ static void map_slopes(map *m)
             du = i < m->grid.columns ? steepest(v, v + next, du) : du;
             dw = j < m->grid.rows ? steepest(v, v + below, dw) : dw;
         }
-    m->base.Pu_max = perturb_slope(du, (double)m->grid.ku); /* as the stages have it */
-    m->base.Pw_max = perturb_slope(dw, (double)m->grid.kw);
+    m->base.Pu_max = bump_slope(du, (double)m->grid.ku); /* as the stages have it */
+    m->base.Pw_max = bump_slope(dw, (double)m->grid.kw);
 }
 
-perturb *perturb_map(const image *samples, const map_layout *l)
+bump *bump_map_new(const image *samples, const map_layout *l)
 {
     table_grid grid;
     map *m = table_lay(&grid, samples->width, samples->height, l) ? calloc(1, sizeof *m) : NULL;
     if (!m)
         return NULL;
-    m->base.is = &map_methods;
+    m->base.ops = &map_methods;
     m->grid = grid;
     for (int k = 0; k < TABLES; k++) {
         m->table[k] = malloc(sizeof(real) * TABLE_VALUES * (size_t)(m->grid.columns + 1) * (size_t)(m->grid.rows + 1));
@@ -222,8 +222,8 @@ perturb *perturb_map(const image *samples, const map_layout *l)
     return &m->base;
 }
 
-void perturb_free(perturb *p)
+void bump_free(bump *p)
 {
     if (p)
-        p->is->free(p);
+        p->ops->free(p);
 }

@@ -5,12 +5,12 @@
 /* ---- checker ---- */
 
 typedef struct checker {
-    pigment base;
+    color_texture base;
     real even[3], odd[3];
     real ku, kw, ou, ow; /* fields per (u,w), and the place of (u,w) = 0 in them */
 } checker;
 
-STAGE static void checker_eval(const pigment *base, int n, const real *restrict u, const real *restrict w, vec3s *restrict color)
+STAGE static void checker_eval(const color_texture *base, int n, const real *restrict u, const real *restrict w, vec3s *restrict color)
 {
     const checker c = *(const checker *)base;
     for (int i = 0; i < n; i++) {
@@ -22,7 +22,7 @@ STAGE static void checker_eval(const pigment *base, int n, const real *restrict 
     }
 }
 
-static const pigment_methods checker_methods = {"checker", checker_eval, NULL};
+static const color_texture_ops checker_methods = {"checker", checker_eval, NULL};
 
 static void store(real to[3], vec3 v)
 {
@@ -31,12 +31,12 @@ static void store(real to[3], vec3 v)
     to[2] = (real)v.z;
 }
 
-pigment *pigment_checker(const vec3 color[2], const double size[2], const double offset[2])
+color_texture *color_checker_new(const vec3 color[2], const double size[2], const double offset[2])
 {
     checker *c = calloc(1, sizeof *c);
     if (!c)
         return NULL;
-    c->base.is = &checker_methods;
+    c->base.ops = &checker_methods;
     store(c->even, color[0]);
     store(c->odd, color[1]);
     c->ku = (real)(1 / size[0]);
@@ -77,12 +77,12 @@ texels *texels_new(const image *m, const map_layout *l)
 void texels_free(texels *t) { free(t); }
 
 typedef struct image_pigment {
-    pigment base;
+    color_texture base;
     const texels *texels;
     table_grid grid;
 } image_pigment;
 
-static void bilinear_eval(const pigment *base, int n, const real *u, const real *w, vec3s *color)
+static void bilinear_eval(const color_texture *base, int n, const real *u, const real *w, vec3s *color)
 {
     const image_pigment *p = (const image_pigment *)base;
     int32_t at[LANES];
@@ -99,7 +99,7 @@ STAGE static void to_corner(int n, real *restrict a)
         a[i] = a[i] < 1 ? 0 : R(1);
 }
 
-static void nearest_eval(const pigment *base, int n, const real *u, const real *w, vec3s *color)
+static void nearest_eval(const color_texture *base, int n, const real *u, const real *w, vec3s *color)
 {
     const image_pigment *p = (const image_pigment *)base;
     int32_t at[LANES];
@@ -110,14 +110,14 @@ static void nearest_eval(const pigment *base, int n, const real *u, const real *
     table_three(&p->grid, p->texels->v, n, at, a, b, color->x, color->y, color->z);
 }
 
-static const pigment_methods bilinear_methods = {"image", bilinear_eval, NULL}, nearest_methods = {"image", nearest_eval, NULL};
+static const color_texture_ops bilinear_methods = {"image", bilinear_eval, NULL}, nearest_methods = {"image", nearest_eval, NULL};
 
-pigment *pigment_image(const texels *t, const map_layout *l, bool nearest)
+color_texture *color_image_new(const texels *t, const map_layout *l, bool nearest)
 {
     image_pigment *p = calloc(1, sizeof *p);
     if (!p)
         return NULL;
-    p->base.is = nearest ? &nearest_methods : &bilinear_methods;
+    p->base.ops = nearest ? &nearest_methods : &bilinear_methods;
     p->texels = t;
     table_lay(&p->grid, t->width, t->height, l);
     if (nearest) { /* half a pixel back: cells begin where their pixels do */
@@ -127,10 +127,10 @@ pigment *pigment_image(const texels *t, const map_layout *l, bool nearest)
     return &p->base;
 }
 
-void pigment_free(pigment *p)
+void color_texture_free(color_texture *p)
 {
-    if (p && p->is->free)
-        p->is->free(p);
+    if (p && p->ops->free)
+        p->ops->free(p);
     else
         free(p);
 }

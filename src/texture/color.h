@@ -6,19 +6,19 @@
 #include "texture/table.h"
 #include "base/vec3.h"
 
-typedef struct pigment pigment;
+typedef struct color_texture color_texture;
 
-typedef struct pigment_methods {
+typedef struct color_texture_ops {
     const char *kind; /* as in the scene file */
 
     /* The linear colour at (u,w). A stage: n lanes, no allocation, reentrant. */
-    void (*eval)(const pigment *p, int n, const real *u, const real *w, vec3s *color);
+    void (*eval)(const color_texture *p, int n, const real *u, const real *w, vec3s *color);
 
-    void (*free)(pigment *p); /* NULL: it owns nothing but itself */
-} pigment_methods;
+    void (*free)(color_texture *p); /* NULL: it owns nothing but itself */
+} color_texture_ops;
 
-struct pigment {
-    const pigment_methods *is;
+struct color_texture {
+    const color_texture_ops *ops;
 };
 
 /* The pixels of an image, ready to be looked up; several pigments can share them. */
@@ -29,11 +29,11 @@ texels *texels_new(const image *rgba, const map_layout *l);
 void texels_free(texels *t);
 
 /* Fields of the two colours in turn, of that size, one beginning at `offset`. NULL: out of memory. */
-pigment *pigment_checker(const vec3 color[2], const double size[2], const double offset[2]);
+color_texture *color_checker_new(const vec3 color[2], const double size[2], const double offset[2]);
 
 /* The image on (u,w) by a layout of the same wrap; the nearest pixel, or bilinear between their middles. The texels must outlive it. */
-pigment *pigment_image(const texels *t, const map_layout *l, bool nearest);
+color_texture *color_image_new(const texels *t, const map_layout *l, bool nearest);
 
-void pigment_free(pigment *p);
+void color_texture_free(color_texture *p);
 
 #endif

@@ -24,71 +24,71 @@ STAGE static void turn(int n, const real *restrict sign, real *restrict x)
 }
 
 typedef struct folded_perturb {
-    perturb base;
-    perturb_methods methods; /* the kind is that of what is folded; without jets and bound, as meshes are no sheets */
-    perturb *of;
+    bump base;
+    bump_ops methods; /* the kind is that of what is folded; without jets and bound, as meshes are no sheets */
+    bump *of;
     ends k;
 } folded_perturb;
 
-static void perturb_eval(const perturb *base, int n, const real *u, const real *w, int order, heights *h)
+static void perturb_eval(const bump *base, int n, const real *u, const real *w, int order, bump_values *h)
 {
     const folded_perturb *f = (const folded_perturb *)base;
     real at[LANES], sign[LANES];
     fold(n, &f->k, u, at, sign);
-    f->of->is->eval(f->of, n, at, w, order, h);
+    f->of->ops->eval(f->of, n, at, w, order, h);
     if (order >= 1)
         turn(n, sign, h->Pu);
     if (order >= 2)
         turn(n, sign, h->Puw);
 }
 
-static void perturb_end(perturb *base)
+static void perturb_end(bump *base)
 {
-    perturb_free(((folded_perturb *)base)->of);
+    bump_free(((folded_perturb *)base)->of);
     free(base);
 }
 
-perturb *perturb_folded(perturb *p, double lo, double hi)
+bump *bump_mirrored_uv(bump *p, double lo, double hi)
 {
     folded_perturb *f = p ? malloc(sizeof *f) : NULL;
     if (!f) {
-        perturb_free(p);
+        bump_free(p);
         return NULL;
     }
-    *f = (folded_perturb){*p, {.kind = p->is->kind, .eval = perturb_eval, .free = perturb_end}, p, {(real)lo, (real)hi}};
-    f->base.is = &f->methods;
+    *f = (folded_perturb){*p, {.kind = p->ops->kind, .eval = perturb_eval, .free = perturb_end}, p, {(real)lo, (real)hi}};
+    f->base.ops = &f->methods;
     return &f->base;
 }
 
 typedef struct folded_pigment {
-    pigment base;
-    pigment_methods methods;
-    pigment *of;
+    color_texture base;
+    color_texture_ops methods;
+    color_texture *of;
     ends k;
 } folded_pigment;
 
-static void pigment_eval(const pigment *base, int n, const real *u, const real *w, vec3s *color)
+static void pigment_eval(const color_texture *base, int n, const real *u, const real *w, vec3s *color)
 {
     const folded_pigment *f = (const folded_pigment *)base;
     real at[LANES], sign[LANES];
     fold(n, &f->k, u, at, sign);
-    f->of->is->eval(f->of, n, at, w, color);
+    f->of->ops->eval(f->of, n, at, w, color);
 }
 
-static void pigment_end(pigment *base)
+static void pigment_end(color_texture *base)
 {
-    pigment_free(((folded_pigment *)base)->of);
+    color_texture_free(((folded_pigment *)base)->of);
     free(base);
 }
 
-pigment *pigment_folded(pigment *p, double lo, double hi)
+color_texture *color_mirrored_uv(color_texture *p, double lo, double hi)
 {
     folded_pigment *f = p ? malloc(sizeof *f) : NULL;
     if (!f) {
-        pigment_free(p);
+        color_texture_free(p);
         return NULL;
     }
-    *f = (folded_pigment){*p, {p->is->kind, pigment_eval, pigment_end}, p, {(real)lo, (real)hi}};
-    f->base.is = &f->methods;
+    *f = (folded_pigment){*p, {p->ops->kind, pigment_eval, pigment_end}, p, {(real)lo, (real)hi}};
+    f->base.ops = &f->methods;
     return &f->base;
 }

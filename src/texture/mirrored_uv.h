@@ -8,7 +8,7 @@
 #include "texture/color.h"
 
 /* Own p, also on failure. NULL: out of memory. */
-perturb *perturb_folded(perturb *p, double lo, double hi);
-pigment *pigment_folded(pigment *p, double lo, double hi);
+bump *bump_mirrored_uv(bump *p, double lo, double hi);
+color_texture *color_mirrored_uv(color_texture *p, double lo, double hi);
 
 #endif

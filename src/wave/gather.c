@@ -8,7 +8,7 @@ STAGE static void fill(int n, real *v, real x)
         v[i] = x;
 }
 
-void wave_start(int n, hits *h)
+void gather_begin(int n, hits *h)
 {
     fill(n, h->t, REAL_FAR);
     for (int i = 0; i < n; i++) {
@@ -17,7 +17,7 @@ void wave_start(int n, hits *h)
     }
 }
 
-STAGE static void start_own(int n, const starts *restrict from, const int32_t *restrict id, vec3s *restrict r)
+STAGE static void start_own(int n, const ray_origins *restrict from, const int32_t *restrict id, vec3s *restrict r)
 {
     for (int i = 0; i < n; i++) {
         int own = (id[i] == from->id[i]) & (id[i] >= 0);
@@ -28,9 +28,9 @@ STAGE static void start_own(int n, const starts *restrict from, const int32_t *r
     }
 }
 
-void wave_start_own(int n, const starts *from, const hits *h, rays *x) { start_own(n, from, h->id, &x->r); }
+void gather_move_origins(int n, const ray_origins *from, const hits *h, rays *x) { start_own(n, from, h->id, &x->r); }
 
-void wave_background(int n, vec3 color, bool layers, int lights, workspace *v)
+void gather_background(int n, vec3 color, bool layers, int lights, workspace *v)
 {
     samples *o = &v->out;
     vec3s_fill(&o->rgb, n, (real)color.x, (real)color.y, (real)color.z);
@@ -49,7 +49,7 @@ void wave_background(int n, vec3 color, bool layers, int lights, workspace *v)
         fill(n, v->visibility[l], 0);
 }
 
-STAGE static void pick(const group *restrict g, const real *restrict from, real *restrict to)
+STAGE static void pick(const hit_group *restrict g, const real *restrict from, real *restrict to)
 {
     if (g->whole) {
         memcpy(to, from, (size_t)g->n * sizeof *to);
@@ -60,7 +60,7 @@ STAGE static void pick(const group *restrict g, const real *restrict from, real 
         to[i] = from[g->lane[i]];
 }
 
-static void pick3(const group *g, const vec3s *from, vec3s *to)
+static void pick3(const hit_group *g, const vec3s *from, vec3s *to)
 {
     pick(g, from->x, to->x);
     pick(g, from->y, to->y);
@@ -76,13 +76,13 @@ static void pick_some(int n, const int32_t *lane, const vec3s *from, vec3s *to)
     }
 }
 
-void wave_pick_rays(int n, const int32_t *lane, const rays *x, rays *to)
+void gather_rays(int n, const int32_t *lane, const rays *x, rays *to)
 {
     pick_some(n, lane, &x->r, &to->r);
     pick_some(n, lane, &x->s, &to->s);
 }
 
-void wave_pick_starts(int n, const int32_t *lane, const starts *from, starts *to)
+void gather_ray_origins(int n, const int32_t *lane, const ray_origins *from, ray_origins *to)
 {
     for (int i = 0; i < n; i++) {
         to->id[i] = from->id[lane[i]];
@@ -99,7 +99,7 @@ STAGE static int count(int n, const int32_t *id, int32_t wanted)
     return m;
 }
 
-int32_t wave_next_group(int n, const rays *x, hits *h, group *g)
+int32_t gather_next_group(int n, const rays *x, hits *h, hit_group *g)
 {
     int first = 0;
     while (first < n && h->id[first] < 0)
@@ -115,16 +115,16 @@ int32_t wave_next_group(int n, const rays *x, hits *h, group *g)
             m += h->id[i] == id;
         }
     for (int i = 0; i < g->n; i++)
-        h->id[group_place(g, i)] = -1;
+        h->id[hit_group_place(g, i)] = -1;
     pick(g, h->t, g->t);
     for (int i = 0; i < g->n; i++)
-        g->part[i] = h->part[group_place(g, i)];
+        g->part[i] = h->part[hit_group_place(g, i)];
     pick3(g, &x->r, &g->x.r);
     pick3(g, &x->s, &g->x.s);
     return id;
 }
 
-static void put(const group *restrict g, const real *restrict from, real *restrict to)
+static void put(const hit_group *restrict g, const real *restrict from, real *restrict to)
 {
     if (g->whole) {
         memcpy(to, from, (size_t)g->n * sizeof *to);
@@ -134,20 +134,20 @@ static void put(const group *restrict g, const real *restrict from, real *restri
         to[g->lane[i]] = from[i];
 }
 
-static void put3(const group *g, const vec3s *from, vec3s *to)
+static void put3(const hit_group *g, const vec3s *from, vec3s *to)
 {
     put(g, from->x, to->x);
     put(g, from->y, to->y);
     put(g, from->z, to->z);
 }
 
-STAGE static void brightness(const group *restrict g, real *restrict v)
+STAGE static void brightness(const hit_group *restrict g, real *restrict v)
 {
     for (int i = 0; i < g->n; i++)
         v[i] = g->lit[i] * ((g->tint.x[i] + g->tint.y[i] + g->tint.z[i]) / 3);
 }
 
-void wave_scatter_visibility(const group *g, bool tinted, real *visibility)
+void scatter_visibility(const hit_group *g, bool tinted, real *visibility)
 {
     real v[LANES];
     if (tinted)
@@ -155,7 +155,7 @@ void wave_scatter_visibility(const group *g, bool tinted, real *visibility)
     put(g, tinted ? v : g->lit, visibility);
 }
 
-void wave_scatter(const group *g, bool layers, bool bumped, samples *o)
+void scatter_samples(const hit_group *g, bool layers, bool bumped, samples *o)
 {
     put3(g, &g->rgb, &o->rgb);
     if (!layers)
@@ -169,5 +169,5 @@ void wave_scatter(const group *g, bool layers, bool bumped, samples *o)
         put(g, g->h.P, o->height);
     put(g, g->tau, o->tau);
     for (int i = 0; i < g->n; i++)
-        o->order[group_place(g, i)] = g->order[i];
+        o->order[hit_group_place(g, i)] = g->order[i];
 }

@@ -8,7 +8,7 @@
 
 #include "wave/wave.h"
 
-typedef struct group {
+typedef struct hit_group {
     int n;
     bool whole;          /* all the lanes of the wave, so in its order */
     int32_t lane[LANES]; /* their places in the wave */
@@ -21,7 +21,7 @@ typedef struct group {
     partials q;
 
     /* the bump */
-    heights h;
+    bump_values h;
     vec3s n_smooth; /* n = Qu x Qw, not normalised */
     vec3s n_bump;   /* n', unit */
 
@@ -36,9 +36,9 @@ typedef struct group {
 
     vec3s color; /* of the material, where it is not constant */
     vec3s rgb;   /* linear, as the eye gets it */
-} group;
+} hit_group;
 
 /* The place in the wave of a group's lane. */
-static inline int group_place(const group *g, int i) { return g->whole ? i : g->lane[i]; }
+static inline int hit_group_place(const hit_group *g, int i) { return g->whole ? i : g->lane[i]; }
 
 #endif

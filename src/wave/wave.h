@@ -39,10 +39,10 @@ typedef struct hits {
 
 /* The starts of rays that leave a surface: the object, the part of its surface, and the place on its smooth shape. There the ray
  * begins for the surface itself, while r is where it begins for all others. */
-typedef struct starts {
+typedef struct ray_origins {
     int32_t id[LANES], part[LANES];
     vec3s at;
-} starts;
+} ray_origins;
 
 /* Q(u,w) and its partial derivatives. */
 typedef struct partials {
@@ -50,15 +50,15 @@ typedef struct partials {
 } partials;
 
 /* P(u,w), the height along the unit normal in scene units, and its partial derivatives. */
-typedef struct heights {
+typedef struct bump_values {
     real P[LANES], Pu[LANES], Pw[LANES], Puu[LANES], Puw[LANES], Pww[LANES];
-} heights;
+} bump_values;
 
 /* Places in space as seen from a surface: the foot of the perpendicular (u,w), the height over it along n/|n|, and the
  * gradients of the three. */
-typedef struct feet {
+typedef struct closest_points {
     real u[LANES], w[LANES], h[LANES];
     vec3s gu, gw, gh;
-} feet;
+} closest_points;
 
 #endif

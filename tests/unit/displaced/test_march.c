@@ -50,10 +50,10 @@ static const turned turns[] = {
 };
 
 /* P, (u,w) scaled so that each kind of surface has some bumps. */
-static wide bump_at(int kind, int bump, wide u, wide w)
+static wide bump_at(int kind, int bumped, wide u, wide w)
 {
     wide k = kind == SPHERE ? 1 : kind >= DISC ? 2 : 6;
-    if (bump == SMOOTH_BUMP)
+    if (bumped == SMOOTH_BUMP)
         return 0.06L * (sinl(2 * k * u) * cosl(k * w) + 0.5L * sinl(k * w + 1));
     /* the bilinear surface through the samples, repeated 2 x 1 over the extent */
     const wide pi = 3.14159265358979323846L;
@@ -98,7 +98,7 @@ static wide turned_foot(int kind, int part, const wide X[3], wide *u, wide *w, i
 }
 
 /* Height over a part less P, and whether the foot is on it. */
-static wide gap_at(int kind, int bump, int part, const wide X[3], int *inside)
+static wide gap_at(int kind, int bumped, int part, const wide X[3], int *inside)
 {
     wide u, w, h;
     *inside = 1;
@@ -135,18 +135,18 @@ static wide gap_at(int kind, int bump, int part, const wide X[3], int *inside)
             h += (X[k] - (wide)plane_O[k]) * n[k] / sqrtl(l);
         *inside = kind == PLANE || (u >= 0 && u <= 1 && w >= 0 && w <= 1);
     }
-    return h - bump_at(kind, bump, u, w);
+    return h - bump_at(kind, bumped, u, w);
 }
 
-static wide gap_on_ray(int kind, int bump, int part, const wide r[3], const wide s[3], wide t, int *inside)
+static wide gap_on_ray(int kind, int bumped, int part, const wide r[3], const wide s[3], wide t, int *inside)
 {
     wide X[3] = {r[0] + s[0] * t, r[1] + s[1] * t, r[2] + s[2] * t};
-    return gap_at(kind, bump, part, X, inside);
+    return gap_at(kind, bumped, part, X, inside);
 }
 
 /* The first crossing in 0..end by many small steps and bisection; -1: none. *doubt: the gap is nearly 0 somewhere without
  * crossing before, or crosses twice within a few steps, so that rounding may decide otherwise. */
-static wide first_crossing(int kind, int bump, const wide r[3], const wide s[3], wide end, int *doubt)
+static wide first_crossing(int kind, int bumped, const wide r[3], const wide s[3], wide end, int *doubt)
 {
     enum { FINE = 3000 };
     const wide NEAR = 0.006L; /* what the gap changes within a step */
@@ -156,13 +156,13 @@ static wide first_crossing(int kind, int bump, const wide r[3], const wide s[3],
         int in, was_in = 0;
         wide before = 0;
         for (int k = 0; k <= FINE; k++) {
-            wide t = end * k / FINE, g = gap_on_ray(kind, bump, part, r, s, t, &in);
+            wide t = end * k / FINE, g = gap_on_ray(kind, bumped, part, r, s, t, &in);
             if (in && was_in && (g > 0) != (before > 0)) {
                 wide a = end * (k - 1) / FINE, b = t;
                 for (int m = 0; m < 80; m++) {
                     wide c = (a + b) / 2;
                     int x;
-                    if ((gap_on_ray(kind, bump, part, r, s, c, &x) > 0) == (before > 0))
+                    if ((gap_on_ray(kind, bumped, part, r, s, c, &x) > 0) == (before > 0))
                         a = c;
                     else
                         b = c;
@@ -203,17 +203,17 @@ static surface *make_surface(int surface_kind)
     return plane_new(O, U, W, surface_kind == RECTANGLE);
 }
 
-static perturb *make_bump(int surface_kind, int bump, const surface *f)
+static bump *make_bump(int surface_kind, int bumped, const surface *f)
 {
     double u[2], w[2];
-    f->is->extent(f, 0, u, w);
-    if (f->is->parts > 1 && surface_kind != BOX) { /* more than its side has */
+    f->ops->extent(f, 0, u, w);
+    if (f->ops->parts > 1 && surface_kind != BOX) { /* more than its side has */
         u[0] = w[0] = -HUGE_VAL;
         u[1] = w[1] = HUGE_VAL;
     }
-    if (bump == SMOOTH_BUMP) {
+    if (bumped == SMOOTH_BUMP) {
         expr_error e;
-        return perturb_function(expr_parse(surface_kind == SPHERE ? "0.06*(sin(2*u)*cos(w) + 0.5*sin(w+1))"
+        return bump_function_new(expr_parse(surface_kind == SPHERE ? "0.06*(sin(2*u)*cos(w) + 0.5*sin(w+1))"
                                            : surface_kind >= DISC ? "0.06*(sin(4*u)*cos(2*w) + 0.5*sin(2*w+1))"
                                                                   : "0.06*(sin(12*u)*cos(6*w) + 0.5*sin(6*w+1))",
                                            &e),
@@ -230,7 +230,7 @@ static perturb *make_bump(int surface_kind, int bump, const surface *f)
                     .scale = 0.15,
                     .zero = 0.5};
     l.offset[0] = surface_kind >= SPHERE ? -pi : 0;
-    return perturb_map(&m, &l);
+    return bump_map_new(&m, &l);
 }
 
 static void random_ray(rays *x, int i, wide r[3], wide s[3])
@@ -250,11 +250,11 @@ static void hits_agree_with_bisection(void **state)
 {
     (void)state;
     for (int kind = 0; kind < SURFACES; kind++)
-        for (int bump = 0; bump < BUMPS; bump++) {
+        for (int bumped = 0; bumped < BUMPS; bumped++) {
             surface *f = make_surface(kind);
-            perturb *P = make_bump(kind, bump, f);
-            assert_true(displace_possible(P));
-            displace_counts counts = {0};
+            bump *P = make_bump(kind, bumped, f);
+            assert_true(displaced_possible(P));
+            displaced_counts counts = {0};
             int met = 0, passed = 0, doubts = 0;
             double worst = 0;
             for (int round = 0; round < 4; round++) {
@@ -266,10 +266,10 @@ static void hits_agree_with_bisection(void **state)
                     h.t[i] = R(3);
                     h.id[i] = -1;
                 }
-                displace_hit(f, P, LANES, &x, NULL, 5, &h, &counts);
+                displaced_hit(f, P, LANES, &x, NULL, 5, &h, &counts);
                 for (int i = 0; i < LANES; i++) {
                     int doubt;
-                    wide t = first_crossing(kind, bump, r[i], s[i], 3, &doubt);
+                    wide t = first_crossing(kind, bumped, r[i], s[i], 3, &doubt);
                     double length = sqrt((double)(s[i][0] * s[i][0] + s[i][1] * s[i][1] + s[i][2] * s[i][2]));
                     double off = h.id[i] < 0 || t < 0 ? ((h.id[i] < 0) == (t < 0) ? 0 : 1) : fabs((double)((wide)h.t[i] - t)) * length;
                     if (doubt) {
@@ -279,11 +279,11 @@ static void hits_agree_with_bisection(void **state)
                     /* where the ray hits at a flat angle the gap is 0 to rounding over a longer stretch */
                     int x1, x2;
                     int part = h.id[i] < 0 ? 0 : h.part[i];
-                    wide rate = fabsl(gap_on_ray(kind, bump, part, r[i], s[i], t + 1e-6L, &x1) -
-                                      gap_on_ray(kind, bump, part, r[i], s[i], t - 1e-6L, &x2)) / 2e-6L / (wide)length;
+                    wide rate = fabsl(gap_on_ray(kind, bumped, part, r[i], s[i], t + 1e-6L, &x1) -
+                                      gap_on_ray(kind, bumped, part, r[i], s[i], t - 1e-6L, &x2)) / 2e-6L / (wide)length;
                     if (!(off * fmin(1, (double)rate * 4) <= AGREE)) {
                         print_error("%s, %s: ray %d of round %d is %g off (t %.9g, bisection %.9g, gap per length %g)\n", names[kind],
-                                    bump ? "map" : "function", i, round, off, (double)h.t[i], (double)t, (double)rate);
+                                    bumped ? "map" : "function", i, round, off, (double)h.t[i], (double)t, (double)rate);
                         fail();
                     }
                     if (off < 1)
@@ -293,11 +293,11 @@ static void hits_agree_with_bisection(void **state)
                 }
             }
             print_message("%s, %s: %d hits, %d misses, farthest %.2g, %d left out near edges and tangents, %ld uncertain\n",
-                          names[kind], bump ? "map" : "function", met, passed, worst, doubts, counts.uncertain);
+                          names[kind], bumped ? "map" : "function", met, passed, worst, doubts, counts.uncertain);
             assert_true(met > 150);
             assert_true(doubts < 4 * LANES / 8);
             assert_int_equal(counts.uncertain, 0);
-            perturb_free(P);
+            bump_free(P);
             surface_free(f);
         }
 }
@@ -308,23 +308,23 @@ static void normals_are_gradients(void **state)
     (void)state;
     for (int kind = 0; kind < SURFACES; kind++) {
         surface *f = make_surface(kind);
-        perturb *P = make_bump(kind, SMOOTH_BUMP, f);
-        static group g;
+        bump *P = make_bump(kind, SMOOTH_BUMP, f);
+        static hit_group g;
         static hits h;
-        displace_counts counts = {0};
+        displaced_counts counts = {0};
         wide r[LANES][3], s[LANES][3];
         for (int i = 0; i < LANES; i++) {
             random_ray(&g.x, i, r[i], s[i]);
             h.t[i] = R(3);
             h.id[i] = -1;
         }
-        displace_hit(f, P, LANES, &g.x, NULL, 0, &h, &counts);
+        displaced_hit(f, P, LANES, &g.x, NULL, 0, &h, &counts);
         g.n = LANES;
         for (int i = 0; i < LANES; i++) {
             g.t[i] = h.id[i] == 0 ? h.t[i] : R(1);
             g.part[i] = h.id[i] == 0 ? h.part[i] : 0;
         }
-        displace_shape(f, P, &g);
+        displaced_shape(f, P, &g);
         for (int i = 0; i < LANES; i++) {
             if (h.id[i] < 0)
                 continue;
@@ -343,7 +343,7 @@ static void normals_are_gradients(void **state)
             assert_true(off < 2e-5);
             assert_true(g.order[i] == ORDER_EXACT && g.tau[i] == 0);
         }
-        perturb_free(P);
+        bump_free(P);
         surface_free(f);
     }
 }
@@ -355,11 +355,11 @@ static void own_shadows(void **state)
     (void)state;
     for (int kind = 0; kind < SURFACES; kind++) {
         surface *f = make_surface(kind);
-        perturb *P = make_bump(kind, MAP_BUMP, f);
+        bump *P = make_bump(kind, MAP_BUMP, f);
         static rays x, up;
         static hits h, again;
-        static starts from;
-        displace_counts counts = {0};
+        static ray_origins from;
+        displaced_counts counts = {0};
         int dark = 0, lights = 0, wrong = 0, n = 0;
         int32_t on[LANES];
         wide r[LANES][3], s[LANES][3];
@@ -369,7 +369,7 @@ static void own_shadows(void **state)
             h.t[i] = R(3);
             h.id[i] = -1;
         }
-        displace_hit(f, P, LANES, &x, NULL, 0, &h, &counts);
+        displaced_hit(f, P, LANES, &x, NULL, 0, &h, &counts);
         for (int i = 0; i < LANES; i++)
             if (h.id[i] == 0) {
                 bs_vec3 X = lane_at(&x, i, h.t[i]), d = {R(-5) - X.x, R(1.2) - X.y, R(-3) - X.z};
@@ -383,10 +383,10 @@ static void own_shadows(void **state)
                 again.t[n] = 1;
                 lit[n++] = gap_at(kind, MAP_BUMP, h.part[i], near_by, &in) > 0 ? R(1) : R(0); /* turned to the light */
             }
-        displace_hit(f, P, n, &up, &from, 5, &again, &counts);
+        displaced_hit(f, P, n, &up, &from, 5, &again, &counts);
         for (int i = 0; i < n; i++)
             from.at.x[i] = lit[i]; /* no more needed as a place: whether it is turned to the light */
-        displace_occlude(f, P, n, &up, on, lit, &counts);
+        displaced_occlude(f, P, n, &up, on, lit, &counts);
         for (int i = 0; i < n; i++) {
             bs_vec3 X = lane_get(&up.r, i), D = lane_get(&up.s, i);
             wide o[3] = {(wide)X.x, (wide)X.y, (wide)X.z}, d[3] = {(wide)D.x, (wide)D.y, (wide)D.z};
@@ -407,7 +407,7 @@ static void own_shadows(void **state)
         print_message("%s: %d lit, %d dark, %d otherwise than by bisection\n", names[kind], lights, dark, wrong);
         assert_true(dark > 10 && lights > 5);
         assert_true(wrong <= n / 20); /* the bisection's own start, 0.004 off */
-        perturb_free(P);
+        bump_free(P);
         surface_free(f);
     }
 }
@@ -420,7 +420,7 @@ static void own_shadows(void **state)
 
 /* As first_crossing, for a ray that starts on `own`'s rough surface: from where it has clearly left that. *doubt, too: it turns back or
  * goes through to the other side before, or begins near an edge. */
-static wide next_crossing(int kind, int bump, int own, const wide r[3], const wide s[3], wide end, int *doubt)
+static wide next_crossing(int kind, int bumped, int own, const wide r[3], const wide s[3], wide end, int *doubt)
 {
     enum { FINE = 1500 };
     const wide NEAR = 0.012L;
@@ -428,11 +428,11 @@ static wide next_crossing(int kind, int bump, int own, const wide r[3], const wi
     for (int part = 0; part < parts[kind]; part++) {
         int in, was_in = 0, left = part != own;
         wide before = 0, last = 0;
-        const wide way_off = gap_on_ray(kind, bump, part, r, s, 1e-6L, &in) - gap_on_ray(kind, bump, part, r, s, -1e-6L, &in);
+        const wide way_off = gap_on_ray(kind, bumped, part, r, s, 1e-6L, &in) - gap_on_ray(kind, bumped, part, r, s, -1e-6L, &in);
         if (!left && !in)
             touch = 0;
         for (int k = 0; k <= FINE; k++) {
-            wide t = end * k / FINE * k / FINE, a = end * (k - 1) / FINE * (k - 1) / FINE, g = gap_on_ray(kind, bump, part, r, s, t, &in);
+            wide t = end * k / FINE * k / FINE, a = end * (k - 1) / FINE * (k - 1) / FINE, g = gap_on_ray(kind, bumped, part, r, s, t, &in);
             if (!left) {
                 left = fabsl(g) > CLEAR;
                 if (left && (!in || (g > 0) != (way_off > 0)))
@@ -441,7 +441,7 @@ static wide next_crossing(int kind, int bump, int own, const wide r[3], const wi
                 for (int m = 0; m < 80; m++) {
                     wide c = (a + t) / 2;
                     int x;
-                    if ((gap_on_ray(kind, bump, part, r, s, c, &x) > 0) == (before > 0))
+                    if ((gap_on_ray(kind, bumped, part, r, s, c, &x) > 0) == (before > 0))
                         a = c;
                     else
                         t = c;
@@ -471,13 +471,13 @@ static void leaving(void **state)
     (void)state;
     int faults = 0;
     for (int kind = 0; kind < SURFACES; kind++)
-        for (int bump = 0; bump < BUMPS; bump++) {
+        for (int bumped = 0; bumped < BUMPS; bumped++) {
             surface *f = make_surface(kind);
-            perturb *P = make_bump(kind, bump, f);
+            bump *P = make_bump(kind, bumped, f);
             static rays x, y;
             static hits h, again;
-            static starts from;
-            displace_counts counts = {0};
+            static ray_origins from;
+            displaced_counts counts = {0};
             int met = 0, passed = 0, doubts = 0, wrong = 0, n = 0;
             wide r[LANES][3], s[LANES][3];
             real lit[LANES];
@@ -486,7 +486,7 @@ static void leaving(void **state)
                 h.t[i] = R(3);
                 h.id[i] = -1;
             }
-            displace_hit(f, P, LANES, &x, NULL, 5, &h, &counts);
+            displaced_hit(f, P, LANES, &x, NULL, 5, &h, &counts);
             for (int i = 0; i < LANES; i++)
                 if (h.id[i] == 5) {
                     double c = random_in(-1, 1), a = random_in(0, 6.283), l = sqrt(1 - c * c);
@@ -500,13 +500,13 @@ static void leaving(void **state)
                     lit[n] = 1;
                     again.t[n++] = 1;
                 }
-            displace_hit(f, P, n, &y, &from, 5, &again, &counts);
-            displace_occlude(f, P, n, &y, from.part, lit, &counts);
+            displaced_hit(f, P, n, &y, &from, 5, &again, &counts);
+            displaced_occlude(f, P, n, &y, from.part, lit, &counts);
             for (int i = 0; i < n; i++) {
                 bs_vec3 X = lane_get(&y.r, i), D = lane_get(&y.s, i);
                 const wide o[3] = {(wide)X.x, (wide)X.y, (wide)X.z}, d[3] = {(wide)D.x, (wide)D.y, (wide)D.z};
                 int doubt, x1;
-                wide t = next_crossing(kind, bump, from.part[i], o, d, 1, &doubt);
+                wide t = next_crossing(kind, bumped, from.part[i], o, d, 1, &doubt);
                 if (doubt) {
                     doubts++;
                     continue;
@@ -515,19 +515,19 @@ static void leaving(void **state)
                 passed += t < 0;
                 const int part = again.id[i] < 0 ? 0 : again.part[i];
                 double off = again.id[i] < 0 || t < 0 ? ((again.id[i] < 0) == (t < 0) ? 0 : 1) : 4 * fabs((double)((wide)again.t[i] - t));
-                wide rate = fabsl(gap_on_ray(kind, bump, part, o, d, t + 1e-6L, &x1) -
-                                  gap_on_ray(kind, bump, part, o, d, t - 1e-6L, &x1)) / 8e-6L;
+                wide rate = fabsl(gap_on_ray(kind, bumped, part, o, d, t + 1e-6L, &x1) -
+                                  gap_on_ray(kind, bumped, part, o, d, t - 1e-6L, &x1)) / 8e-6L;
                 if (!(off * fmin(1, (double)rate * 4) <= AGREE) || (lit[i] > 0) != (t < 0)) {
                     wrong++;
-                    print_message("%s, %s: ray %d from part %d: t %.9g, bisection %.9g\n", names[kind], bump ? "map" : "function", i,
+                    print_message("%s, %s: ray %d from part %d: t %.9g, bisection %.9g\n", names[kind], bumped ? "map" : "function", i,
                                 from.part[i], again.id[i] < 0 ? -1. : (double)again.t[i], (double)t);
                 }
             }
-            print_message("%s, %s: %d hits, %d misses, %d left out, %d wrong, %ld uncertain\n", names[kind], bump ? "map" : "function", met,
+            print_message("%s, %s: %d hits, %d misses, %d left out, %d wrong, %ld uncertain\n", names[kind], bumped ? "map" : "function", met,
                           passed, doubts, wrong, counts.uncertain);
             assert_true(met + passed > 50 && doubts <= LANES / 8);
             faults += wrong;
-            perturb_free(P);
+            bump_free(P);
             surface_free(f);
         }
     assert_int_equal(faults, 0);
@@ -541,10 +541,10 @@ static void from_within(void **state)
     int faults = 0;
     for (int kind = 0; kind < SURFACES; kind++) {
         surface *f = make_surface(kind);
-        perturb *P = make_bump(kind, SMOOTH_BUMP, f);
+        bump *P = make_bump(kind, SMOOTH_BUMP, f);
         static rays x;
         static hits h;
-        displace_counts counts = {0};
+        displaced_counts counts = {0};
         int met = 0, doubts = 0, wrong = 0;
         real lit[LANES];
         for (int i = 0; i < LANES; i++) {
@@ -556,8 +556,8 @@ static void from_within(void **state)
             h.t[i] = lit[i] = 1;
             h.id[i] = -1;
         }
-        displace_hit(f, P, LANES, &x, NULL, 5, &h, &counts);
-        displace_occlude(f, P, LANES, &x, NULL, lit, &counts);
+        displaced_hit(f, P, LANES, &x, NULL, 5, &h, &counts);
+        displaced_occlude(f, P, LANES, &x, NULL, lit, &counts);
         for (int i = 0; i < LANES; i++) {
             bs_vec3 X = lane_get(&x.r, i), D = lane_get(&x.s, i);
             const wide o[3] = {(wide)X.x, (wide)X.y, (wide)X.z}, d[3] = {(wide)D.x, (wide)D.y, (wide)D.z};
@@ -576,7 +576,7 @@ static void from_within(void **state)
         print_message("%s: %d hits, %d left out, %d wrong\n", names[kind], met, doubts, wrong);
         assert_int_equal(counts.uncertain, 0);
         faults += wrong;
-        perturb_free(P);
+        bump_free(P);
         surface_free(f);
     }
     assert_int_equal(faults, 0);
@@ -588,36 +588,36 @@ static void flat_and_exact(void **state)
     (void)state;
     const double all[2] = {-HUGE_VAL, HUGE_VAL};
     expr_error e;
-    perturb *P = perturb_function(expr_parse("0.1", &e), 1, all, all);
+    bump *P = bump_function_new(expr_parse("0.1", &e), 1, all, all);
     surface *f = plane_new((vec3){0, 0, 0}, (vec3){0, 0, 1}, (vec3){1, 0, 0}, false);
-    static group g;
-    displace_counts counts = {0};
+    static hit_group g;
+    displaced_counts counts = {0};
     g.n = LANES;
     for (int i = 0; i < LANES; i++) {
         g.x.r.x[i] = (real)(i * 0.1), g.x.r.y[i] = R(2), g.x.r.z[i] = R(-1);
         g.x.s.x[i] = R(0.1), g.x.s.y[i] = (real)(-0.2 - 0.01 * i), g.x.s.z[i] = R(0.7);
         g.t[i] = -2 / g.x.s.y[i];
     }
-    f->is->locate(f, LANES, &g.x, g.t, g.part, g.u, g.w);
-    f->is->eval(f, LANES, g.part, g.u, g.w, 1, &g.q);
-    P->is->eval(P, LANES, g.u, g.w, 1, &g.h);
+    f->ops->locate(f, LANES, &g.x, g.t, g.part, g.u, g.w);
+    f->ops->eval(f, LANES, g.part, g.u, g.w, 1, &g.q);
+    P->ops->eval(P, LANES, g.u, g.w, 1, &g.h);
     for (int i = 0; i < LANES; i++)
         lane_set(&g.n_smooth, i, bs_normal(lane_get(&g.q.Qu, i), lane_get(&g.q.Qw, i)));
-    displace_shift(f, P, &g, &counts);
+    displaced_shift(f, P, &g, &counts);
     for (int i = 0; i < LANES; i++) {
         double y = (double)(g.x.r.y[i] + g.x.s.y[i] * (g.t[i] + g.tau[i]));
         assert_int_equal(g.order[i], ORDER_EXACT);
         assert_true(fabs(y - 0.1) < 1e-6);
     }
     assert_int_equal(counts.uncertain, 0);
-    perturb_free(P);
+    bump_free(P);
     surface_free(f);
-    P = perturb_function(expr_parse("u", &e), 1, all, all);
-    assert_false(displace_possible(P));
-    perturb_free(P);
-    P = perturb_function(expr_parse("floor(sin(u))", &e), 1, all, all);
-    assert_false(displace_possible(P));
-    perturb_free(P);
+    P = bump_function_new(expr_parse("u", &e), 1, all, all);
+    assert_false(displaced_possible(P));
+    bump_free(P);
+    P = bump_function_new(expr_parse("floor(sin(u))", &e), 1, all, all);
+    assert_false(displaced_possible(P));
+    bump_free(P);
 }
 
 /* A surface with a constant P = h is a wider one. */
@@ -651,14 +651,14 @@ static void constant_bumps(void **state)
         for (int k = 0; k < 4; k++) {
             const int kind = kinds[which];
             expr_error e;
-            perturb *P = perturb_function(expr_parse("1", &e), levels[k], all, all);
+            bump *P = bump_function_new(expr_parse("1", &e), levels[k], all, all);
             surface *f = make_surface(kind), *wider = widened(kind, levels[k]);
             int met = 0, other = 0, met_again = 0, other_again = 0;
             for (int round = 0; round < 8; round++) {
                 static rays x, y;
                 static hits rough, smooth;
-                static starts from;
-                displace_counts counts = {0};
+                static ray_origins from;
+                displaced_counts counts = {0};
                 wide r[3], s[3];
                 int n = 0;
                 for (int i = 0; i < LANES; i++) {
@@ -668,8 +668,8 @@ static void constant_bumps(void **state)
                     rough.t[i] = smooth.t[i] = R(3);
                     rough.id[i] = smooth.id[i] = -1;
                 }
-                displace_hit(f, P, LANES, &x, NULL, 0, &rough, &counts);
-                wider->is->hit(wider, LANES, &x, 0, &smooth);
+                displaced_hit(f, P, LANES, &x, NULL, 0, &rough, &counts);
+                wider->ops->hit(wider, LANES, &x, 0, &smooth);
                 other += differ(LANES, &rough, &smooth, &met);
                 for (int i = 0; i < LANES; i++)
                     if (smooth.id[i] == 0 && rough.id[i] == 0) { /* through it, a little bent */
@@ -684,8 +684,8 @@ static void constant_bumps(void **state)
                     rough.t[i] = smooth.t[i] = R(3);
                     rough.id[i] = smooth.id[i] = -1;
                 }
-                displace_hit(f, P, n, &y, &from, 0, &rough, &counts);
-                wider->is->hit_own(wider, n, &y, &from, 0, &smooth);
+                displaced_hit(f, P, n, &y, &from, 0, &rough, &counts);
+                wider->ops->hit_own(wider, n, &y, &from, 0, &smooth);
                 other_again += differ(n, &rough, &smooth, &met_again);
                 assert_int_equal(counts.uncertain, 0);
             }
@@ -693,7 +693,7 @@ static void constant_bumps(void **state)
                           met_again, other_again);
             assert_true(met > 300 && other <= 2); /* at a rim or tangent */
             assert_true(met_again > 100 && other_again <= 2);
-            perturb_free(P);
+            bump_free(P);
             surface_free(f);
             surface_free(wider);
         }

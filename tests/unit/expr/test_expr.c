@@ -121,11 +121,11 @@ static void random_expr(char *text, size_t size, int depth, bool smooth)
         "atan2(%,%)",     "mod(%,%)",    "cosh(%)",        "sinh(%)"};
     size_t n = strlen(text);
     if (depth == 0 || n > 1500) {
-        static const char *const leaves[] = {"u", "w", "u", "w", "(u-w)"};
+        static const char *const pieces[] = {"u", "w", "u", "w", "(u-w)"};
         if (draw(3) == 0)
             snprintf(text + n, size - n, "%.3f", draw_in(0, 3));
         else
-            snprintf(text + n, size - n, "%s", leaves[draw(5)]);
+            snprintf(text + n, size - n, "%s", pieces[draw(5)]);
         return;
     }
     const char *form = forms[draw(smooth ? 24 : (uint32_t)(sizeof forms / sizeof forms[0]))];
@@ -263,7 +263,7 @@ static void test_range_holds(void **state)
         double size = i % 3 == 0 ? 0.05 : i % 3 == 1 ? 1 : 30;
         double u0 = draw_in(-2, 2), w0 = draw_in(-2, 2), u1 = u0 + draw_in(0, size), w1 = w0 + draw_in(0, size);
         double lo, hi;
-        expr_range(e, u0, u1, w0, w1, &lo, &hi);
+        expr_bound_value(e, u0, u1, w0, w1, &lo, &hi);
         assert_true(lo <= hi);
         finite += isfinite(lo) && isfinite(hi);
         for (int k = 0; k < 40; k++) {
@@ -284,7 +284,7 @@ static void check_range(const char *text, double u0, double u1, double w0, doubl
 {
     expr *e = parse(text);
     double l, h;
-    expr_range(e, u0, u1, w0, w1, &l, &h);
+    expr_bound_value(e, u0, u1, w0, w1, &l, &h);
     double slack = 1e-13;
     bool low = l == lo || (l <= lo && l >= lo - slack * (1 + fabs(lo)));
     bool high = h == hi || (h >= hi && h <= hi + slack * (1 + fabs(hi)));
@@ -369,13 +369,13 @@ static bool inside(const double range[2], double x) { return isnan(x) || (range[
 static void check_gradient_in(const char *text, const expr *e, const double u[2], const double w[2], int *pairs)
 {
     expr_bounds b, same;
-    expr_bends bend;
+    expr_hessians bend;
     double lo, hi;
-    expr_range_gradient(e, u[0], u[1], w[0], w[1], &b);
-    expr_range_bend(e, u[0], u[1], w[0], w[1], &same, &bend);
+    expr_bound_gradient(e, u[0], u[1], w[0], w[1], &b);
+    expr_bound_hessian(e, u[0], u[1], w[0], w[1], &same, &bend);
     assert_memory_equal(&same, &b, sizeof b);
     assert_true(bend.uu[0] <= bend.uu[1] && bend.uw[0] <= bend.uw[1] && bend.ww[0] <= bend.ww[1]);
-    expr_range(e, u[0], u[1], w[0], w[1], &lo, &hi);
+    expr_bound_value(e, u[0], u[1], w[0], w[1], &lo, &hi);
     assert_true(b.v[0] == lo && b.v[1] == hi);
     assert_true(b.u[0] <= b.u[1] && b.w[0] <= b.w[1]); /* so none is NaN */
     for (int k = 0; k < 40; k++) {
@@ -433,7 +433,7 @@ static void check_gradient(const char *text, double u0, double u1, double w0, do
     const double want[4] = {fu0, fu1, fw0, fw1};
     expr_bounds b;
     expr *e = parse(text);
-    expr_range_gradient(e, u0, u1, w0, w1, &b);
+    expr_bound_gradient(e, u0, u1, w0, w1, &b);
     const double got[4] = {b.u[0], b.u[1], b.w[0], b.w[1]};
     for (int k = 0; k < 4; k++) {
         double beyond = k & 1 ? got[k] - want[k] : want[k] - got[k];

@@ -80,9 +80,9 @@ static void hits_are_on_the_surface(void **state)
             for (int i = 0; i < LANES; i++)
                 random_ray(&x, i, 1);
             no_hits(&h, LANES);
-            f->is->hit(f, LANES, &x, 3, &h);
-            f->is->locate(f, LANES, &x, h.t, part, u, w);
-            f->is->eval(f, LANES, part, u, w, 2, &q);
+            f->ops->hit(f, LANES, &x, 3, &h);
+            f->ops->locate(f, LANES, &x, h.t, part, u, w);
+            f->ops->eval(f, LANES, part, u, w, 2, &q);
             for (int i = 0; i < LANES; i++) {
                 if (h.id[i] < 0)
                     continue;
@@ -92,7 +92,7 @@ static void hits_are_on_the_surface(void **state)
                 double far = 1 + distance(lane_at(&x, i, 0), lane_at(&x, i, h.t[i]));
                 double off = distance(lane_get(&q.Q, i), lane_at(&x, i, h.t[i]));
                 if (!(off <= 24 * EPS * far)) {
-                    print_error("%s: Q(u,w) is %g off r + s t\n", f->is->kind, off);
+                    print_error("%s: Q(u,w) is %g off r + s t\n", f->ops->kind, off);
                     fail();
                 }
                 /* on what is closed, seen from outside, the first hit's n faces the viewer */
@@ -115,12 +115,12 @@ static void partials_are_derivatives(void **state)
         for (int round = 0; round < 200; round++) {
             static partials q[5];
             real u[1], w[1];
-            int32_t part[1] = {round % f->is->parts};
+            int32_t part[1] = {round % f->ops->parts};
             double u0 = random_in(0.3, 0.7), w0 = random_in(0.4, 0.6), du[5] = {0, h, -h, 0, 0}, dw[5] = {0, 0, 0, h, -h};
             double du_[5], dw_[5];
             if (kind != PLANE) {
                 double U[2], W[2];
-                f->is->extent(f, part[0], U, W);
+                f->ops->extent(f, part[0], U, W);
                 u0 = random_in(U[0] + 0.1, U[1] - 0.1), w0 = random_in(W[0] + 0.1, W[1] - 0.1);
                 if (!(U[0] < U[1])) /* a hat has no upper cap */
                     continue;
@@ -130,7 +130,7 @@ static void partials_are_derivatives(void **state)
                 w[0] = (real)(w0 + dw[k]);
                 du_[k] = (double)u[0];
                 dw_[k] = (double)w[0];
-                f->is->eval(f, 1, part, u, w, 2, &q[k]);
+                f->ops->eval(f, 1, part, u, w, 2, &q[k]);
             }
             const struct {
                 vec3s *a, *b, *want;
@@ -145,7 +145,7 @@ static void partials_are_derivatives(void **state)
                 bs_vec3 d = {(real)((double)(a.x - b.x) / tests[k].step), (real)((double)(a.y - b.y) / tests[k].step),
                              (real)((double)(a.z - b.z) / tests[k].step)};
                 if (!(distance(d, c) < 20 * sqrt(EPS))) {
-                    print_error("%s: derivative %d is off by %g\n", f->is->kind, k, distance(d, c));
+                    print_error("%s: derivative %d is off by %g\n", f->ops->kind, k, distance(d, c));
                     fail();
                 }
             }
@@ -164,7 +164,7 @@ static void box_faces(void **state)
     real u[6], w[6];
     for (int i = 0; i < 6; i++)
         u[i] = w[i] = R(0.5);
-    f->is->eval(f, 6, part, u, w, 1, &q);
+    f->ops->eval(f, 6, part, u, w, 1, &q);
     const double middle[3] = {-0.1, -0.15, 0.25}, half[3] = {0.8, 0.65, 0.85};
     for (int i = 0; i < 6; i++) {
         bs_vec3 Q = lane_get(&q.Q, i), n = bs_normal(lane_get(&q.Qu, i), lane_get(&q.Qw, i));
@@ -194,8 +194,8 @@ static void shadows_agree_with_hits(void **state)
                 lit[i] = 1;
             }
             no_hits(&h, LANES);
-            f->is->hit(f, LANES, &x, 0, &h);
-            f->is->occlude(f, LANES, &x, lit);
+            f->ops->hit(f, LANES, &x, 0, &h);
+            f->ops->occlude(f, LANES, &x, lit);
             for (int i = 0; i < LANES; i++) {
                 assert_true(lit[i] == (h.id[i] >= 0 && h.t[i] < 1 ? R(0) : R(1)));
                 dark += lit[i] == 0;
@@ -203,7 +203,7 @@ static void shadows_agree_with_hits(void **state)
             /* what is dark already stays so */
             for (int i = 0; i < LANES; i++)
                 lit[i] = 0;
-            f->is->occlude(f, LANES, &x, lit);
+            f->ops->occlude(f, LANES, &x, lit);
             for (int i = 0; i < LANES; i++)
                 assert_true(lit[i] == 0);
         }
@@ -231,7 +231,7 @@ static void own_shadow(void **state)
             for (int i = 0; i < LANES; i++)
                 random_ray(&x, i, 1);
             no_hits(&h, LANES);
-            f->is->hit(f, LANES, &x, 0, &h);
+            f->ops->hit(f, LANES, &x, 0, &h);
             for (int i = 0; i < LANES; i++)
                 if (h.id[i] >= 0) {
                     bs_vec3 r = lane_at(&x, i, 0), s = lane_get(&x.s, i);
@@ -239,8 +239,8 @@ static void own_shadow(void **state)
                     lane_set(&x.s, n, s);
                     h.t[n++] = h.t[i];
                 }
-            f->is->locate(f, n, &x, h.t, part, u, w);
-            f->is->eval(f, n, part, u, w, 1, &q);
+            f->ops->locate(f, n, &x, h.t, part, u, w);
+            f->ops->eval(f, n, part, u, w, 1, &q);
             for (int i = 0; i < n; i++) {
                 bs_vec3 d = {(real)random_in(-9, 9), (real)random_in(-9, 9), (real)random_in(-9, 9)};
                 bs_vec3 nn = lane_unit(bs_normal(lane_get(&q.Qu, i), lane_get(&q.Qw, i)));
@@ -253,7 +253,7 @@ static void own_shadow(void **state)
                 lane_set(&out.s, i, d);
                 lit[i] = 1;
             }
-            f->is->occlude_own(f, n, &out, part, lit);
+            f->ops->occlude_own(f, n, &out, part, lit);
             for (int i = 0; i < n; i++) {
                 double length = (double)real_sqrt(bs_dot(lane_get(&out.s, i), lane_get(&out.s, i)));
                 if (cosine[i] > R(1e-4))
@@ -266,7 +266,7 @@ static void own_shadow(void **state)
     }
     for (int kind = 0; kind < KINDS; kind++) {
         surface *f = make(kind);
-        assert_true((f->is->occlude_own == NULL) == (kind == PLANE || kind == RECTANGLE || kind == DISC));
+        assert_true((f->ops->occlude_own == NULL) == (kind == PLANE || kind == RECTANGLE || kind == DISC));
         surface_free(f);
     }
 }
@@ -284,14 +284,14 @@ static void own_hits(void **state)
             static rays x, out;
             static hits h, again, want;
             static partials q;
-            static starts from;
+            static ray_origins from;
             int32_t part[LANES], there[LANES];
             real u[LANES], w[LANES], cosine[LANES];
             int n = 0;
             for (int i = 0; i < LANES; i++)
                 random_ray(&x, i, 1);
             no_hits(&h, LANES);
-            f->is->hit(f, LANES, &x, 7, &h);
+            f->ops->hit(f, LANES, &x, 7, &h);
             for (int i = 0; i < LANES; i++)
                 if (h.id[i] >= 0) {
                     bs_vec3 r = lane_at(&x, i, 0), s = lane_get(&x.s, i);
@@ -299,8 +299,8 @@ static void own_hits(void **state)
                     lane_set(&x.s, n, s);
                     h.t[n++] = h.t[i];
                 }
-            f->is->locate(f, n, &x, h.t, part, u, w);
-            f->is->eval(f, n, part, u, w, 1, &q);
+            f->ops->locate(f, n, &x, h.t, part, u, w);
+            f->ops->eval(f, n, part, u, w, 1, &q);
             for (int i = 0; i < n; i++) {
                 bs_vec3 d = {(real)random_in(-9, 9), (real)random_in(-9, 9), (real)random_in(-9, 9)};
                 d.x = round == 1 ? 0 : d.x; /* along a face of the box */
@@ -312,7 +312,7 @@ static void own_hits(void **state)
                 from.part[i] = part[i];
             }
             no_hits(&again, n);
-            f->is->hit_own(f, n, &out, &from, 7, &again);
+            f->ops->hit_own(f, n, &out, &from, 7, &again);
             for (int i = 0; i < n; i++) {
                 const bool back = again.id[i] == 7;
                 if (flat || (is_convex(kind) && cosine[i] > R(1e-4)))
@@ -324,20 +324,20 @@ static void own_hits(void **state)
                 again.t[i] = back ? again.t[i] : 1;
             }
             out.r = from.at;
-            f->is->locate(f, n, &out, again.t, there, u, w);
-            f->is->eval(f, n, there, u, w, 1, &q);
+            f->ops->locate(f, n, &out, again.t, there, u, w);
+            f->ops->eval(f, n, there, u, w, 1, &q);
             for (int i = 0; i < n; i++)
                 if (again.id[i] == 7) {
                     assert_true(distance(lane_get(&q.Q, i), lane_at(&out, i, again.t[i])) < (kind == HAT ? 300 : 60) * EPS); /* a tip */
-                    const real leaves = bs_dot(lane_get(&out.s, i), bs_normal(lane_get(&q.Qu, i), lane_get(&q.Qw, i)));
-                    assert_true(!is_closed(kind) || (leaves > 0) == (cosine[i] < 0));
+                    const real pieces = bs_dot(lane_get(&out.s, i), bs_normal(lane_get(&q.Qu, i), lane_get(&q.Qw, i)));
+                    assert_true(!is_closed(kind) || (pieces > 0) == (cosine[i] < 0));
                     assert_true(kind != BOX || there[i] != part[i]);
                 }
             /* what comes from elsewhere */
             no_hits(&again, n);
             no_hits(&want, n);
-            f->is->hit_own(f, n, &x, &from, 3, &again);
-            f->is->hit(f, n, &x, 3, &want);
+            f->ops->hit_own(f, n, &x, &from, 3, &again);
+            f->ops->hit(f, n, &x, 3, &want);
             assert_memory_equal(again.t, want.t, (size_t)n * sizeof(real));
             assert_memory_equal(again.id, want.id, (size_t)n * sizeof(int32_t));
         }
@@ -361,7 +361,7 @@ static void from_inside(void **state)
             x.r.x[i] = R(0.1), x.r.y[i] = R(-0.1), x.r.z[i] = R(0.2);
         }
         no_hits(&h, LANES);
-        f->is->hit(f, LANES, &x, 0, &h);
+        f->ops->hit(f, LANES, &x, 0, &h);
         for (int i = 0; i < LANES; i++)
             assert_true(h.id[i] == 0 && h.t[i] > 0);
         surface_free(f);
@@ -390,7 +390,7 @@ static void odd_rays(void **state)
         static rays x;
         static hits h;
         static partials q;
-        static starts from;
+        static ray_origins from;
         int32_t part[LANES];
         real u[LANES], w[LANES], lit[LANES];
         for (int i = 0; i < ODD; i++) {
@@ -399,22 +399,22 @@ static void odd_rays(void **state)
             lit[i] = 1;
         }
         no_hits(&h, ODD + 1);
-        f->is->hit(f, ODD, &x, 0, &h);
-        f->is->occlude(f, ODD, &x, lit);
+        f->ops->hit(f, ODD, &x, 0, &h);
+        f->ops->occlude(f, ODD, &x, lit);
         from.at = x.r;
         for (int i = 0; i < ODD; i++) {
             from.id[i] = i % 2;
-            from.part[i] = i % f->is->parts;
+            from.part[i] = i % f->ops->parts;
         }
-        f->is->hit_own(f, ODD, &x, &from, 0, &h);
-        f->is->locate(f, ODD, &x, h.t, part, u, w);
-        f->is->eval(f, ODD, part, u, w, 2, &q);
+        f->ops->hit_own(f, ODD, &x, &from, 0, &h);
+        f->ops->locate(f, ODD, &x, h.t, part, u, w);
+        f->ops->eval(f, ODD, part, u, w, 2, &q);
         assert_int_equal(h.id[ODD], -1);
         for (int i = 0; i < ODD; i++) {
             assert_true(h.id[i] == -1 || h.id[i] == 0);
             assert_true(h.t[i] > 0 && h.t[i] <= REAL_FAR);
             assert_true(lit[i] == 0 || lit[i] == 1);
-            assert_true(part[i] >= 0 && part[i] < f->is->parts);
+            assert_true(part[i] >= 0 && part[i] < f->ops->parts);
         }
         surface_free(f);
     }
@@ -439,7 +439,7 @@ static void ways_around(void **state)
         static partials q;
         int32_t part = want[k].part;
         real u = (real)want[k].u, w = (real)want[k].w;
-        f[want[k].f]->is->eval(f[want[k].f], 1, &part, &u, &w, 1, &q);
+        f[want[k].f]->ops->eval(f[want[k].f], 1, &part, &u, &w, 1, &q);
         bs_vec3 Q = {(real)want[k].Q[0], (real)want[k].Q[1], (real)want[k].Q[2]};
         assert_true(distance(lane_get(&q.Q, 0), Q) < 1e-6);
     }
@@ -475,7 +475,7 @@ static void small_and_far(void **state)
         x.s.x[i] = 1, x.s.y[i] = 0, x.s.z[i] = 0;
     }
     no_hits(&h, 5);
-    f->is->hit(f, 5, &x, 0, &h);
+    f->ops->hit(f, 5, &x, 0, &h);
     for (int i = 0; i < 5; i++)
         assert_int_equal(h.id[i], i < 3 ? 0 : -1);
     surface_free(f);

@@ -80,7 +80,7 @@ static void map_ray(const affine *m, const rays *own, rays *x, int i)
 static double turned(const surface *f, int part, const affine *m, double u)
 {
     double U[2], W[2];
-    f->is->extent(f, part, U, W);
+    f->ops->extent(f, part, U, W);
     return affine_volume(m) > 0 ? u : U[1] < HUGE_VAL ? U[0] + U[1] - u : -u;
 }
 
@@ -93,8 +93,8 @@ static void for_all(check *c)
             const affine m = make_map(map);
             surface *own = make(kind), *f = surface_transformed(own, &m);
             assert_non_null(f);
-            assert_string_equal(f->is->kind, own->is->kind);
-            assert_int_equal(f->is->parts, own->is->parts);
+            assert_string_equal(f->ops->kind, own->ops->kind);
+            assert_int_equal(f->ops->parts, own->ops->parts);
             for (int round = 0; round < 10; round++)
                 c(kind, map, own, f, &m);
             surface_free(f);
@@ -120,14 +120,14 @@ static void rays_meet_alike(int kind, int map, const surface *own, const surface
     }
     no_hits(&h, LANES);
     no_hits(&g, LANES);
-    f->is->hit(f, LANES, &x, 7, &h);
-    own->is->hit(own, LANES, &y, 7, &g);
-    f->is->occlude(f, LANES, &x, lit);
-    own->is->occlude(own, LANES, &y, dark);
-    f->is->locate(f, LANES, &x, h.t, part, u, w);
-    own->is->locate(own, LANES, &y, h.t, other, v, z);
-    f->is->eval(f, LANES, part, u, w, 2, &q);
-    own->is->eval(own, LANES, other, v, z, 2, &p);
+    f->ops->hit(f, LANES, &x, 7, &h);
+    own->ops->hit(own, LANES, &y, 7, &g);
+    f->ops->occlude(f, LANES, &x, lit);
+    own->ops->occlude(own, LANES, &y, dark);
+    f->ops->locate(f, LANES, &x, h.t, part, u, w);
+    own->ops->locate(own, LANES, &y, h.t, other, v, z);
+    f->ops->eval(f, LANES, part, u, w, 2, &q);
+    own->ops->eval(own, LANES, other, v, z, 2, &p);
     for (int i = 0; i < LANES; i++) {
         const double s = (double)real_sqrt(bs_dot(lane_get(&y.s, i), lane_get(&y.s, i)));
         const double size = 1 + (h.id[i] >= 0 ? s * (double)h.t[i] : 0); /* planes have hits far away, and flat to them */
@@ -144,7 +144,7 @@ static void rays_meet_alike(int kind, int map, const surface *own, const surface
         const double off_ray = apart(lane_at(&x, i, h.t[i]), widen(lane_get(&q.Q, i)));
         const double off_image = apart(lane_get(&q.Q, i), affine_point(m, widen(lane_get(&p.Q, i))));
         if (!(off_ray < far && off_image < far)) {
-            print_error("%s, %s: Q is %g off the ray, %g off the image, expected %g\n", own->is->kind, map_names[map], off_ray,
+            print_error("%s, %s: Q is %g off the ray, %g off the image, expected %g\n", own->ops->kind, map_names[map], off_ray,
                         off_image, far);
             fail();
         }
@@ -161,7 +161,7 @@ static void rays_meet_alike(int kind, int map, const surface *own, const surface
             assert_true(bs_dot(n, lane_get(&x.s, i)) < R(1e-3));
     }
     if (!(differ <= 3 && met > 10)) {
-        print_error("%s, %s: %d of %d rays differ\n", own->is->kind, map_names[map], differ, met);
+        print_error("%s, %s: %d of %d rays differ\n", own->ops->kind, map_names[map], differ, met);
         fail();
     }
 }
@@ -177,17 +177,17 @@ static void vectors_are_images(int kind, int map, const surface *own, const surf
     const double turn = affine_volume(m) < 0 ? -1 : 1;
     (void)kind;
     (void)map;
-    for (int32_t part = 0; part < own->is->parts; part++) {
+    for (int32_t part = 0; part < own->ops->parts; part++) {
         static partials q, p;
         double U[2], W[2], A[2], B[2];
-        own->is->extent(own, part, U, W);
-        f->is->extent(f, part, A, B);
+        own->ops->extent(own, part, U, W);
+        f->ops->extent(f, part, A, B);
         assert_true(A[0] == U[0] && A[1] == U[1] && B[0] == W[0] && B[1] == W[1]);
         const bool end = U[1] < HUGE_VAL;
         const real u = (real)random_in(end ? U[0] : -2, end ? U[1] : 2), w = (real)random_in(end ? W[0] : -2, end ? W[1] : 2);
         const real v = (real)turned(own, part, m, (double)u);
-        f->is->eval(f, 1, &part, &u, &w, 2, &q);
-        own->is->eval(own, 1, &part, &v, &w, 2, &p);
+        f->ops->eval(f, 1, &part, &u, &w, 2, &q);
+        own->ops->eval(own, 1, &part, &v, &w, 2, &p);
         const struct {
             const vec3s *is, *of;
             double sign;
@@ -220,13 +220,13 @@ static void own_shadow_alike(int kind, int map, const surface *own, const surfac
     real u[LANES], w[LANES], lit[LANES], dark[LANES];
     int n = 0, differ = 0;
     (void)map;
-    assert_true(!f->is->occlude_own == !own->is->occlude_own);
-    if (!own->is->occlude_own)
+    assert_true(!f->ops->occlude_own == !own->ops->occlude_own);
+    if (!own->ops->occlude_own)
         return;
     for (int i = 0; i < LANES; i++)
         random_ray(&y, i, 1);
     no_hits(&h, LANES);
-    own->is->hit(own, LANES, &y, 0, &h);
+    own->ops->hit(own, LANES, &y, 0, &h);
     for (int i = 0; i < LANES; i++)
         if (h.id[i] == 0) {
             const bs_vec3 r = lane_get(&y.r, i), s = lane_get(&y.s, i);
@@ -234,8 +234,8 @@ static void own_shadow_alike(int kind, int map, const surface *own, const surfac
             lane_set(&y.s, n, s);
             h.t[n++] = h.t[i];
         }
-    own->is->locate(own, n, &y, h.t, part, u, w);
-    own->is->eval(own, n, part, u, w, 1, &q);
+    own->ops->locate(own, n, &y, h.t, part, u, w);
+    own->ops->eval(own, n, part, u, w, 1, &q);
     for (int i = 0; i < n; i++) {
         const bs_vec3 to = {(real)random_in(-4, 4), (real)random_in(-4, 4), (real)random_in(-4, 4)};
         lane_set(&y.r, i, lane_get(&q.Q, i));
@@ -243,11 +243,11 @@ static void own_shadow_alike(int kind, int map, const surface *own, const surfac
         map_ray(m, &y, &x, i);
         lit[i] = dark[i] = 1;
     }
-    f->is->occlude_own(f, n, &x, part, lit);
-    own->is->occlude_own(own, n, &y, part, dark);
+    f->ops->occlude_own(f, n, &x, part, lit);
+    own->ops->occlude_own(own, n, &y, part, dark);
     /* and where the surface is met again */
     static hits again, want;
-    static starts from, there;
+    static ray_origins from, there;
     no_hits(&again, LANES);
     no_hits(&want, LANES);
     from.at = x.r;
@@ -258,8 +258,8 @@ static void own_shadow_alike(int kind, int map, const surface *own, const surfac
         differ += lit[i] != dark[i];
     }
     vec3s_fill(&x.r, n, 9, 9, 9); /* it does not matter */
-    f->is->hit_own(f, n, &x, &from, 7, &again);
-    own->is->hit_own(own, n, &y, &there, 7, &want);
+    f->ops->hit_own(f, n, &x, &from, 7, &again);
+    own->ops->hit_own(own, n, &y, &there, 7, &want);
     for (int i = 0; i < n; i++) {
         const double s = (double)real_sqrt(bs_dot(lane_get(&y.s, i), lane_get(&y.s, i)));
         differ += again.id[i] != want.id[i] || (want.id[i] == 7 && fabs((double)(again.t[i] - want.t[i])) * s > 1e4 * EPS);
@@ -281,27 +281,27 @@ static bool has_feet(int kind, int map) { return is_flat(kind) || map == MOVED |
 static void feet_are_below(int kind, int map, const surface *own, const surface *f, const affine *m)
 {
     static partials q;
-    static feet p, a, b;
+    static closest_points p, a, b;
     static rays x;
     (void)own;
     (void)m;
-    assert_true((f->is->foot != NULL) == has_feet(kind, map));
-    assert_true((f->is->shell != NULL) == has_feet(kind, map) && (f->is->steep != NULL) == has_feet(kind, map));
-    if (!f->is->foot)
+    assert_true((f->ops->foot != NULL) == has_feet(kind, map));
+    assert_true((f->ops->shell != NULL) == has_feet(kind, map) && (f->ops->steep != NULL) == has_feet(kind, map));
+    if (!f->ops->foot)
         return;
-    for (int32_t part = 0; part < f->is->parts; part++) {
+    for (int32_t part = 0; part < f->ops->parts; part++) {
         double U[2], W[2];
         const real zero = 0, h = (real)random_in(-0.15, 0.3);
-        f->is->extent(f, part, U, W);
+        f->ops->extent(f, part, U, W);
         const double mu = U[1] < HUGE_VAL ? 0.1 * (U[1] - U[0]) : 0, mw = W[1] < HUGE_VAL ? 0.1 * (W[1] - W[0]) : 0;
         const real u = (real)random_in(mu > 0 ? U[0] + mu : -2, mu > 0 ? U[1] - mu : 2);
         const real w = (real)random_in(mw > 0 ? W[0] + mw : -2, mw > 0 ? W[1] - mw : 2);
-        f->is->eval(f, 1, &part, &u, &w, 1, &q);
+        f->ops->eval(f, 1, &part, &u, &w, 1, &q);
         const bs_vec3 Q = lane_get(&q.Q, 0), n = lane_unit(bs_normal(lane_get(&q.Qu, 0), lane_get(&q.Qw, 0)));
         const bs_vec3 X = {Q.x + h * n.x, Q.y + h * n.y, Q.z + h * n.z};
         lane_set(&x.r, 0, X);
         lane_set(&x.s, 0, n);
-        f->is->foot(f, part, 1, &x, &zero, &p);
+        f->ops->foot(f, part, 1, &x, &zero, &p);
         assert_true(fabs((double)(p.u[0] - u)) < 300 * EPS && fabs((double)(p.w[0] - w)) < 300 * EPS);
         assert_true(fabs((double)(p.h[0] - h)) < 100 * EPS);
         assert_true(apart(lane_get(&p.gh, 0), widen(n)) < 100 * EPS);
@@ -311,13 +311,13 @@ static void feet_are_below(int kind, int map, const surface *own, const surface 
         const real t = (real)half, minus = (real)-half;
         real rate, reach;
         lane_set(&x.s, 0, d);
-        f->is->foot(f, part, 1, &x, &t, &a);
-        f->is->foot(f, part, 1, &x, &minus, &b);
+        f->ops->foot(f, part, 1, &x, &t, &a);
+        f->ops->foot(f, part, 1, &x, &minus, &b);
         assert_true(fabs((double)(a.u[0] - b.u[0]) / step - (double)bs_dot(d, lane_get(&p.gu, 0))) < 60 * sqrt(EPS));
         assert_true(fabs((double)(a.w[0] - b.w[0]) / step - (double)bs_dot(d, lane_get(&p.gw, 0))) < 60 * sqrt(EPS));
         assert_true(fabs((double)(a.h[0] - b.h[0]) / step - (double)bs_dot(d, lane_get(&p.gh, 0))) < 60 * sqrt(EPS));
         const real Pu = R(0.3), Pw = R(0.4);
-        f->is->steep(f, part, 1, &x, &p, Pu, Pw, &rate, &reach);
+        f->ops->steep(f, part, 1, &x, &p, Pu, Pw, &rate, &reach);
         const real worst = real_abs(bs_dot(d, lane_get(&p.gh, 0))) + Pu * real_abs(bs_dot(d, lane_get(&p.gu, 0))) +
                            Pw * real_abs(bs_dot(d, lane_get(&p.gw, 0)));
         assert_true(rate >= worst * R(0.999) && rate < 20 * worst + 4 && reach > 0);
@@ -337,17 +337,17 @@ static void rough_alike(int kind, int map, const surface *own, const surface *f,
     static hits h, g;
     const double k = affine_scale(m);
     double U[2], W[2];
-    displace_counts counts = {0};
+    displaced_counts counts = {0};
     int differ = 0, met = 0;
     expr_error wrong;
     if (map != MOVED && map != MIRRORED)
         return;
     /* the bounds for wide extents hold for all parts */
     const double all[2] = {-10, 10};
-    own->is->extent(own, 0, U, W);
+    own->ops->extent(own, 0, U, W);
     const bool turns = map == MIRRORED, one = kind == RECTANGLE || kind == BOX; /* u in 0..1 */
-    perturb *P = perturb_function(expr_parse("0.06*sin(4*u+1)*cos(3*w)", &wrong), 1, all, all);
-    perturb *S = perturb_function(expr_parse(!turns ? "0.06*sin(4*u+1)*cos(3*w)" : one ? "0.06*sin(4*(1-u)+1)*cos(3*w)"
+    bump *P = bump_function_new(expr_parse("0.06*sin(4*u+1)*cos(3*w)", &wrong), 1, all, all);
+    bump *S = bump_function_new(expr_parse(!turns ? "0.06*sin(4*u+1)*cos(3*w)" : one ? "0.06*sin(4*(1-u)+1)*cos(3*w)"
                                                                                       : "0.06*sin(1-4*u)*cos(3*w)", &wrong),
                                   1 / k, all, all);
     for (int i = 0; i < LANES; i++) {
@@ -356,19 +356,19 @@ static void rough_alike(int kind, int map, const surface *own, const surface *f,
     }
     no_hits(&h, LANES);
     no_hits(&g, LANES);
-    displace_hit(f, P, LANES, &x, NULL, 0, &h, &counts);
-    displace_hit(own, S, LANES, &y, NULL, 0, &g, &counts);
+    displaced_hit(f, P, LANES, &x, NULL, 0, &h, &counts);
+    displaced_hit(own, S, LANES, &y, NULL, 0, &g, &counts);
     for (int i = 0; i < LANES; i++) {
         const double s = (double)real_sqrt(bs_dot(lane_get(&y.s, i), lane_get(&y.s, i)));
         met += g.id[i] == 0;
         differ += h.id[i] != g.id[i] || (h.id[i] == 0 && fabs((double)(h.t[i] - g.t[i])) * s > 1000 * EPS);
     }
     if (!(met > 20 && differ <= 3 && counts.uncertain <= 1)) {
-        print_error("%s, %s: %d of %d differ, %ld uncertain\n", own->is->kind, map_names[map], differ, met, counts.uncertain);
+        print_error("%s, %s: %d of %d differ, %ld uncertain\n", own->ops->kind, map_names[map], differ, met, counts.uncertain);
         fail();
     }
-    perturb_free(P);
-    perturb_free(S);
+    bump_free(P);
+    bump_free(S);
 }
 
 static void rough_hits(void **state)
@@ -386,37 +386,37 @@ static void rough_box(void **state)
     for (int map = 0; map < MAPS; map++) {
         const affine m = make_map(map);
         surface *own = make(BOX), *f = surface_transformed(own, &m);
-        perturb *P = perturb_function(expr_parse("0.05*sin(14*u+1)*cos(13*w)", &wrong), 1, all, all);
-        static group g;
+        bump *P = bump_function_new(expr_parse("0.05*sin(14*u+1)*cos(13*w)", &wrong), 1, all, all);
+        static hit_group g;
         static hits h;
         static rays y;
-        displace_counts counts = {0};
+        displaced_counts counts = {0};
         int met = 0;
         for (int i = 0; i < LANES; i++) {
             random_ray(&y, i, 1);
             map_ray(&m, &y, &g.x, i);
         }
         no_hits(&h, LANES);
-        displace_hit(f, P, LANES, &g.x, NULL, 0, &h, &counts);
+        displaced_hit(f, P, LANES, &g.x, NULL, 0, &h, &counts);
         g.n = LANES;
         for (int i = 0; i < LANES; i++) {
             g.t[i] = h.id[i] == 0 ? h.t[i] : R(1);
             g.part[i] = h.id[i] == 0 ? h.part[i] : 0;
         }
-        displace_shape(f, P, &g);
+        displaced_shape(f, P, &g);
         for (int i = 0; i < LANES; i++) {
             partials q;
             if (h.id[i] < 0)
                 continue;
             met++;
-            f->is->eval(f, 1, &g.part[i], &g.u[i], &g.w[i], 1, &q);
+            f->ops->eval(f, 1, &g.part[i], &g.u[i], &g.w[i], 1, &q);
             const bs_vec3 Q = lane_get(&q.Q, 0), n = lane_unit(bs_normal(lane_get(&q.Qu, 0), lane_get(&q.Qw, 0)));
             const vec3 X = vec3_add(widen(Q), vec3_scale(widen(n), (double)g.h.P[i]));
             assert_true(apart(lane_at(&g.x, i, h.t[i]), X) < 100 * EPS);
         }
         assert_true(met > 40);
         assert_int_equal(counts.uncertain, 0);
-        perturb_free(P);
+        bump_free(P);
         surface_free(f);
         surface_free(own);
     }

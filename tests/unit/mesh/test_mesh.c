@@ -81,7 +81,7 @@ static mesh *mesh_from(mesh_data d, mesh_normals normals, double crease)
 static mesh *mesh_of(model *of, int n, int m) { return mesh_from(grid(of, n, m), MESH_NORMALS_SMOOTH, 60); }
 
 /* Triangles all over the place. */
-static mesh *crowd(int n)
+static mesh *object_bvh(int n)
 {
     mesh_data d = {n, malloc(sizeof *d.at * (size_t)n), malloc(sizeof *d.skin * (size_t)n), {0}};
     assert_true(d.at && d.skin);
@@ -147,7 +147,7 @@ static bool brute(const mesh *f, int k, vec3 r, vec3 s, long double *t)
 static void hits_as_by_brute_force(void **state)
 {
     (void)state;
-    mesh *f = crowd(300);
+    mesh *f = object_bvh(300);
     int met = 0, dark = 0;
     for (int round = 0; round < 12; round++) {
         static rays x;
@@ -162,10 +162,10 @@ static void hits_as_by_brute_force(void **state)
             lit[i] = 1;
         }
         no_hits(&h, LANES);
-        f->base.is->hit(&f->base, LANES, &x, 3, &h);
-        f->base.is->occlude(&f->base, LANES, &x, lit);
-        f->base.is->locate(&f->base, LANES, &x, h.t, h.part, u, w);
-        f->base.is->eval(&f->base, LANES, h.part, u, w, 1, &q);
+        f->base.ops->hit(&f->base, LANES, &x, 3, &h);
+        f->base.ops->occlude(&f->base, LANES, &x, lit);
+        f->base.ops->locate(&f->base, LANES, &x, h.t, h.part, u, w);
+        f->base.ops->eval(&f->base, LANES, h.part, u, w, 1, &q);
         for (int i = 0; i < LANES; i++) {
             long double best = HUGE_VALL, t;
             int at = -1;
@@ -213,7 +213,7 @@ static void no_ray_passes_between(void **state)
             lane_set(&x.s, i, (bs_vec3){(real)s.x, (real)s.y, (real)s.z});
         }
         no_hits(&h, LANES);
-        f->base.is->hit(&f->base, LANES, &x, 0, &h);
+        f->base.ops->hit(&f->base, LANES, &x, 0, &h);
         for (int i = 0; i < LANES; i++)
             lost += h.id[i] < 0;
         all += LANES;
@@ -236,7 +236,7 @@ static void partials_are_those_of_the_triangle(void **state)
         const double u0 = a.u[0] + b * (a.u[1] - a.u[0]) + c * (a.u[2] - a.u[0]), w0 = a.w[0] + b * (a.w[1] - a.w[0]) + c * (a.w[2] - a.w[0]);
         const real u[3] = {(real)u0, (real)(u0 + d), (real)u0}, w[3] = {(real)w0, (real)w0, (real)(w0 + d)};
         static partials q;
-        f->base.is->eval(&f->base, 3, parts, u, w, 2, &q);
+        f->base.ops->eval(&f->base, 3, parts, u, w, 2, &q);
         vec3 N[3], Q[3];
         for (int i = 0; i < 3; i++) {
             N[i] = vec3_unit(wide(bs_normal(lane_get(&q.Qu, i), lane_get(&q.Qw, i))));
@@ -274,7 +274,7 @@ static void the_way_past(void **state)
             const bs_vec3 s = {(real)random_in(-1, 1), (real)random_in(-1, 1), (real)random_in(-1, 1)};
             static partials q;
             vec3 gu, gw;
-            f->base.is->eval(&f->base, 1, &part, &u, &w, 2, &q);
+            f->base.ops->eval(&f->base, 1, &part, &u, &w, 2, &q);
             const bs_vec3 Qu = lane_get(&q.Qu, 0), Qw = lane_get(&q.Qw, 0);
             const bs_view v = bs_view_of(s, bs_normal(Qu, Qw), Qu, Qw);
             const mesh_prism p = mesh_prism_at(&x, b, c, 0);
@@ -313,7 +313,7 @@ static void own_shadows(void **state)
             part[i] = k;
             lit[i] = 1;
         }
-        f->base.is->occlude_own(&f->base, LANES, &x, part, lit);
+        f->base.ops->occlude_own(&f->base, LANES, &x, part, lit);
         for (int i = 0; i < LANES; i++)
             wrong += (lit[i] > 0) != (i % 2 == 1);
         all += LANES;
@@ -342,12 +342,12 @@ static void images(void **state)
             random_ray(&x, i);
         no_hits(&a, LANES);
         no_hits(&b, LANES);
-        g->is->hit(g, LANES, &x, 0, &a);
-        k->is->hit(k, LANES, &x, 0, &b);
-        g->is->locate(g, LANES, &x, a.t, a.part, u[0], w[0]);
-        k->is->locate(k, LANES, &x, b.t, b.part, u[1], w[1]);
-        g->is->eval(g, LANES, a.part, u[0], w[0], 1, &p);
-        k->is->eval(k, LANES, b.part, u[1], w[1], 1, &q);
+        g->ops->hit(g, LANES, &x, 0, &a);
+        k->ops->hit(k, LANES, &x, 0, &b);
+        g->ops->locate(g, LANES, &x, a.t, a.part, u[0], w[0]);
+        k->ops->locate(k, LANES, &x, b.t, b.part, u[1], w[1]);
+        g->ops->eval(g, LANES, a.part, u[0], w[0], 1, &p);
+        k->ops->eval(k, LANES, b.part, u[1], w[1], 1, &q);
         for (int i = 0; i < LANES; i++) {
             if (a.id[i] < 0 || a.part[i] != b.part[i]) /* at an edge float may take either */
                 continue;
@@ -369,12 +369,12 @@ static void images(void **state)
 
 /* ---- true displacement ---- */
 
-static perturb *bump(const char *text, double scale, const mesh *f)
+static bump *bumped(const char *text, double scale, const mesh *f)
 {
     expr_error wrong;
     expr *e = expr_parse(text, &wrong);
     assert_non_null(e);
-    perturb *P = perturb_function(e, scale, f->u, f->w);
+    bump *P = bump_function_new(e, scale, f->u, f->w);
     assert_non_null(P);
     return P;
 }
@@ -382,14 +382,14 @@ static perturb *bump(const char *text, double scale, const mesh *f)
 /* Against the same surface in closed form: `within` of its hits, as the mesh lies within that of it. */
 static void displaced_as(const char *name, mesh *f, surface *g, const char *text, double scale, double within, double share)
 {
-    perturb *P = bump(text, scale, f);
-    assert_true(displace_prepare(&f->base, P));
+    bump *P = bumped(text, scale, f);
+    assert_true(displaced_prepare(&f->base, P));
     int met = 0, far = 0, differ = 0, dark = 0, darker = 0;
-    displace_counts c = {0, 0};
+    displaced_counts c = {0, 0};
     for (int round = 0; round < 4; round++) {
         static rays x;
         static hits a, b;
-        static group g_a, g_b;
+        static hit_group g_a, g_b;
         real lit_a[LANES], lit_b[LANES];
         for (int i = 0; i < LANES; i++) {
             random_ray(&x, i);
@@ -397,10 +397,10 @@ static void displaced_as(const char *name, mesh *f, surface *g, const char *text
         }
         no_hits(&a, LANES);
         no_hits(&b, LANES);
-        displace_hit(&f->base, P, LANES, &x, NULL, 0, &a, &c);
-        displace_hit(g, P, LANES, &x, NULL, 0, &b, &c);
-        displace_occlude(&f->base, P, LANES, &x, NULL, lit_a, &c);
-        displace_occlude(g, P, LANES, &x, NULL, lit_b, &c);
+        displaced_hit(&f->base, P, LANES, &x, NULL, 0, &a, &c);
+        displaced_hit(g, P, LANES, &x, NULL, 0, &b, &c);
+        displaced_occlude(&f->base, P, LANES, &x, NULL, lit_a, &c);
+        displaced_occlude(g, P, LANES, &x, NULL, lit_b, &c);
         g_a.n = g_b.n = 0;
         for (int i = 0; i < LANES; i++) {
             differ += a.id[i] != b.id[i];
@@ -423,8 +423,8 @@ static void displaced_as(const char *name, mesh *f, surface *g, const char *text
             g_b.part[k] = b.part[i];
         }
         g_b.x = g_a.x;
-        displace_shape(&f->base, P, &g_a);
-        displace_shape(g, P, &g_b);
+        displaced_shape(&f->base, P, &g_a);
+        displaced_shape(g, P, &g_b);
         for (int k = 0; k < g_a.n; k++)
             if (!(apart(lane_get(&g_a.n_bump, k), lane_get(&g_b.n_bump, k)) < 20 * within + 0.02))
                 far++;
@@ -433,7 +433,7 @@ static void displaced_as(const char *name, mesh *f, surface *g, const char *text
                   c.uncertain);
     assert_true(met > 150 && dark > 100);
     assert_true(far <= share * met && differ <= share * met && darker <= share * dark);
-    perturb_free(P);
+    bump_free(P);
     surface_free(g);
     surface_free(&f->base);
 }
@@ -469,23 +469,23 @@ static double error_of(mesh *f, double A, int order)
     static rays x;
     static hits h, rough;
     static partials q;
-    static heights p;
+    static bump_values p;
     real u[LANES], w[LANES];
     double sum = 0;
     int n = 0;
-    displace_counts c = {0, 0};
-    perturb *P = bump("sin(2*u + w) + 0.5*cos(3*w - u) + 0.3", A, f);
-    assert_true(displace_prepare(&f->base, P));
+    displaced_counts c = {0, 0};
+    bump *P = bumped("sin(2*u + w) + 0.5*cos(3*w - u) + 0.3", A, f);
+    assert_true(displaced_prepare(&f->base, P));
     for (int round = 0; round < 4; round++) {
         for (int i = 0; i < LANES; i++)
             random_ray(&x, i);
         no_hits(&h, LANES);
         no_hits(&rough, LANES);
-        f->base.is->hit(&f->base, LANES, &x, 0, &h);
-        displace_hit(&f->base, P, LANES, &x, NULL, 0, &rough, &c);
-        f->base.is->locate(&f->base, LANES, &x, h.t, h.part, u, w);
-        f->base.is->eval(&f->base, LANES, h.part, u, w, 2, &q);
-        P->is->eval(P, LANES, u, w, 2, &p);
+        f->base.ops->hit(&f->base, LANES, &x, 0, &h);
+        displaced_hit(&f->base, P, LANES, &x, NULL, 0, &rough, &c);
+        f->base.ops->locate(&f->base, LANES, &x, h.t, h.part, u, w);
+        f->base.ops->eval(&f->base, LANES, h.part, u, w, 2, &q);
+        P->ops->eval(P, LANES, u, w, 2, &p);
         for (int i = 0; i < LANES; i++) {
             const bs_vec3 s = lane_get(&x.s, i), Qu = lane_get(&q.Qu, i), Qw = lane_get(&q.Qw, i), N = bs_normal(Qu, Qw);
             const double speed = sqrt(bs_dot(s, s));
@@ -501,7 +501,7 @@ static double error_of(mesh *f, double A, int order)
             n++;
         }
     }
-    perturb_free(P);
+    bump_free(P);
     assert_true(n > 60);
     return sum / n;
 }
@@ -635,9 +635,9 @@ static void odd_textures(void **state)
         real u, w;
         lane_set(&x.r, 0, (bs_vec3){R(0.4), R(0.3), -1});
         lane_set(&x.s, 0, (bs_vec3){0, 0, 1});
-        f->base.is->locate(&f->base, 1, &x, &t, &told, &u, &w);
+        f->base.ops->locate(&f->base, 1, &x, &t, &told, &u, &w);
         assert_int_equal(told, k);
-        f->base.is->eval(&f->base, 1, &part, &u, &w, 2, &q);
+        f->base.ops->eval(&f->base, 1, &part, &u, &w, 2, &q);
         assert_true(apart(lane_get(&q.Q, 0), lane_at(&x, 0, 1)) < 1e-3); /* float's digits of u in 1/4096 */
         const bs_vec3 n = bs_normal(lane_get(&q.Qu, 0), lane_get(&q.Qw, 0));
         assert_true(n.z > 0 && bs_regular(n, lane_get(&q.Qu, 0), lane_get(&q.Qw, 0)));

@@ -22,21 +22,21 @@
 #define EPS 1.2e-7
 #endif
 
-static perturb *function(const char *text)
+static bump *function(const char *text)
 {
     const double all[2] = {-HUGE_VAL, HUGE_VAL};
     expr_error e;
     expr *x = expr_parse(text, &e);
     assert_non_null(x);
-    perturb *p = perturb_function(x, 1, all, all);
+    bump *p = bump_function_new(x, 1, all, all);
     assert_non_null(p);
     return p;
 }
 
 /* A wave of rays that come down, or up from behind, onto a skewed plane near (u,w) = 0..1; all that precedes the shift. */
-static group *wave(const perturb *P, double side)
+static hit_group *wave(const bump *P, double side)
 {
-    static group g;
+    static hit_group g;
     surface *f = plane_new((vec3){0.1, 0.2, -0.3}, (vec3){0.1, 0.05, 1.3}, (vec3){0.9, 0.1, 0.2}, false);
     hits h;
     assert_non_null(f);
@@ -52,27 +52,27 @@ static group *wave(const perturb *P, double side)
         h.t[i] = REAL_FAR;
         h.id[i] = -1;
     }
-    f->is->hit(f, LANES, &g.x, 7, &h);
+    f->ops->hit(f, LANES, &g.x, 7, &h);
     for (int i = 0; i < LANES; i++)
         assert_int_equal(h.id[i], 7);
     memcpy(g.t, h.t, sizeof g.t);
-    f->is->locate(f, LANES, &g.x, g.t, g.part, g.u, g.w);
-    f->is->eval(f, LANES, g.part, g.u, g.w, 2, &g.q);
-    P->is->eval(P, LANES, g.u, g.w, 2, &g.h);
+    f->ops->locate(f, LANES, &g.x, g.t, g.part, g.u, g.w);
+    f->ops->eval(f, LANES, g.part, g.u, g.w, 2, &g.q);
+    P->ops->eval(P, LANES, g.u, g.w, 2, &g.h);
     shift_normals(&g, P);
     surface_free(f);
     return &g;
 }
 
 /* |gap| at the shift found, in scene units: how far r + s t0 is from the rough surface along the normal. */
-static double miss(const group *g, int i, const perturb *P)
+static double miss(const hit_group *g, int i, const bump *P)
 {
     bs_view v = bs_view_of(lane_get(&g->x.s, i), lane_get(&g->n_smooth, i), lane_get(&g->q.Qu, i), lane_get(&g->q.Qw, i));
     real u[LANES], w[LANES];
-    static heights h;
+    static bump_values h;
     u[0] = g->u[i] + v.a * g->tau[i];
     w[0] = g->w[i] + v.b * g->tau[i];
-    P->is->eval(P, 1, u, w, 0, &h);
+    P->ops->eval(P, 1, u, w, 0, &h);
     return fabs((double)bs_gap(v, 0, g->tau[i], h.P[0]));
 }
 
@@ -84,9 +84,9 @@ enum { EVERY = sizeof every / sizeof *every };
  * they fall back to order 0. */
 static void exact(const char *text, const int *ks, int n, bool flat)
 {
-    perturb *P = function(text);
+    bump *P = function(text);
     for (int behind = 0; behind < 2; behind++) {
-        group *g = wave(P, behind ? -1 : 1);
+        hit_group *g = wave(P, behind ? -1 : 1);
         for (int k = 0; k < n; k++)
             for (int guard = 0; guard < 2; guard++) {
                 shift_group(g, P, every[ks[k]], guard);
@@ -108,7 +108,7 @@ static void exact(const char *text, const int *ks, int n, bool flat)
                 assert_true(back < LANES / 4 || flat);
             }
     }
-    perturb_free(P);
+    bump_free(P);
 }
 
 static void constant_is_exact_for_all(void **state)
@@ -138,8 +138,8 @@ static void quadratic_is_exact_for_order_2(void **state)
 static void lower_orders_are_not_exact(void **state)
 {
     (void)state;
-    perturb *P = function("0.02 + 0.1*u - 0.07*w + 0.2*u^2 - 0.15*w^2 + 0.25*u*w");
-    group *g = wave(P, 1);
+    bump *P = function("0.02 + 0.1*u - 0.07*w + 0.2*u^2 - 0.15*w^2 + 0.25*u*w");
+    hit_group *g = wave(P, 1);
     for (int k = 1; k <= 3; k++) {
         int off = 0;
         shift_group(g, P, every[k], false);
@@ -147,14 +147,14 @@ static void lower_orders_are_not_exact(void **state)
             off += miss(g, i, P) > 1e-4;
         assert_true(off > LANES / 2);
     }
-    perturb_free(P);
+    bump_free(P);
 }
 
 static void no_bump_no_shift(void **state)
 {
     (void)state;
-    perturb *P = function("0");
-    group *g = wave(P, 1);
+    bump *P = function("0");
+    hit_group *g = wave(P, 1);
     for (int k = 0; k < EVERY; k++)
         for (int guard = 0; guard < 2; guard++) {
             shift_group(g, P, every[k], guard);
@@ -166,7 +166,7 @@ static void no_bump_no_shift(void **state)
                 assert_true(memcmp(&n, &np, sizeof n) == 0);
             }
         }
-    perturb_free(P);
+    bump_free(P);
 }
 
 /* march:N against the true first crossing, found by many small steps: within a step's secant error, and better with N;
@@ -174,8 +174,8 @@ static void no_bump_no_shift(void **state)
 static void march_and_iter_come_near(void **state)
 {
     (void)state;
-    perturb *P = function("0.05*sin(5*u)*cos(4*w) + 0.02*sin(11*u + 3*w)");
-    group *g = wave(P, 1);
+    bump *P = function("0.05*sin(5*u)*cos(4*w) + 0.02*sin(11*u + 3*w)");
+    hit_group *g = wave(P, 1);
     double before = 1;
     for (int N = 2; N <= 64; N *= 2) {
         double sum = 0;
@@ -192,21 +192,21 @@ static void march_and_iter_come_near(void **state)
     for (int i = 0; i < LANES; i++)
         good += miss(g, i, P) < 1e-6;
     assert_true(good > LANES * 9 / 10);
-    perturb_free(P);
+    bump_free(P);
 }
 
 /* The order used and the number of look-ups are told as they are. */
 static void counts(void **state)
 {
     (void)state;
-    perturb *P = function("0.05*sin(5*u)*cos(4*w)");
-    group *g = wave(P, 1);
+    bump *P = function("0.05*sin(5*u)*cos(4*w)");
+    hit_group *g = wave(P, 1);
     assert_int_equal(shift_group(g, P, (method){METHOD_NONE, 0}, true), 0);
     assert_int_equal(shift_group(g, P, (method){METHOD_ORDER, 2}, true), 0);
     assert_int_equal(shift_group(g, P, (method){METHOD_ITER, 1}, true), 0);
     assert_int_equal(shift_group(g, P, (method){METHOD_ITER, 4}, true), 3 * LANES);
     assert_int_equal(shift_group(g, P, (method){METHOD_MARCH, 4}, true), 5 * LANES);
-    perturb_free(P);
+    bump_free(P);
     /* without bounds there is no slab to march through */
     P = function("0.1*u");
     g = wave(P, 1);
@@ -216,17 +216,17 @@ static void counts(void **state)
         assert_int_equal(g->order[i], 0);
         assert_true(fabs((double)(g->tau[i] - bs_tau0(v, g->h.P[i]))) < 1e-6);
     }
-    perturb_free(P);
+    bump_free(P);
 }
 
 /* The guard keeps every shift within the slab. */
 static void guarded_shifts_stay_in_the_slab(void **state)
 {
     (void)state;
-    perturb *P = function("0.2*sin(9*u)*cos(7*w)");
+    bump *P = function("0.2*sin(9*u)*cos(7*w)");
     int back = 0;
     for (int round = 0; round < 16; round++) {
-        group *g = wave(P, round % 2 ? 1 : -1);
+        hit_group *g = wave(P, round % 2 ? 1 : -1);
         for (int order = 0; order <= 3; order++) {
             shift_group(g, P, (method){METHOD_ORDER, order}, true);
             for (int i = 0; i < LANES; i++) {
@@ -240,23 +240,23 @@ static void guarded_shifts_stay_in_the_slab(void **state)
         }
     }
     assert_true(back > 0);
-    perturb_free(P);
+    bump_free(P);
 }
 
 /* At a pole: order none, and the smooth normal. */
 static void pole(void **state)
 {
     (void)state;
-    static group g;
+    static hit_group g;
     surface *f = sphere_new((vec3){0, 0, 0}, 2);
-    perturb *P = function("0.1*sin(3*u)");
+    bump *P = function("0.1*sin(3*u)");
     g.n = 1;
     g.x.r.x[0] = 0, g.x.r.y[0] = 5, g.x.r.z[0] = 0;
     g.x.s.x[0] = 0, g.x.s.y[0] = -1, g.x.s.z[0] = 0;
     g.t[0] = 3;
-    f->is->locate(f, 1, &g.x, g.t, g.part, g.u, g.w);
-    f->is->eval(f, 1, g.part, g.u, g.w, 2, &g.q);
-    P->is->eval(P, 1, g.u, g.w, 2, &g.h);
+    f->ops->locate(f, 1, &g.x, g.t, g.part, g.u, g.w);
+    f->ops->eval(f, 1, g.part, g.u, g.w, 2, &g.q);
+    P->ops->eval(P, 1, g.u, g.w, 2, &g.h);
     shift_normals(&g, P);
     for (int k = 0; k < EVERY; k++) {
         shift_group(&g, P, every[k], true);
@@ -264,7 +264,7 @@ static void pole(void **state)
         assert_true(g.tau[0] == 0);
         assert_true(g.n_bump.y[0] > R(0.999999));
     }
-    perturb_free(P);
+    bump_free(P);
     surface_free(f);
 }
 

@@ -22,7 +22,7 @@ typedef long double real_long;
 /* P = A f(u,w) with all second partials. */
 static real_long f(real_long u, real_long w) { return sinl(2 * u + w) + cosl(3 * w - u) / 2 + 0.3L; }
 
-static bs_bump bump(double A, double u, double w)
+static bs_bump bumped(double A, double u, double w)
 {
     double s = sin(2 * u + w), c = cos(2 * u + w), S = sin(3 * w - u), C = cos(3 * w - u);
     bs_bump p = {A * (s + C / 2 + 0.3), A * (2 * c + S / 2), A * (c - 1.5 * S),
@@ -251,10 +251,10 @@ static double shift(int method, const smooth *q, const ray *x, double A)
     bs_view v = bs_view_of(vec((double)x->s[0], (double)x->s[1], (double)x->s[2]), n, d[0], d[1]);
     bs_slab all = {-HUGE_VAL, HUGE_VAL};
     if (method < ITER2)
-        return bs_shift_of(method, 0, v, bs_curvature(v, n, d[2], d[3], d[4]), bump(A, x->u, x->w), all).tau;
+        return bs_shift_of(method, 0, v, bs_curvature(v, n, d[2], d[3], d[4]), bumped(A, x->u, x->w), all).tau;
     double tau = 0;
     for (int k = 0; k < method - ITER2 + 2; k++)
-        tau = bs_tau0(v, bump(A, x->u + v.a * tau, x->w + v.b * tau).P);
+        tau = bs_tau0(v, bumped(A, x->u + v.a * tau, x->w + v.b * tau).P);
     return tau;
 }
 

@@ -27,39 +27,39 @@
 #define EPS 1.2e-7
 #endif
 
-static sheet *function(const char *x, const char *y, const char *z, double u0, double u1, double w0, double w1)
+static patch *function(const char *x, const char *y, const char *z, double u0, double u1, double w0, double w1)
 {
     expr_error wrong;
     expr *e[3] = {expr_parse(x, &wrong), expr_parse(y, &wrong), expr_parse(z, &wrong)};
     assert_true(e[0] && e[1] && e[2]);
-    return sheet_function("parametric", e, (double[2]){u0, u1}, (double[2]){w0, w1});
+    return patch_function_new("parametric", e, (double[2]){u0, u1}, (double[2]){w0, w1});
 }
 
 static const double pi = 3.14159265358979323846;
 
 static surface *moebius(void)
 {
-    return searched_new(function("(1.2 + w*cos(u/2))*cos(u)", "w*sin(u/2)", "(1.2 + w*cos(u/2))*sin(u)", 0, 2 * pi, -0.4, 0.4));
+    return patch_surface_new(function("(1.2 + w*cos(u/2))*cos(u)", "w*sin(u/2)", "(1.2 + w*cos(u/2))*sin(u)", 0, 2 * pi, -0.4, 0.4));
 }
 
 static surface *klein(void)
 {
-    return searched_new(function("(1 + 0.5*cos(u/2)*sin(w) - 0.5*sin(u/2)*sin(2*w))*cos(u)",
+    return patch_surface_new(function("(1 + 0.5*cos(u/2)*sin(w) - 0.5*sin(u/2)*sin(2*w))*cos(u)",
                                  "0.7*(sin(u/2)*sin(w) + cos(u/2)*sin(2*w))",
                                  "(1 + 0.5*cos(u/2)*sin(w) - 0.5*sin(u/2)*sin(2*w))*sin(u)", 0, 2 * pi, 0, 2 * pi));
 }
 
 /* A sheet with an edge across it. */
-static surface *roof(void) { return searched_new(function("u", "0.3*abs(u - 0.1) + 0.2*sin(3*w)", "w", -1, 1, -1.1, 1.1)); }
+static surface *roof(void) { return patch_surface_new(function("u", "0.3*abs(u - 0.1) + 0.2*sin(3*w)", "w", -1, 1, -1.1, 1.1)); }
 
 static surface *ball(void)
 {
-    return searched_new(function("0.3 + 1.2*sin(w)*cos(u)", "1.2*cos(w) - 0.2", "0.1 + 1.2*sin(w)*sin(u)", -pi, pi, 0, pi));
+    return patch_surface_new(function("0.3 + 1.2*sin(w)*cos(u)", "1.2*cos(w) - 0.2", "0.1 + 1.2*sin(w)*sin(u)", -pi, pi, 0, pi));
 }
 
 static surface *ring(void)
 {
-    return searched_new(function("0.1 + (0.9 + 0.4*cos(w))*cos(u)", "-0.1 - 0.4*sin(w)", "0.2 + (0.9 + 0.4*cos(w))*sin(u)", -pi, pi, -pi, pi));
+    return patch_surface_new(function("0.1 + (0.9 + 0.4*cos(w))*cos(u)", "-0.1 - 0.4*sin(w)", "0.2 + (0.9 + 0.4*cos(w))*sin(u)", -pi, pi, -pi, pi));
 }
 
 static surface *teapot(void)
@@ -71,9 +71,9 @@ static surface *teapot(void)
     assert_int_equal(n, 32);
     for (int k = 0; k < 16 * n; k++)
         p[k] = vec3_scale(vec3_sub(p[k], (vec3){0.2, 1.5, 0}), 0.4);
-    sheet *q = sheet_bezier(n, p);
+    patch *q = patch_bezier_new(n, p);
     free(p);
-    return searched_new(q);
+    return patch_surface_new(q);
 }
 
 enum { MOEBIUS, KLEIN, ROOF, BALL, RING, TEAPOT, KINDS };
@@ -106,7 +106,7 @@ static double distance(bs_vec3 a, bs_vec3 b)
 
 /* ---- partials ---- */
 
-static void check_rows(const sheet *q, struct fy_node *rows, double *worst, int *seen)
+static void check_rows(const patch *q, struct fy_node *rows, double *worst, int *seen)
 {
     for (int r = 0; r < fy_node_sequence_item_count(rows); r++) {
         struct fy_node *row = fy_node_sequence_get_by_index(rows, r);
@@ -114,8 +114,8 @@ static void check_rows(const sheet *q, struct fy_node *rows, double *worst, int 
         for (int k = 0; k < 20; k++)
             assert_true(golden_number(fy_node_sequence_get_by_index(row, k), &want[k]));
         const int32_t part = 0;
-        sheet_jets j;
-        q->is->eval(q, 1, &part, &want[0], &want[1], 2, &j);
+        patch_jets j;
+        q->ops->eval(q, 1, &part, &want[0], &want[1], 2, &j);
         for (int k = 0; k < 18; k++) {
             const expr_jets *a = &j.axis[k % 3];
             const double got[] = {a->v[0], a->u[0], a->w[0], a->uu[0], a->uw[0], a->ww[0]};
@@ -124,10 +124,10 @@ static void check_rows(const sheet *q, struct fy_node *rows, double *worst, int 
             assert_true(off < 2e-14);
         }
         /* and what is bounded holds it, over a box about the place */
-        sheet_bounds b;
-        sheet_bends c;
+        patch_bounds b;
+        patch_hessians c;
         const double u[2] = {want[0] - 0.01, want[0] + 0.03}, w[2] = {want[1] - 0.02, want[1] + 0.01};
-        q->is->bound(q, 0, u, w, &b, &c);
+        q->ops->bound(q, 0, u, w, &b, &c);
         for (int k = 0; k < 9; k++) {
             const expr_bounds *a = &b.axis[k % 3];
             const double *range = k < 3 ? a->v : k < 6 ? a->u : a->w;
@@ -135,7 +135,7 @@ static void check_rows(const sheet *q, struct fy_node *rows, double *worst, int 
             assert_true(range[1] - range[0] < 3);
         }
         for (int k = 0; k < 9; k++) {
-            const expr_bends *a = &c.axis[k % 3];
+            const expr_hessians *a = &c.axis[k % 3];
             const double *range = k < 3 ? a->uu : k < 6 ? a->uw : a->ww;
             const double zero = 1e-48; /* what 50 digits leave of 0 */
             assert_true(range[0] <= want[11 + k] + zero && want[11 + k] <= range[1] + zero);
@@ -157,9 +157,9 @@ static void golden_partials(void **state)
         const char *text[3];
         for (int a = 0; a < 3; a++)
             text[a] = fy_node_get_scalar0(fy_node_sequence_get_by_index(xyz, a));
-        sheet *q = function(text[0], text[1], text[2], -10, 10, -10, 10);
+        patch *q = function(text[0], text[1], text[2], -10, 10, -10, 10);
         check_rows(q, golden_get(one, "rows"), &worst, &seen);
-        q->is->free(q);
+        q->ops->free(q);
     }
     for (int k = 0; k < fy_node_sequence_item_count(patches); k++) {
         struct fy_node *one = fy_node_sequence_get_by_index(patches, k), *points = golden_get(one, "points");
@@ -169,9 +169,9 @@ static void golden_partials(void **state)
             assert_true(golden_number(fy_node_sequence_get_by_index(at, 0), &p[i].x) && golden_number(fy_node_sequence_get_by_index(at, 1), &p[i].y) &&
                         golden_number(fy_node_sequence_get_by_index(at, 2), &p[i].z));
         }
-        sheet *q = sheet_bezier(1, p);
+        patch *q = patch_bezier_new(1, p);
         check_rows(q, golden_get(one, "rows"), &worst, &seen);
-        q->is->free(q);
+        q->ops->free(q);
     }
     fy_document_destroy(doc);
     print_message("%d golden places, worst error %.2g of the scale\n", seen, worst);
@@ -197,14 +197,14 @@ static void hits_are_on_the_surface(void **state)
             for (int i = 0; i < LANES; i++)
                 random_ray(&x, i, 1.3);
             no_hits(&h, LANES);
-            f->is->hit(f, LANES, &x, 3, &h);
-            f->is->locate(f, LANES, &x, h.t, part, u, w);
-            f->is->eval(f, LANES, part, u, w, 2, &q);
+            f->ops->hit(f, LANES, &x, 3, &h);
+            f->ops->locate(f, LANES, &x, h.t, part, u, w);
+            f->ops->eval(f, LANES, part, u, w, 2, &q);
             for (int i = 0; i < LANES; i++) {
                 if (h.id[i] < 0)
                     continue;
                 double U[2], W[2];
-                f->is->extent(f, part[i], U, W);
+                f->ops->extent(f, part[i], U, W);
                 assert_true((double)u[i] >= U[0] - 1e-6 && (double)u[i] <= U[1] + 1e-6 && (double)w[i] >= W[0] - 1e-6 && (double)w[i] <= W[1] + 1e-6);
                 met++;
                 const double far = 1 + distance(lane_at(&x, i, 0), lane_at(&x, i, h.t[i]));
@@ -240,18 +240,18 @@ static void closed_forms(void **state)
             }
             no_hits(&a, LANES);
             no_hits(&b, LANES);
-            f->is->hit(f, LANES, &x, 0, &a);
-            g->is->hit(g, LANES, &x, 0, &b);
-            f->is->occlude(f, LANES, &x, lit_a);
-            g->is->occlude(g, LANES, &x, lit_b);
+            f->ops->hit(f, LANES, &x, 0, &a);
+            g->ops->hit(g, LANES, &x, 0, &b);
+            f->ops->occlude(f, LANES, &x, lit_a);
+            g->ops->occlude(g, LANES, &x, lit_b);
             for (int i = 0; i < LANES; i++) {
                 differ += a.id[i] != b.id[i] || lit_a[i] != lit_b[i];
                 if (a.id[i] < 0 || b.id[i] < 0)
                     continue;
                 met++;
                 const double off = distance(lane_at(&x, i, a.t[i]), lane_at(&x, i, b.t[i]));
-                g->is->locate(g, 1, &(rays){.r = {.x = {x.r.x[i]}, .y = {x.r.y[i]}, .z = {x.r.z[i]}}, .s = {.x = {x.s.x[i]}, .y = {x.s.y[i]}, .z = {x.s.z[i]}}}, &b.t[i], part, u, w);
-                g->is->eval(g, 1, part, u, w, 1, &q);
+                g->ops->locate(g, 1, &(rays){.r = {.x = {x.r.x[i]}, .y = {x.r.y[i]}, .z = {x.r.z[i]}}, .s = {.x = {x.s.x[i]}, .y = {x.s.y[i]}, .z = {x.s.z[i]}}}, &b.t[i], part, u, w);
+                g->ops->eval(g, 1, part, u, w, 1, &q);
                 const bs_vec3 n = lane_unit(bs_normal(lane_get(&q.Qu, 0), lane_get(&q.Qw, 0))), s = lane_unit(lane_get(&x.s, i));
                 const double sine = fabs((double)bs_dot(n, s));
                 if (!(off <= 40 * EPS / fmax(sine, sqrt(EPS))))
@@ -280,7 +280,7 @@ static void own_shadows(void **state)
             for (int i = 0; i < LANES; i++)
                 random_ray(&x, i, 1.3);
             no_hits(&h, LANES);
-            g->is->hit(g, LANES, &x, 0, &h);
+            g->ops->hit(g, LANES, &x, 0, &h);
             int n = 0;
             for (int i = 0; i < LANES; i++)
                 if (h.id[i] >= 0)
@@ -288,8 +288,8 @@ static void own_shadows(void **state)
             memset(part, 0, sizeof part);
             vec3s_fill(&out.s, n, 0, 0, 0);
             static real zero[LANES];
-            f->is->locate(f, n, &out, zero, part, u, w);
-            f->is->eval(f, n, part, u, w, 1, &q);
+            f->ops->locate(f, n, &out, zero, part, u, w);
+            f->ops->eval(f, n, part, u, w, 1, &q);
             for (int i = 0; i < n; i++) {
                 bs_vec3 d = {(real)random_in(-3, 3), (real)random_in(-3, 3), (real)random_in(-3, 3)};
                 const bs_vec3 N = lane_unit(bs_normal(lane_get(&q.Qu, i), lane_get(&q.Qw, i)));
@@ -300,8 +300,8 @@ static void own_shadows(void **state)
                 lane_set(&out.s, i, d);
                 a[i] = b[i] = 1;
             }
-            f->is->occlude_own(f, n, &out, part, a);
-            g->is->occlude_own(g, n, &out, part, b);
+            f->ops->occlude_own(f, n, &out, part, a);
+            g->ops->occlude_own(g, n, &out, part, b);
             for (int i = 0; i < n; i++) {
                 differ += a[i] != b[i];
                 dark += b[i] == 0;
@@ -339,18 +339,18 @@ static void brute_force(void **state)
     (void)state;
     for (int kind = 0; kind < KINDS; kind++) {
         surface *f = surface_of(kind);
-        const int parts = f->is->parts, n = parts > 1 ? 40 : 220;
+        const int parts = f->ops->parts, n = parts > 1 ? 40 : 220;
         vec3 *v = malloc(sizeof *v * (size_t)(parts * (n + 1) * (n + 1)));
         assert_non_null(v);
         for (int p = 0; p < parts; p++) {
             double U[2], W[2];
-            f->is->extent(f, p, U, W);
+            f->ops->extent(f, p, U, W);
             for (int j = 0; j <= n; j++)
                 for (int i = 0; i <= n; i++) {
                     static partials q;
                     const int32_t part = p;
                     const real u = (real)(U[0] + (U[1] - U[0]) * i / n), w = (real)(W[0] + (W[1] - W[0]) * j / n);
-                    f->is->eval(f, 1, &part, &u, &w, 1, &q);
+                    f->ops->eval(f, 1, &part, &u, &w, 1, &q);
                     v[(p * (n + 1) + j) * (n + 1) + i] = (vec3){(double)q.Q.x[0], (double)q.Q.y[0], (double)q.Q.z[0]};
                 }
         }
@@ -360,7 +360,7 @@ static void brute_force(void **state)
         for (int i = 0; i < LANES; i++)
             random_ray(&x, i, 1.3);
         no_hits(&h, LANES);
-        f->is->hit(f, LANES, &x, 0, &h);
+        f->ops->hit(f, LANES, &x, 0, &h);
         for (int i = 0; i < LANES; i++) {
             const vec3 r = {(double)x.r.x[i], (double)x.r.y[i], (double)x.r.z[i]}, s = {(double)x.s.x[i], (double)x.s.y[i], (double)x.s.z[i]};
             const double t = brute(v, n, parts, r, s);
@@ -388,8 +388,8 @@ static void no_cracks(void **state)
             real u[LANES], w[LANES];
             for (int i = 0; i < LANES; i++) {
                 double U[2], W[2];
-                part[i] = (i + round) % f->is->parts;
-                f->is->extent(f, part[i], U, W);
+                part[i] = (i + round) % f->ops->parts;
+                f->ops->extent(f, part[i], U, W);
                 /* on an edge that something joins: the seam of u where u closes, any of a closed surface's or of a patch */
                 const bool edge_u = kind == MOEBIUS || kind == KLEIN || i % 2;
                 double a = edge_u ? (i % 4 < 2 ? 0 : 1) : random_in(0, 1), b = edge_u ? random_in(0.02, 0.98) : (i % 4 < 2 ? 0 : 1);
@@ -400,7 +400,7 @@ static void no_cracks(void **state)
                 u[i] = (real)(U[0] + a * (U[1] - U[0]));
                 w[i] = (real)(W[0] + b * (W[1] - W[0]));
             }
-            f->is->eval(f, LANES, part, u, w, 1, &q);
+            f->ops->eval(f, LANES, part, u, w, 1, &q);
             for (int i = 0; i < LANES; i++) {
                 random_ray(&x, i, 1.3);
                 const bs_vec3 n = lane_unit(bs_normal(lane_get(&q.Qu, i), lane_get(&q.Qw, i))), Q = lane_get(&q.Q, i);
@@ -417,7 +417,7 @@ static void no_cracks(void **state)
                     lane_set(&x.s, i, (bs_vec3){-n.x, -n.y, -n.z}), lane_set(&x.r, i, (bs_vec3){Q.x + R(0.05) * n.x, Q.y + R(0.05) * n.y, Q.z + R(0.05) * n.z});
             }
             no_hits(&h, LANES);
-            f->is->hit(f, LANES, &x, 0, &h);
+            f->ops->hit(f, LANES, &x, 0, &h);
             for (int i = 0; i < LANES; i++) {
                 all++;
                 lost += h.id[i] < 0;
@@ -438,7 +438,7 @@ static void degenerate_edges(void **state)
     for (int i = 0; i < 12; i++) {
         const int32_t part = 0;
         const real u = (real)random_in(-3, 3), w = (real)(i % 2 ? pi : 0);
-        f->is->eval(f, 1, &part, &u, &w, 2, &q);
+        f->ops->eval(f, 1, &part, &u, &w, 2, &q);
         const bs_vec3 Qu = lane_get(&q.Qu, 0), Qw = lane_get(&q.Qw, 0), N = bs_normal(Qu, Qw), n = lane_unit(N);
         assert_true(fabs((double)n.y - (i % 2 ? -1 : 1)) < 1e-5);
         assert_false(bs_regular(N, Qu, Qw));
@@ -448,7 +448,7 @@ static void degenerate_edges(void **state)
     for (int i = 0; i < 8; i++) {
         const int32_t part = i < 4 ? 12 + i : 16 + i;
         const real u = R(0.3), w = 0;
-        f->is->eval(f, 1, &part, &u, &w, 2, &q);
+        f->ops->eval(f, 1, &part, &u, &w, 2, &q);
         const bs_vec3 n = lane_unit(bs_normal(lane_get(&q.Qu, 0), lane_get(&q.Qw, 0)));
         if (!(fabs((double)n.y - (i < 4 ? 1 : -1)) < 1e-4))
             fail_msg("patch %d: n is %g %g %g", part, (double)n.x, (double)n.y, (double)n.z);
@@ -479,17 +479,17 @@ static void odd_rays(void **state)
             lit[i] = 1;
         }
         no_hits(&h, ODD + 1);
-        f->is->hit(f, ODD, &x, 0, &h);
-        f->is->occlude(f, ODD, &x, lit);
-        f->is->locate(f, ODD, &x, h.t, part, u, w);
-        f->is->eval(f, ODD, part, u, w, 2, &q);
-        f->is->occlude_own(f, ODD, &x, part, lit);
+        f->ops->hit(f, ODD, &x, 0, &h);
+        f->ops->occlude(f, ODD, &x, lit);
+        f->ops->locate(f, ODD, &x, h.t, part, u, w);
+        f->ops->eval(f, ODD, part, u, w, 2, &q);
+        f->ops->occlude_own(f, ODD, &x, part, lit);
         assert_int_equal(h.id[ODD], -1);
         for (int i = 0; i < ODD; i++) {
             assert_true(h.id[i] == -1 || h.id[i] == 0);
             assert_true(h.t[i] > 0 && h.t[i] <= REAL_FAR);
             assert_true(lit[i] == 0 || lit[i] == 1);
-            assert_true(part[i] >= 0 && part[i] < f->is->parts);
+            assert_true(part[i] >= 0 && part[i] < f->ops->parts);
         }
     }
 }
@@ -505,12 +505,12 @@ static void each_ray_by_itself(void **state)
         for (int i = 0; i < LANES; i++)
             random_ray(&x, i, 1.3);
         no_hits(&h, LANES);
-        f->is->hit(f, LANES, &x, 0, &h);
+        f->ops->hit(f, LANES, &x, 0, &h);
         for (int i = LANES - 1; i >= 0; i--) {
             lane_set(&one.r, 0, lane_get(&x.r, i));
             lane_set(&one.s, 0, lane_get(&x.s, i));
             no_hits(&alone, 1);
-            f->is->hit(f, 1, &one, 0, &alone);
+            f->ops->hit(f, 1, &one, 0, &alone);
             assert_memory_equal(&alone.t[0], &h.t[i], sizeof h.t[i]);
         }
     }
@@ -518,31 +518,31 @@ static void each_ray_by_itself(void **state)
 
 /* ---- true displacement ---- */
 
-static perturb *bumps(double A, const double u[2], const double w[2])
+static bump *bumps(double A, const double u[2], const double w[2])
 {
     expr_error wrong;
-    return perturb_function(expr_parse("sin(2*u+w) + cos(3*w-u)/2 + 0.3", &wrong), A, u, w);
+    return bump_function_new(expr_parse("sin(2*u+w) + cos(3*w-u)/2 + 0.3", &wrong), A, u, w);
 }
 
 /* What it says of a rough surface over a box holds at all its places, and is close where n does not turn at once; its partials are how it
  * changes. */
-static void check_rough(const sheet *q, const perturb *P, int *boxes, int *close)
+static void check_rough(const patch *q, const bump *P, int *boxes, int *close)
 {
     enum { STEP = 3 }; /* a place, and one a little farther along u and along w */
-    sheet *x = sheet_rough(q, P);
+    patch *x = patch_offset_new(q, P);
     assert_non_null(x);
     for (int k = 0; k < 300; k++) {
         const double size = k % 3 ? 0.003 : 0.03, h = 1e-6, ru = size * (q->u[1] - q->u[0]), rw = size * (q->w[1] - q->w[0]);
         const double u0 = random_in(q->u[0], q->u[1] - ru), w0 = random_in(q->w[0], q->w[1] - rw), u[2] = {u0, u0 + ru}, w[2] = {w0, w0 + rw};
         const int32_t part = (int32_t)random_in(0, q->parts - 1e-9), parts[STEP] = {part, part, part};
-        sheet_bounds b;
-        x->is->bound(x, part, u, w, &b, NULL);
+        patch_bounds b;
+        x->ops->bound(x, part, u, w, &b, NULL);
         *boxes += 1;
         *close += b.axis[0].u[1] - b.axis[0].u[0] < HUGE_VAL;
         for (int i = 0; i < 20; i++) {
             const double a = random_in(u[0], u[1]), c = random_in(w[0], w[1]), U[STEP] = {a, a + h * ru, a}, W[STEP] = {c, c, c + h * rw};
-            sheet_jets j;
-            x->is->eval(x, STEP, parts, U, W, 1, &j);
+            patch_jets j;
+            x->ops->eval(x, STEP, parts, U, W, 1, &j);
             for (int axis = 0; axis < 3; axis++) {
                 const expr_jets *z = &j.axis[axis];
                 const expr_bounds *in = &b.axis[axis];
@@ -555,7 +555,7 @@ static void check_rough(const sheet *q, const perturb *P, int *boxes, int *close
             }
         }
     }
-    x->is->free(x);
+    x->ops->free(x);
 }
 
 static void rough_bounds(void **state)
@@ -563,31 +563,31 @@ static void rough_bounds(void **state)
     (void)state;
     static float samples[12] = {0, 0.3f, 0.1f, 0.5f, 0.2f, 0.7f, 0.4f, 0.1f, 0.9f, 0.2f, 0.6f, 0.3f};
     const image map = {4, 3, samples};
-    sheet *q[] = {
+    patch *q[] = {
         function("(1.2 + w*cos(u/2))*cos(u)", "w*sin(u/2)", "(1.2 + w*cos(u/2))*sin(u)", 0, 2 * pi, -0.4, 0.4),
         function("u", "0.3*abs(u - 0.1) + 0.2*sin(3*w)", "w", -1, 1, -1.1, 1.1),
         function("sin(w)*cos(u)", "cos(w)", "sin(w)*sin(u)", -pi, pi, 0, pi),
     };
     for (int k = 0; k < 3; k++) {
         const affine mirror = {{-1, 0.2, 0}, {0, 1.5, 0}, {0.3, 0, 1}, {1, 2, 3}};
-        sheet *moved = sheet_moved(q[k], &mirror);
+        patch *moved = patch_affine_new(q[k], &mirror);
         expr_error wrong;
-        perturb *P[] = {
+        bump *P[] = {
             bumps(0.04, q[k]->u, q[k]->w),
-            perturb_function(expr_parse("noise(7*u,5*w)", &wrong), 0.05, q[k]->u, q[k]->w),
-            perturb_map(&map, &(map_layout){{1.3, 0.7}, {0.1, 0}, MAP_REPEAT, false, 0.05, 0.2}),
-            perturb_map(&map, &(map_layout){{1.3, 0.7}, {0.1, 0}, MAP_CLAMP, true, 0.05, 0.2}),
+            bump_function_new(expr_parse("noise(7*u,5*w)", &wrong), 0.05, q[k]->u, q[k]->w),
+            bump_map_new(&map, &(map_layout){{1.3, 0.7}, {0.1, 0}, MAP_REPEAT, false, 0.05, 0.2}),
+            bump_map_new(&map, &(map_layout){{1.3, 0.7}, {0.1, 0}, MAP_CLAMP, true, 0.05, 0.2}),
         };
         int boxes = 0, close = 0;
         for (int i = 0; i < 4; i++) {
             check_rough(q[k], P[i], &boxes, &close);
             check_rough(moved, P[i], &boxes, &close);
-            perturb_free(P[i]);
+            bump_free(P[i]);
         }
         print_message("%d boxes, %d with bounds of slopes\n", boxes, close);
         assert_true(close > 0.85 * boxes);
-        moved->is->free(moved);
-        q[k]->is->free(q[k]);
+        moved->ops->free(moved);
+        q[k]->ops->free(q[k]);
     }
 }
 
@@ -597,11 +597,11 @@ static void displaced_as_closed_forms(void **state)
     (void)state;
     surface *f = surface_of(RING), *g = torus_new((vec3){0.1, -0.1, 0.2}, (vec3){0, 1, 0}, 0.9, 0.4);
     double U[2], W[2];
-    displace_counts c = {0};
+    displaced_counts c = {0};
     int differ = 0, met = 0;
-    f->is->extent(f, 0, U, W);
-    perturb *P = bumps(0.04, U, W);
-    assert_true(displace_possible(P) && displace_prepare(f, P));
+    f->ops->extent(f, 0, U, W);
+    bump *P = bumps(0.04, U, W);
+    assert_true(displaced_possible(P) && displaced_prepare(f, P));
     for (int round = 0; round < 6; round++) {
         static rays x;
         static hits a, b;
@@ -614,10 +614,10 @@ static void displaced_as_closed_forms(void **state)
         }
         no_hits(&a, LANES);
         no_hits(&b, LANES);
-        displace_hit(f, P, LANES, &x, NULL, 0, &a, &c);
-        displace_hit(g, P, LANES, &x, NULL, 0, &b, &c);
-        displace_occlude(f, P, LANES, &x, NULL, lit_a, &c);
-        displace_occlude(g, P, LANES, &x, NULL, lit_b, &c);
+        displaced_hit(f, P, LANES, &x, NULL, 0, &a, &c);
+        displaced_hit(g, P, LANES, &x, NULL, 0, &b, &c);
+        displaced_occlude(f, P, LANES, &x, NULL, lit_a, &c);
+        displaced_occlude(g, P, LANES, &x, NULL, lit_b, &c);
         for (int i = 0; i < LANES; i++) {
             const double off = distance(lane_at(&x, i, a.t[i]), lane_at(&x, i, b.t[i]));
             differ += a.id[i] != b.id[i] || lit_a[i] != lit_b[i] || (a.id[i] >= 0 && off > sqrt(EPS));
@@ -626,7 +626,7 @@ static void displaced_as_closed_forms(void **state)
     }
     print_message("displaced: %d hits, %d unlike the closed form's, %ld uncertain\n", met, differ, c.uncertain);
     assert_true(met > 300 && differ <= 1 && c.uncertain <= 1);
-    perturb_free(P);
+    bump_free(P);
     surface_free(g);
 }
 
@@ -657,7 +657,7 @@ static surface *saddle(double k)
     vec3 p[16];
     for (int i = 0; i < 16; i++)
         p[i] = vec3_scale((vec3){0.8 * (i % 4) - 1.2, 0.5 * (i % 3 == 0), 0.8 * (i / 4) - 1.2}, k);
-    return searched_new(sheet_bezier(1, p));
+    return patch_surface_new(patch_bezier_new(1, p));
 }
 
 /* How the height, u and w change in space: u and w by one over the scale. */
@@ -665,7 +665,7 @@ static void feet_at_any_scale(void **state)
 {
     (void)state;
     const double U[2] = {0, 1}, W[2] = {0, 1}, scales[] = {1, 1e-3, 1e3, 1e4};
-    static feet one, p;
+    static closest_points one, p;
     static rays x;
     static real t[LANES];
     int32_t part[LANES] = {0};
@@ -673,23 +673,23 @@ static void feet_at_any_scale(void **state)
         const double size = scales[k];
         const real c = (real)size;
         surface *f = saddle(size);
-        perturb *P = bumps(0.03 * size, U, W);
-        assert_true(displace_prepare(f, P));
+        bump *P = bumps(0.03 * size, U, W);
+        assert_true(displaced_prepare(f, P));
         partials q;
-        heights h;
+        bump_values h;
         for (int i = 0; i < LANES; i++) {
             p.u[i] = R(0.1) + R(0.8) * (real)(i % 8) / 8;
             p.w[i] = R(0.1) + R(0.8) * (real)(i / 8 % 8) / 8;
             t[i] = 0;
         }
-        f->is->eval(f, LANES, part, p.u, p.w, 1, &q);
-        P->is->eval(P, LANES, p.u, p.w, 1, &h);
+        f->ops->eval(f, LANES, part, p.u, p.w, 1, &q);
+        P->ops->eval(P, LANES, p.u, p.w, 1, &h);
         for (int i = 0; i < LANES; i++) {
             const bs_vec3 n = lane_unit(bs_normal(lane_get(&q.Qu, i), lane_get(&q.Qw, i))), Q = lane_get(&q.Q, i);
             lane_set(&x.r, i, (bs_vec3){Q.x + h.P[i] * n.x, Q.y + h.P[i] * n.y, Q.z + h.P[i] * n.z});
             lane_set(&x.s, i, n);
         }
-        f->rough->feet(f, P, LANES, &x, t, part, &p);
+        f->rough->closest_points(f, P, LANES, &x, t, part, &p);
         one = k ? one : p;
         for (int i = 0; i < LANES; i++) {
             assert_true(fabs((double)(p.h[i] - h.P[i])) < 20 * EPS * size);
@@ -697,7 +697,7 @@ static void feet_at_any_scale(void **state)
             assert_true(distance(times(lane_get(&p.gu, i), c), lane_get(&one.gu, i)) < 100 * EPS);
             assert_true(distance(times(lane_get(&p.gw, i), c), lane_get(&one.gw, i)) < 100 * EPS);
         }
-        perturb_free(P);
+        bump_free(P);
         surface_free(f);
     }
 }
@@ -707,15 +707,15 @@ static void feet_at_any_scale(void **state)
 static double error_of(surface *f, double A, int order, const rays *x, const hits *h, const partials *q, const real *u, const real *w)
 {
     double U[2], W[2], worst = 0;
-    displace_counts c = {0};
+    displaced_counts c = {0};
     static hits rough;
-    static heights p;
-    f->is->extent(f, 0, U, W);
-    perturb *P = bumps(A, U, W);
-    assert_true(displace_prepare(f, P));
-    P->is->eval(P, LANES, u, w, 2, &p);
+    static bump_values p;
+    f->ops->extent(f, 0, U, W);
+    bump *P = bumps(A, U, W);
+    assert_true(displaced_prepare(f, P));
+    P->ops->eval(P, LANES, u, w, 2, &p);
     no_hits(&rough, LANES);
-    displace_hit(f, P, LANES, x, NULL, 0, &rough, &c);
+    displaced_hit(f, P, LANES, x, NULL, 0, &rough, &c);
     int n = 0;
     for (int i = 0; i < LANES; i++) {
         if (h->id[i] < 0 || rough.id[i] < 0)
@@ -732,7 +732,7 @@ static double error_of(surface *f, double A, int order, const rays *x, const hit
         worst += log(fabs(rough.t[i] - h->t[i] - tau) * speed + 1e-300);
         n++;
     }
-    perturb_free(P);
+    bump_free(P);
     assert_true(n > 15);
     return worst / n;
 }
@@ -752,9 +752,9 @@ static void error_slopes(void **state)
         for (int i = 0; i < LANES; i++)
             random_ray(&x, i, 1.3);
         no_hits(&h, LANES);
-        f->is->hit(f, LANES, &x, 0, &h);
-        f->is->locate(f, LANES, &x, h.t, part, u, w);
-        f->is->eval(f, LANES, part, u, w, 2, &q);
+        f->ops->hit(f, LANES, &x, 0, &h);
+        f->ops->locate(f, LANES, &x, h.t, part, u, w);
+        f->ops->eval(f, LANES, part, u, w, 2, &q);
         for (int order = 0; order < 4; order++) {
             const double a = error_of(f, 1e-3, order, &x, &h, &q, u, w), b = error_of(f, 1e-4, order, &x, &h, &q, u, w);
             const double slope = (a - b) / log(10);
@@ -770,10 +770,10 @@ static void refused(void **state)
     (void)state;
     const vec3 same[16] = {{1, 2, 3}, {1, 2, 3}, {1, 2, 3}, {1, 2, 3}, {1, 2, 3}, {1, 2, 3}, {1, 2, 3}, {1, 2, 3},
                            {1, 2, 3}, {1, 2, 3}, {1, 2, 3}, {1, 2, 3}, {1, 2, 3}, {1, 2, 3}, {1, 2, 3}, {1, 2, 3}};
-    assert_null(searched_new(sheet_bezier(1, same)));
-    assert_null(searched_new(function("1", "2", "3", 0, 1, 0, 1)));
-    assert_null(searched_new(function("u", "1/w", "w", 0, 1, -1, 1)));
-    assert_null(searched_new(function("u", "log(w)", "w", 0, 1, -2, -1)));
+    assert_null(patch_surface_new(patch_bezier_new(1, same)));
+    assert_null(patch_surface_new(function("1", "2", "3", 0, 1, 0, 1)));
+    assert_null(patch_surface_new(function("u", "1/w", "w", 0, 1, -1, 1)));
+    assert_null(patch_surface_new(function("u", "log(w)", "w", 0, 1, -2, -1)));
 }
 
 int main(void)

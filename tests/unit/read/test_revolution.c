@@ -159,8 +159,8 @@ static void first_hits(void **state)
                 h.id[i] = -1;
                 lit[i] = 1;
             }
-            q->is->hit(q, LANES, &x, 7, &h);
-            q->is->occlude(q, LANES, &x, lit);
+            q->ops->hit(q, LANES, &x, 7, &h);
+            q->ops->occlude(q, LANES, &x, lit);
             for (int i = 0; i < LANES; i++) {
                 wide r[3], s[3];
                 bool doubt, c;
@@ -203,7 +203,7 @@ static void own_shadows(void **state)
         for (int round = 0; round < 8; round++) {
             static rays x, away, nowhere;
             static hits h, again;
-            static starts from;
+            static ray_origins from;
             int32_t part[LANES], on[LANES];
             real t[LANES], u[LANES], w[LANES], lit[LANES];
             int n = 0;
@@ -212,10 +212,10 @@ static void own_shadows(void **state)
                 h.t[i] = REAL_FAR;
                 h.id[i] = -1;
             }
-            q->is->hit(q, LANES, &x, 0, &h);
+            q->ops->hit(q, LANES, &x, 0, &h);
             for (int i = 0; i < LANES; i++)
                 t[i] = h.id[i] == 0 ? h.t[i] : R(1);
-            q->is->locate(q, LANES, &x, t, part, u, w);
+            q->ops->locate(q, LANES, &x, t, part, u, w);
             for (int i = 0; i < LANES; i++)
                 if (h.id[i] == 0) {
                     const vec3 light = vec3_scale(vec3_unit(somewhere(1)), random_in(1.5, 5));
@@ -228,11 +228,11 @@ static void own_shadows(void **state)
                     from.part[n] = part[i];
                     on[n++] = part[i];
                 }
-            q->is->occlude_own(q, n, &away, on, lit);
+            q->ops->occlude_own(q, n, &away, on, lit);
             from.at = away.r;
             nowhere.s = away.s;
             vec3s_fill(&nowhere.r, n, 9, 9, 9); /* it does not matter */
-            q->is->hit_own(q, n, &nowhere, &from, 7, &again);
+            q->ops->hit_own(q, n, &nowhere, &from, 7, &again);
             for (int i = 0; i < n; i++) {
                 wide r[3], s[3];
                 assert_true((again.id[i] == 7) == (lit[i] == 0));
@@ -304,7 +304,7 @@ static void around_a_torus(void **state)
         h.t[i] = REAL_FAR;
         h.id[i] = -1;
     }
-    q->is->hit(q, N, &x, 0, &h);
+    q->ops->hit(q, N, &x, 0, &h);
     for (int i = 0; i < N; i++) {
         if (rays_of[i].met >= 0)
             assert_int_equal(h.id[i] == 0, rays_of[i].met);
@@ -336,7 +336,7 @@ static void small_and_far(void **state)
             h.t[i] = REAL_FAR;
             h.id[i] = -1;
         }
-        f[k]->is->hit(f[k], 5, &x, 0, &h);
+        f[k]->ops->hit(f[k], 5, &x, 0, &h);
         for (int i = 0; i < 5; i++)
             assert_int_equal(h.id[i], i < 3 ? 0 : -1);
         surface_free(f[k]);
@@ -355,21 +355,21 @@ static void horizons(void **state)
         int32_t part[LANES];
         real u[LANES], w[LANES], lit[LANES];
         double U[2], W[2];
-        q->is->extent(q, 0, U, W);
+        q->ops->extent(q, 0, U, W);
         for (int i = 0; i < LANES; i++) {
             part[i] = 0;
             u[i] = (real)random_in(U[0], U[1]);
             w[i] = f->torus ? (real)random_in(-1, 1) : (real)random_in(0.3 * W[1], 0.7 * W[1]); /* a torus bends away there */
             lit[i] = 1;
         }
-        q->is->eval(q, LANES, part, u, w, 1, &p);
+        q->ops->eval(q, LANES, part, u, w, 1, &p);
         for (int i = 0; i < LANES; i++) {
             bs_vec3 n = lane_unit(bs_normal(lane_get(&p.Qu, i), lane_get(&p.Qw, i))), e = lane_unit(lane_get(&p.Qu, i));
             real tilt = i % 2 ? R(1e-3) : R(-1e-3), far = i % 3 ? R(0.3) : R(30);
             lane_set(&x.r, i, lane_get(&p.Q, i));
             lane_set(&x.s, i, (bs_vec3){far * (e.x + tilt * n.x), far * (e.y + tilt * n.y), far * (e.z + tilt * n.z)});
         }
-        q->is->occlude_own(q, LANES, &x, part, lit);
+        q->ops->occlude_own(q, LANES, &x, part, lit);
         for (int i = 0; i < LANES; i++)
             if (lit[i] != (i % 2 ? R(1) : R(0))) {
                 print_error("%s: lane %d, u %g, w %g: %g\n", f->name, i, (double)u[i], (double)w[i], (double)lit[i]);

@@ -40,7 +40,7 @@ static const char head[] =
 static void put_object(FILE *f, int i)
 {
     static const char *const materials[] = {"clay", "mirror", "clay", "glass", "clay"};
-    static const char searched[] = "x: \"%.3f + %.3f*cos(u)*(2+cos(w))\", y: \"%.3f + %.3f*sin(w)\", z: \"%.3f + %.3f*sin(u)*(2+cos(w))\"";
+    static const char patch_surface[] = "x: \"%.3f + %.3f*cos(u)*(2+cos(w))\", y: \"%.3f + %.3f*sin(w)\", z: \"%.3f + %.3f*sin(u)*(2+cos(w))\"";
     const double x = random_in(-5, 5), y = random_in(0.2, 4), z = random_in(-4, 6), k = random_in(0.1, 0.5), a = random_in(-1, 1);
     fprintf(f, "  o%d:\n    material: %s\n    ", i, materials[i % 5]);
     switch (i % 16 == 15 ? 7 : i % 7) {
@@ -67,7 +67,7 @@ static void put_object(FILE *f, int i)
         break;
     default:
         fprintf(f, "parametric: {");
-        fprintf(f, searched, x, k / 3, y, k / 3, z, k / 3);
+        fprintf(f, patch_surface, x, k / 3, y, k / 3, z, k / 3);
         fprintf(f, ", u: [0, 2*pi], w: [0, 2*pi]}\n");
         break;
     }
@@ -93,13 +93,13 @@ static scene *many(const char *more)
     if (!s)
         fail_msg("%s", e.text);
     errors_free(&e);
-    assert_non_null(s->crowd);
+    assert_non_null(s->object_bvh);
     return s;
 }
 
 static bool is_disc(const surface *f, int part)
 {
-    const char *kind = f->is->kind;
+    const char *kind = f->ops->kind;
     return strcmp(kind, "disc") == 0 || (part > 0 && (strcmp(kind, "cylinder") == 0 || strcmp(kind, "cone") == 0));
 }
 
@@ -111,15 +111,15 @@ static void boxes(void **state)
     for (int k = 0; k < s->objects; k++) {
         const surface *f = s->object[k].shape;
         double lo[3], hi[3];
-        f->is->box(f, lo, hi);
-        for (int32_t part = 0; part < f->is->parts; part++)
+        f->ops->box(f, lo, hi);
+        for (int32_t part = 0; part < f->ops->parts; part++)
             for (int i = 0; i < 400; i++) {
                 double U[2], W[2];
                 partials q;
-                f->is->extent(f, part, U, W);
+                f->ops->extent(f, part, U, W);
                 const bool ends = U[1] < HUGE_VAL;
                 const real u = (real)(ends ? random_in(U[0], U[1]) : random_in(-9, 9)), w = (real)(ends ? random_in(W[0], W[1]) : random_in(-9, 9));
-                f->is->eval(f, 1, &part, &u, &w, 1, &q);
+                f->ops->eval(f, 1, &part, &u, &w, 1, &q);
                 if (is_disc(f, part) && (double)(u * u + w * w) > U[1] * U[1])
                     continue; /* the extent is a square about it */
                 const double p[3] = {(double)q.Q.x[0], (double)q.Q.y[0], (double)q.Q.z[0]};
@@ -152,16 +152,16 @@ static void random_rays(int wave, workspace *v)
 static void same_with(scene *s, const tracer *k, int waves)
 {
     workspace *a = workspace_new(s);
-    crowd *c = s->crowd;
+    object_bvh *c = s->object_bvh;
     int met = 0;
-    s->crowd = NULL;
+    s->object_bvh = NULL;
     workspace *b = workspace_new(s);
     for (int wave = 0; wave < waves; wave++) {
         random_rays(wave, a);
         b->x = a->x;
-        s->crowd = c;
+        s->object_bvh = c;
         trace(k, LANES, a);
-        s->crowd = NULL;
+        s->object_bvh = NULL;
         trace(k, LANES, b);
         assert_memory_equal(&a->out.rgb, &b->out.rgb, sizeof a->out.rgb);
         assert_memory_equal(a->out.depth, b->out.depth, sizeof a->out.depth);
@@ -173,7 +173,7 @@ static void same_with(scene *s, const tracer *k, int waves)
     assert_true(met > waves * LANES / 4);
     assert_int_equal(a->stats.secondary_rays, b->stats.secondary_rays);
     assert_true(a->stats.secondary_rays > waves);
-    s->crowd = c;
+    s->object_bvh = c;
     workspace_free(a);
     workspace_free(b);
     scene_free(s);

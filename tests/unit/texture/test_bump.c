@@ -35,11 +35,11 @@ static image *data(void)
 }
 
 /* All six values at one place. */
-static void look(const perturb *p, double u, double w, double out[6])
+static void look(const bump *p, double u, double w, double out[6])
 {
-    static heights h;
+    static bump_values h;
     real U[1] = {(real)u}, V[1] = {(real)w};
-    p->is->eval(p, 1, U, V, 2, &h);
+    p->ops->eval(p, 1, U, V, 2, &h);
     const real v[6] = {h.P[0], h.Pu[0], h.Pw[0], h.Puu[0], h.Puw[0], h.Pww[0]};
     for (int k = 0; k < 6; k++)
         out[k] = (double)v[k];
@@ -113,7 +113,7 @@ static void at_the_samples(void **state)
     (void)state;
     for (int n = 0; n < LAYOUTS; n++) {
         const map_layout *l = &layouts[n];
-        perturb *p = perturb_map(data(), l);
+        bump *p = bump_map_new(data(), l);
         double got[6], want[6], size[6];
         sizes(l, size);
         for (int j = -2; j < H + 2; j++)
@@ -131,7 +131,7 @@ static void at_the_samples(void **state)
                 for (int k = 0; k < 6; k++)
                     near(got[k], want[k], size[k] * 8); /* the place itself is rounded: slopes of the interpolation */
             }
-        perturb_free(p);
+        bump_free(p);
     }
 }
 
@@ -140,7 +140,7 @@ static void bilinear_between(void **state)
     (void)state;
     for (int n = 0; n < LAYOUTS; n++) {
         const map_layout *l = &layouts[n];
-        perturb *p = perturb_map(data(), l);
+        bump *p = bump_map_new(data(), l);
         double got[6], c[4][6], size[6];
         sizes(l, size);
         for (int k = 0; k < 500; k++) {
@@ -154,12 +154,12 @@ static void bilinear_between(void **state)
             for (int m = 0; m < 6; m++)
                 near(got[m], (c[0][m] * (1 - a) + c[1][m] * a) * (1 - b) + (c[2][m] * (1 - a) + c[3][m] * a) * b, size[m] * 8);
         }
-        perturb_free(p);
+        bump_free(p);
     }
 }
 
 /* P a sample's distance around a place, [w][u], as it is looked up; and the differences in the order of look. */
-static void differences_of_P(const perturb *p, double u, double w, double du, double dw, double d[6])
+static void differences_of_P(const bump *p, double u, double w, double du, double dw, double d[6])
 {
     double P[3][3], v[6];
     for (int y = 0; y < 3; y++)
@@ -190,7 +190,7 @@ static void derivatives_are_differences(void **state)
     for (int n = 0; n < LAYOUTS; n++) {
         const map_layout *l = &layouts[n];
         const double du = l->size[0] / (W - l->corners), dw = l->size[1] / (H - l->corners), half = l->corners ? 0 : 0.5;
-        perturb *p = perturb_map(data(), l);
+        bump *p = bump_map_new(data(), l);
         double got[6], want[6], size[6];
         int level[3] = {0, 0, 0};
         sizes(l, size);
@@ -211,7 +211,7 @@ static void derivatives_are_differences(void **state)
             level[past_u + past_w]++;
         }
         assert_true(level[0] > 500 && (l->wrap != MAP_CLAMP || (level[1] > 1000 && level[2] > 500)));
-        perturb_free(p);
+        bump_free(p);
     }
 }
 
@@ -231,7 +231,7 @@ static void clamped_ramp(void **state)
         char text[99];
         expr_error e;
         snprintf(text, sizeof text, "clamp((u-%.17g)/%.17g,0,1)", lo, hi - lo);
-        perturb *map = perturb_map(&m, &l), *function = perturb_function(expr_parse(text, &e), 0.5, all, all);
+        bump *map = bump_map_new(&m, &l), *function = bump_function_new(expr_parse(text, &e), 0.5, all, all);
         for (int k = 0; k < 3000; k++) {
             const double u = k * 0.001 - 1, w = k % 17 * 0.1 - 0.3;
             double a[6], b[6];
@@ -242,8 +242,8 @@ static void clamped_ramp(void **state)
                 for (int i = 1; i < 3; i++)
                     b[i] != 0 ? near(a[i], b[i], 32) : assert_true(a[i] == 0);
         }
-        perturb_free(map);
-        perturb_free(function);
+        bump_free(map);
+        bump_free(function);
     }
 }
 
@@ -253,14 +253,14 @@ static void anywhere(void **state)
     (void)state;
     const double far[] = {1e4, -1e4, 1e9, -1e9, 1e30, -1e30, (double)INFINITY, (double)NAN};
     for (int n = 0; n < LAYOUTS; n++) {
-        perturb *p = perturb_map(data(), &layouts[n]);
+        bump *p = bump_map_new(data(), &layouts[n]);
         for (size_t i = 0; i < 8; i++)
             for (size_t j = 0; j < 8; j++) {
                 double v[6];
                 look(p, far[i], far[j], v);
                 assert_true(v[0] >= (double)p->Pmin - 1e-6 && v[0] <= (double)p->Pmax + 1e-6);
             }
-        perturb_free(p);
+        bump_free(p);
     }
 }
 
@@ -269,7 +269,7 @@ static void map_bounds(void **state)
     (void)state;
     for (int n = 0; n < LAYOUTS; n++) {
         const map_layout *l = &layouts[n];
-        perturb *p = perturb_map(data(), l);
+        bump *p = bump_map_new(data(), l);
         double lo = HUGE_VAL, hi = -HUGE_VAL;
         for (int i = 0; i < W * H; i++) {
             int column = i % W, row = i / W;
@@ -281,7 +281,7 @@ static void map_bounds(void **state)
         }
         near((double)p->Pmin, lo, 1);
         near((double)p->Pmax, hi, 1);
-        perturb_free(p);
+        bump_free(p);
     }
 }
 
@@ -289,22 +289,22 @@ static void map_bounds(void **state)
 static void orders(void **state)
 {
     (void)state;
-    static heights all, some;
+    static bump_values all, some;
     real u[LANES], w[LANES];
     const double extent[2] = {-HUGE_VAL, HUGE_VAL};
     expr_error e;
-    perturb *ps[2] = {perturb_map(data(), &layouts[0]),
-                      perturb_function(expr_parse("sin(3*u)*cos(w) + u*w", &e), -0.3, extent, extent)};
+    bump *ps[2] = {bump_map_new(data(), &layouts[0]),
+                      bump_function_new(expr_parse("sin(3*u)*cos(w) + u*w", &e), -0.3, extent, extent)};
     for (int i = 0; i < LANES; i++) {
         u[i] = (real)(i * 0.037 - 3);
         w[i] = (real)(i * 0.021 - 1);
     }
     for (int k = 0; k < 2; k++) {
-        ps[k]->is->eval(ps[k], LANES, u, w, 2, &all);
+        ps[k]->ops->eval(ps[k], LANES, u, w, 2, &all);
         for (int order = 0; order < 3; order++) {
             for (int i = 0; i < LANES; i++)
                 some.Pu[i] = some.Pw[i] = some.Puu[i] = some.Puw[i] = some.Pww[i] = 77;
-            ps[k]->is->eval(ps[k], LANES, u, w, order, &some);
+            ps[k]->ops->eval(ps[k], LANES, u, w, order, &some);
             for (int i = 0; i < LANES; i++) {
                 assert_true(some.P[i] == all.P[i]);
                 assert_true(order >= 1 ? some.Pu[i] == all.Pu[i] && some.Pw[i] == all.Pw[i]
@@ -313,7 +313,7 @@ static void orders(void **state)
                                        : some.Puu[i] == 77 && some.Puw[i] == 77 && some.Pww[i] == 77);
             }
         }
-        perturb_free(ps[k]);
+        bump_free(ps[k]);
     }
 }
 
@@ -322,7 +322,7 @@ static void functions(void **state)
     (void)state;
     const double u[2] = {-1, 1}, w[2] = {0, 2}, all[2] = {-HUGE_VAL, HUGE_VAL};
     expr_error e;
-    perturb *p = perturb_function(expr_parse("u^2 - w*u", &e), -0.5, u, w);
+    bump *p = bump_function_new(expr_parse("u^2 - w*u", &e), -0.5, u, w);
     double v[6];
     look(p, 0.5, 0.25, v);
     const double want[6] = {-0.5 * (0.25 - 0.125), -0.5 * (1 - 0.25), 0.25, -1, 0.5, 0};
@@ -331,18 +331,18 @@ static void functions(void **state)
     /* the true range of u^2 - w u here is -1 .. 3; times -0.5 */
     assert_true((double)p->Pmin <= -1.5 && (double)p->Pmin > -1.6);
     assert_true((double)p->Pmax >= 0.5 && (double)p->Pmax < 0.6);
-    perturb_free(p);
+    bump_free(p);
 
-    p = perturb_function(expr_parse("u", &e), 1, all, all);
+    p = bump_function_new(expr_parse("u", &e), 1, all, all);
     assert_true(isinf(p->Pmin) && isinf(p->Pmax));
-    perturb_free(p);
-    p = perturb_function(expr_parse("u", &e), 0, all, all);
+    bump_free(p);
+    p = bump_function_new(expr_parse("u", &e), 0, all, all);
     assert_true(p->Pmin == 0 && p->Pmax == 0);
-    perturb_free(p);
-    p = perturb_function(expr_parse("sin(u)*cos(w)", &e), 0.2, all, all);
+    bump_free(p);
+    p = bump_function_new(expr_parse("sin(u)*cos(w)", &e), 0.2, all, all);
     near((double)p->Pmin, -0.2, 1);
     near((double)p->Pmax, 0.2, 1);
-    perturb_free(p);
+    bump_free(p);
 }
 
 static uint32_t draw_state = 7;
@@ -360,7 +360,7 @@ static void map_slopes(void **state)
     (void)state;
     for (int n = 0; n < LAYOUTS; n++) {
         const map_layout *l = &layouts[n];
-        perturb *p = perturb_map(data(), l);
+        bump *p = bump_map_new(data(), l);
         const double top[2] = {(double)p->Pu_max, (double)p->Pw_max};
         double steepest[2] = {0, 0}, size[6];
         sizes(l, size);
@@ -391,7 +391,7 @@ static void map_slopes(void **state)
             }
         for (int k = 0; k < 2; k++)
             near(top[k], steepest[k], size[1 + k] * 8);
-        perturb_free(p);
+        bump_free(p);
     }
 }
 
@@ -400,45 +400,45 @@ static void odd_map_slopes(void **state)
 {
     (void)state;
     map_layout l = layouts[0];
-    perturb *p = perturb_map(data(), &l), *q;
+    bump *p = bump_map_new(data(), &l), *q;
     l.scale = -l.scale;
     l.size[0] = -l.size[0];
-    q = perturb_map(data(), &l);
+    q = bump_map_new(data(), &l);
     assert_true(q->Pu_max == p->Pu_max && q->Pw_max == p->Pw_max && p->Pu_max > 0);
-    perturb_free(p);
-    perturb_free(q);
+    bump_free(p);
+    bump_free(q);
     l.scale = 0;
-    p = perturb_map(data(), &l);
+    p = bump_map_new(data(), &l);
     assert_true(p->Pu_max == 0 && p->Pw_max == 0);
-    perturb_free(p);
+    bump_free(p);
 
     /* a step along w alone; the last row's is across the wrap */
     float steps[6] = {0, 0, 1, 1, 3, 3};
     image m = {2, 3, steps};
     const map_layout plain = {{1, 0.5}, {0, 0}, MAP_REPEAT, false, 2, 0}, clamped = {{1, 0.5}, {0, 0}, MAP_CLAMP, false, 2, 0};
-    p = perturb_map(&m, &plain);
+    p = bump_map_new(&m, &plain);
     assert_true(p->Pu_max == 0);
     near((double)p->Pw_max, 3 * 2 * 6, 36); /* a difference of 3, scale 2, 6 samples per unit */
-    perturb_free(p);
-    p = perturb_map(&m, &clamped);
+    bump_free(p);
+    p = bump_map_new(&m, &clamped);
     near((double)p->Pw_max, 2 * 2 * 6, 24);
-    perturb_free(p);
+    bump_free(p);
     steps[3] = (float)NAN;
-    p = perturb_map(&m, &plain);
+    p = bump_map_new(&m, &plain);
     assert_true(isinf(p->Pu_max) && isinf(p->Pw_max));
-    perturb_free(p);
+    bump_free(p);
 }
 
 static void check_function(const char *text, double scale, double u0, double u1, double Pu, double Pw, double slack)
 {
     const double u[2] = {u0, u1}, w[2] = {0, 2};
     expr_error e;
-    perturb *p = perturb_function(expr_parse(text, &e), scale, u, w);
+    bump *p = bump_function_new(expr_parse(text, &e), scale, u, w);
     const double got[2] = {(double)p->Pu_max, (double)p->Pw_max}, want[2] = {Pu, Pw};
     for (int k = 0; k < 2; k++)
         if (got[k] != want[k] && !(got[k] >= want[k] && got[k] <= want[k] * (1 + slack)))
             fail_msg("%s: %.17g, expected %.17g", text, got[k], want[k]);
-    perturb_free(p);
+    bump_free(p);
 }
 
 static void function_slopes(void **state)
@@ -465,8 +465,8 @@ static void too_small(void **state)
 {
     (void)state;
     image one = {1, 5, samples}, two = {5, 1, samples};
-    assert_null(perturb_map(&one, &layouts[0]));
-    assert_null(perturb_map(&two, &layouts[0]));
+    assert_null(bump_map_new(&one, &layouts[0]));
+    assert_null(bump_map_new(&two, &layouts[0]));
 }
 
 int main(void)
