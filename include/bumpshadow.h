@@ -179,8 +179,8 @@ typedef struct bs_shift {
 /* The shift by order 0, 1, 2 or 3 (2+). `guard` != 0 (ours, the default of kage): a result outside the slab, or with
  * a ray that does not go down through the tangent plane (s.n' >= 0 from outside, that is B <= 0), falls back one order,
  * 3 and 2 to 1, 1 to 0; order 0 is always inside. Without the guard the formulas stand bare; only where order 2 has
- * no real root near that of order 1 (B <= 0, B^2 < 4 A P) does it fall back to order 1 then. `curvature` is used by order 3 alone. Call it with a constant order and guard:
- * what is not needed is compiled away. */
+ * no real root near that of order 1 (B <= 0, B^2 < 4 A P) does it fall back to order 1 then. `curvature` is used by
+ * order 3 alone. Call it with a constant order and guard: what is not needed is compiled away. */
 static inline bs_shift bs_shift_of(int order, int guard, bs_view v, bs_real curvature, bs_bump p, bs_slab slab)
 {
     bs_real B = bs_slope(v, p), down = v.sn < 0 ? B : -B;
@@ -220,7 +220,8 @@ static inline bs_shift bs_shift_of(int order, int guard, bs_view v, bs_real curv
  *     // away from it, or P is flat at Pmin, and there order 0 is exact.
  */
 typedef struct bs_march {
-    bs_real tau, gap; /* the last place above the surface; once found, the shift. tau is infinite where the slab has no end */
+    bs_real tau,
+        gap; /* the last place above the surface; once found, the shift. tau is infinite where the slab has no end */
     int found;
 } bs_march;
 

@@ -21,14 +21,15 @@ static inline vec3 affine_point(const affine *m, vec3 p) { return vec3_add(affin
 /* First m, then next. */
 static inline affine affine_then(const affine *m, const affine *next)
 {
-    return (affine){affine_vector(next, m->x), affine_vector(next, m->y), affine_vector(next, m->z), affine_point(next, m->o)};
+    return (affine){affine_vector(next, m->x), affine_vector(next, m->y), affine_vector(next, m->z),
+                    affine_point(next, m->o)};
 }
 
 /* What becomes of a unit of volume; below 0 where the map mirrors. */
 static inline double affine_volume(const affine *m) { return vec3_dot(vec3_cross(m->x, m->y), m->z); }
 
-/* The way back: its rows x, y, z, so that a vector v comes from (x.v, y.v, z.v); a gradient goes by them where vectors go by the
- * axes. o: the origin, as in m. */
+/* The way back: its rows x, y, z, so that a vector v comes from (x.v, y.v, z.v); a gradient goes by them where vectors
+ * go by the axes. o: the origin, as in m. */
 static inline affine affine_back(const affine *m)
 {
     const double k = 1 / affine_volume(m);
@@ -41,7 +42,8 @@ static inline double affine_scale(const affine *m)
 {
     const double xx = vec3_dot(m->x, m->x), yy = vec3_dot(m->y, m->y), zz = vec3_dot(m->z, m->z), least = 1e-12 * xx;
     const int same = fabs(yy - xx) <= least && fabs(zz - xx) <= least;
-    const int square = fabs(vec3_dot(m->x, m->y)) <= least && fabs(vec3_dot(m->y, m->z)) <= least && fabs(vec3_dot(m->z, m->x)) <= least;
+    const int square = fabs(vec3_dot(m->x, m->y)) <= least && fabs(vec3_dot(m->y, m->z)) <= least &&
+                       fabs(vec3_dot(m->z, m->x)) <= least;
     return same && square ? sqrt(xx) : 0;
 }
 

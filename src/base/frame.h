@@ -9,8 +9,8 @@ typedef struct frame {
     vec3 x, y, z;
 } frame;
 
-/* x is the scene's +x as seen along the axis; where the axis is too near to that (26 degrees), the scene's +y. About +y the
- * frame is the scene's. The axis needs a length. */
+/* x is the scene's +x as seen along the axis; where the axis is too near to that (26 degrees), the scene's +y. About +y
+ * the frame is the scene's. The axis needs a length. */
 static inline frame frame_about(vec3 axis)
 {
     const vec3 y = vec3_unit(axis), e = fabs(y.x) < 0.9 ? (vec3){1, 0, 0} : (vec3){0, 1, 0};

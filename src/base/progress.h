@@ -3,7 +3,8 @@
 #define KAGE_BASE_PROGRESS_H
 
 typedef struct progress {
-    void (*show)(void *user, const char *what, double share); /* `what` is done, and this share of it; NULL: nobody is there */
+    void (*show)(void *user, const char *what,
+                 double share); /* `what` is done, and this share of it; NULL: nobody is there */
     void *user;
 } progress;
 

@@ -29,11 +29,11 @@ typedef float real;
 /* No real number of the scene: the t of a ray that has met nothing. */
 #define REAL_FAR ((real)1e30)
 
-/* Put before the definition of a stage, a static function that is one plain loop over lanes (static, as clang 14 exports
- * clones under another name): it is compiled once for any x86-64, once for AVX2 and once for AVX-512 (gcc), and the loader
- * takes the one that fits. All give the same bytes, because nothing is contracted (-ffp-contract=off) and every operation used is exact
- * by IEEE 754 (+ - * / sqrt, comparisons, conversions); no stage calls libm for anything else.
- * Processors other than x86-64 build the same source without clones. */
+/* Put before the definition of a stage, a static function that is one plain loop over lanes (static, as clang 14
+ * exports clones under another name): it is compiled once for any x86-64, once for AVX2 and once for AVX-512 (gcc), and
+ * the loader takes the one that fits. All give the same bytes, because nothing is contracted (-ffp-contract=off) and
+ * every operation used is exact by IEEE 754 (+ - * / sqrt, comparisons, conversions); no stage calls libm for anything
+ * else. Processors other than x86-64 build the same source without clones. */
 #if defined(__x86_64__) && defined(__gnu_linux__) && !defined(KAGE_NO_CLONES)
 #if defined(__clang__)
 #define STAGE __attribute__((target_clones("default", "avx2")))

@@ -1,5 +1,5 @@
-/* Embree's hierarchy over boxes of ours (user geometry): it walks, and we note which boxes it came to. Nothing that it computes
- * reaches a picture, since its roundings differ between processors. */
+/* Embree's hierarchy over boxes of ours (user geometry): it walks, and we note which boxes it came to. Nothing that it
+ * computes reaches a picture, since its roundings differ between processors. */
 #include "bvh/bvh.h"
 
 #if KAGE_EMBREE == 4
@@ -145,7 +145,8 @@ void bvh_along(const bvh *b, const float r[3], const float s[3], float end, bvh_
 void bvh_toward(const bvh *b, const float r[3], const float s[3], float end, bvh_shorten *visit, void *user)
 {
     walk k = {.shorten = visit, .user = user};
-    struct RTCRayHit x = {.ray = {.org_x = r[0], .org_y = r[1], .org_z = r[2], .dir_x = s[0], .dir_y = s[1], .dir_z = s[2]}};
+    struct RTCRayHit x = {
+        .ray = {.org_x = r[0], .org_y = r[1], .org_z = r[2], .dir_x = s[0], .dir_y = s[1], .dir_z = s[2]}};
     x.ray.tfar = end;
     x.ray.mask = ~0u;
     x.hit.geomID = RTC_INVALID_GEOMETRY_ID;

@@ -10,7 +10,8 @@ bvh_space bvh_space_about(const double lo[3], const double hi[3])
     double half[3];
     for (int k = 0; k < 3; k++)
         half[k] = 0.5 * (hi[k] - lo[k]);
-    return (bvh_space){{lo[0] + half[0], lo[1] + half[1], lo[2] + half[2]}, vec3_length((vec3){half[0], half[1], half[2]})};
+    return (bvh_space){{lo[0] + half[0], lo[1] + half[1], lo[2] + half[2]},
+                       vec3_length((vec3){half[0], half[1], half[2]})};
 }
 
 bvh_box bvh_box_in(const bvh_space *p, const double lo[3], const double hi[3])
@@ -25,7 +26,8 @@ bvh_box bvh_box_in(const bvh_space *p, const double lo[3], const double hi[3])
 }
 
 /* Without a direction, or with NaN, there is no stretch. */
-bool bvh_enter(const bvh_space *p, double reach, vec3 r, vec3 s, double *from, double *to, float at[3], float way[3], float *end)
+bool bvh_enter(const bvh_space *p, double reach, vec3 r, vec3 s, double *from, double *to, float at[3], float way[3],
+               float *end)
 {
     const double length = vec3_length(s), R = (1 + 1e-5) * reach, unit = 1 / p->radius;
     const vec3 o = vec3_sub(r, p->centre);

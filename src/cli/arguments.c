@@ -153,10 +153,11 @@ static const char *find(const char *const *names, const char *arg)
 
 bool arguments_read(arguments *a, int argc, char **argv)
 {
-    static const char *const render_values[] = {"-o",    "--shadow",  "--surface", "--size",   "--aa", "--aa-threshold", "--crop",
-                                                "--set", "--threads", "--bits",    "--layers", NULL};
-    static const char *const render_flags[] = {"--no-guard", "--no-self-shadow", "--overwrite", "--stats",
-                                               "--quiet",    NULL};
+    static const char *const render_values[] = {"-o",        "--shadow",       "--surface", "--size",
+                                                "--aa",      "--aa-threshold", "--crop",    "--set",
+                                                "--threads", "--bits",         "--layers",  NULL};
+    static const char *const render_flags[] = {"--no-guard", "--no-self-shadow", "--overwrite",
+                                               "--stats",    "--quiet",          NULL};
     static const char *const pov_values[] = {"-o", "--surface", "--size", "--set", NULL};
     static const char *const pov_flags[] = {"--no-self-shadow", "--no-cast", NULL};
     static const char *const other_values[] = {"--set", "--size", NULL};
@@ -190,7 +191,8 @@ bool arguments_read(arguments *a, int argc, char **argv)
             return usage_error("%s: no option of 'kage %s'; see kage --help", arg, a->command);
     }
     if (a->operands < operands)
-        return usage_error("'kage %s' lacks %s; see kage --help", a->command, a->operands ? "the pixel X,Y" : "a scene");
+        return usage_error("'kage %s' lacks %s; see kage --help", a->command,
+                           a->operands ? "the pixel X,Y" : "a scene");
     return true;
 }
 

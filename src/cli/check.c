@@ -40,7 +40,8 @@ static void look(const scene *s, int order, workspace *v, seen *all)
     for (int first = 0; first < SAMPLES * SAMPLES; first += LANES) {
         const int n = SAMPLES * SAMPLES - first < LANES ? SAMPLES * SAMPLES - first : LANES;
         for (int i = 0; i < n; i++)
-            render_ray(&s->camera, SAMPLES, SAMPLES, (first + i) % SAMPLES + 0.5, (double)((first + i) / SAMPLES) + 0.5, v, i);
+            render_ray(&s->camera, SAMPLES, SAMPLES, (first + i) % SAMPLES + 0.5, (double)((first + i) / SAMPLES) + 0.5,
+                       v, i);
         for (int32_t id = trace_nearest(&k, n, v); id >= 0; id = gather_next_group(n, &v->x, &v->h, &v->g)) {
             const hit_group *g = &v->g;
             seen *o = &all[id];
@@ -63,11 +64,13 @@ static int print_bump(const object *o, const seen *x)
     const bump *p = o->bump;
     int warnings = 0;
     if (o->map.file)
-        printf("    map       %s: %d x %d samples from %.7g to %.7g\n", o->map.file, o->map.width, o->map.height, o->map.low,
-               o->map.high);
-    printf("    P         from %.6g to %.6g scene units%s\n", (double)p->Pmin, (double)p->Pmax, o->map.file ? "" : " (bounds)");
+        printf("    map       %s: %d x %d samples from %.7g to %.7g\n", o->map.file, o->map.width, o->map.height,
+               o->map.low, o->map.high);
+    printf("    P         from %.6g to %.6g scene units%s\n", (double)p->Pmin, (double)p->Pmax,
+           o->map.file ? "" : " (bounds)");
     if (!(p->Pmax - p->Pmin < REAL_FAR)) {
-        printf("    warning: P has no bounds here, so the guard has no slab and march:N falls back to order 0; expected a\n"
+        printf("    warning: P has no bounds here, so the guard has no slab and march:N falls back to order 0; "
+               "expected a\n"
                "             function that is bounded over the whole surface\n");
         warnings++;
     }
@@ -76,19 +79,23 @@ static int print_bump(const object *o, const seen *x)
         return warnings;
     }
     qsort(x->slope, (size_t)x->n, sizeof *x->slope, ascending);
-    double median = (double)x->slope[x->n / 2], p95 = (double)x->slope[(int)(0.95 * x->n)], top = (double)x->slope[x->n - 1];
+    double median = (double)x->slope[x->n / 2], p95 = (double)x->slope[(int)(0.95 * x->n)],
+           top = (double)x->slope[x->n - 1];
     double back1 = 100.0 * (double)x->back1 / x->n, back2 = 100.0 * (double)x->back2 / x->n;
     printf("    slope     median %.3f, 95 %% below %.3f, steepest %.3f (where the camera sees it)\n", median, p95, top);
     printf("    fall back order 1 in %.2f %%, order 2 in %.2f %% of what is seen\n", back1, back2);
     if (p95 > SLOPE_BOUND) {
-        printf("    warning: slopes above %.2f are more than the orders 0, 1 and 2 can bear: expect 1 %% and more of a\n"
-               "             shadow's pixels wrong; march:4 bears them\n",
-               SLOPE_BOUND);
+        printf(
+            "    warning: slopes above %.2f are more than the orders 0, 1 and 2 can bear: expect 1 %% and more of a\n"
+            "             shadow's pixels wrong; march:4 bears them\n",
+            SLOPE_BOUND);
         warnings++;
     }
     if (back1 > 1 || back2 > 1) {
         printf("    warning: %s back often: the view is flat against the bumps; order 0 or march:4 serve\n",
-               back1 > 1 && back2 > 1 ? "orders 1 and 2 fall" : back1 > 1 ? "order 1 falls" : "order 2 falls");
+               back1 > 1 && back2 > 1 ? "orders 1 and 2 fall"
+               : back1 > 1            ? "order 1 falls"
+                                      : "order 2 falls");
         warnings++;
     }
     return warnings;
@@ -104,7 +111,9 @@ static int print_mesh(const shape_spec *f)
 {
     const mesh_notes *n = &f->found;
     printf("    model     %s: %d triangles, %s\n", f->file, f->triangles,
-           n->bare == 0 ? "texture coordinates on all" : n->bare == f->triangles ? "no texture coordinates" : "texture coordinates on some");
+           n->bare == 0              ? "texture coordinates on all"
+           : n->bare == f->triangles ? "no texture coordinates"
+                                     : "texture coordinates on some");
     print_some(n->turned, "turned round, as all of their normals are on the other side");
     print_some(n->bent, "corners' normals turned away from their triangle, replaced by its own");
     print_some(n->folded, "with the texture mirrored: u beyond its range");
@@ -129,7 +138,8 @@ static void print_scene(const scene *s, const seen *all)
     for (int i = 0; i < s->lights; i++) {
         static const char *const kinds[] = {"", ", spot", ", parallel"};
         const light *l = &s->light[i];
-        printf("light %s at %g, %g, %g%s%s", l->name, l->at.x, l->at.y, l->at.z, kinds[l->kind], l->fade_distance > 0 ? ", fading" : "");
+        printf("light %s at %g, %g, %g%s%s", l->name, l->at.x, l->at.y, l->at.z, kinds[l->kind],
+               l->fade_distance > 0 ? ", fading" : "");
         if (l->samples[0] * l->samples[1] > 1)
             printf(", area of %d x %d samples", l->samples[0], l->samples[1]);
         printf("\n");
@@ -137,10 +147,11 @@ static void print_scene(const scene *s, const seen *all)
     for (int i = 0; i < s->objects; i++) {
         const object *o = &s->object[i];
         const material *m = &s->material[o->material];
-        printf("object %s: %s%s%s%s, material %s%s%s%s%s%s%s\n", o->name, o->shape->ops->kind, o->copy_of ? ", copy of " : "",
-               o->copy_of ? o->copy_of : "", o->moved ? ", transformed" : "", m->name, o->color ? ", color by " : "",
-               o->color ? o->color->ops->kind : "", o->bump ? ", bump by " : "", o->bump ? o->bump->ops->kind : "",
-               material_mirrors(m) ? ", mirrors" : "", material_clear(m) ? ", transparent" : "");
+        printf("object %s: %s%s%s%s, material %s%s%s%s%s%s%s\n", o->name, o->shape->ops->kind,
+               o->copy_of ? ", copy of " : "", o->copy_of ? o->copy_of : "", o->moved ? ", transformed" : "", m->name,
+               o->color ? ", color by " : "", o->color ? o->color->ops->kind : "", o->bump ? ", bump by " : "",
+               o->bump ? o->bump->ops->kind : "", material_mirrors(m) ? ", mirrors" : "",
+               material_clear(m) ? ", transparent" : "");
         if (o->shape_spec.kind == SHAPE_MESH && !o->copy_of)
             warnings += print_mesh(&o->shape_spec);
         if (o->bump)

@@ -21,7 +21,7 @@ typedef struct arguments {
     int outputs;
     char *set[MAX_SETS]; /* --set's, and those options that are changes of the scene; owned */
     int sets;
-    window crop; /* x1 == 0: none */
+    window crop;        /* x1 == 0: none */
     const char *layers; /* of an EXR; NULL: all */
     int threads, bits;
     bool stats, quiet, no_cast, overwrite;
@@ -36,7 +36,8 @@ int command_check(const arguments *a);
 int command_pixel(const arguments *a);
 int command_pov(const arguments *a);
 
-/* The scene of a command line, or NULL with the errors told. What was left out of models is told, too, unless it is to be quiet. */
+/* The scene of a command line, or NULL with the errors told. What was left out of models is told, too, unless it is to
+ * be quiet. */
 scene *command_scene(const arguments *a);
 
 /* A path's last name: what pictures and exports tell of it, so that they do not depend on the folder. */

@@ -75,8 +75,8 @@ static void tell_flat(const object *o)
 {
     const shape_spec *f = &o->shape_spec;
     if (f->kind == SHAPE_MESH && !o->copy_of && f->found.flat)
-        fprintf(stderr, "kage: object %s: %d of the %d triangles in %s have no area; they are left out\n", o->name, f->found.flat,
-                f->triangles + f->found.flat, f->file);
+        fprintf(stderr, "kage: object %s: %d of the %d triangles in %s have no area; they are left out\n", o->name,
+                f->found.flat, f->triangles + f->found.flat, f->file);
 }
 
 scene *command_scene(const arguments *a)
@@ -120,7 +120,8 @@ int main(int argc, char **argv)
     static const struct {
         const char *name;
         int (*run)(const arguments *a);
-    } commands[] = {{"render", command_render}, {"check", command_check}, {"pixel", command_pixel}, {"pov", command_pov}};
+    } commands[] = {
+        {"render", command_render}, {"check", command_check}, {"pixel", command_pixel}, {"pov", command_pov}};
     if (argc < 2) {
         fputs(help, stderr);
         return EXIT_INPUT;

@@ -33,7 +33,8 @@ static void shape(const hit_group *g, const object *o)
     scalar("Pww", g->h.Pww[0]);
     scalar("Pmin", o->bump->Pmin);
     scalar("Pmax", o->bump->Pmax);
-    bs_vec3 s = lane_get(&g->x.s, 0), n = lane_get(&g->n_smooth, 0), Qu = lane_get(&g->q.Qu, 0), Qw = lane_get(&g->q.Qw, 0);
+    bs_vec3 s = lane_get(&g->x.s, 0), n = lane_get(&g->n_smooth, 0), Qu = lane_get(&g->q.Qu, 0),
+            Qw = lane_get(&g->q.Qw, 0);
     bs_vec3 np = bs_perturbed_normal(n, Qu, Qw, g->h.Pu[0], g->h.Pw[0]);
     printf("%-10s %.9g %.9g %.9g\n", "n'", (double)np.x, (double)np.y, (double)np.z);
     if (!bs_regular(n, Qu, Qw)) {
@@ -69,7 +70,7 @@ static void row(const tracer *k, int id, workspace *v, const char *label)
 
 static void table(const scene *s, int id, workspace *v)
 {
-    static const char *const names[] = {"none",   "0",      "1",       "2",       "2+",      "iter:2",
+    static const char *const names[] = {"none",   "0",       "1",       "2",       "2+",      "iter:2",
                                         "iter:4", "march:2", "march:4", "march:8", "march:16"};
     printf("\n%-10s %13s %13s  %11s %11s %11s  %-6s", "method", "tau", "t0", "r + s t0: x", "y", "z", "fell");
     for (int l = 0; l < s->lights; l++)

@@ -45,8 +45,9 @@ int command_pov(const arguments *a)
     pov_report r;
     bool good = text ? pov_write(s, &how, a->output[0], &r, &e) : usage_error("out of memory");
     if (good && r.coarse)
-        fprintf(stderr, "kage: object %s: a mesh of facets below half a pixel is too large; they have up to %.2g pixels\n", r.coarse,
-                r.pixels);
+        fprintf(stderr,
+                "kage: object %s: a mesh of facets below half a pixel is too large; they have up to %.2g pixels\n",
+                r.coarse, r.pixels);
     free(text);
     scene_free(s);
     return good ? 0 : e.count ? command_fail(&e, EXIT_OUTPUT) : EXIT_OUTPUT;

@@ -30,8 +30,8 @@ static char *joined_sets(const arguments *a)
     return text;
 }
 
-/* Whether a word of a list, up to its comma, names a channel: as it is called, or what stands before its dot (N for N.X), or
- * color for R, G and B. */
+/* Whether a word of a list, up to its comma, names a channel: as it is called, or what stands before its dot (N for
+ * N.X), or color for R, G and B. */
 static bool names_channel(const char *word, const char *channel)
 {
     const size_t n = strcspn(word, ",");
@@ -63,15 +63,18 @@ static bool check_layers(const char *layers, const film *f)
         while (k < f->planes && !names_channel(word, f->name[k]))
             k++;
         if (k == f->planes)
-            return usage_error("--layers %.*s: no such layer, expected color, Z, P, N, uw, height, tau, order or visibility, or the "
-                               "name of a channel, with commas between them", (int)strcspn(word, ","), word);
+            return usage_error(
+                "--layers %.*s: no such layer, expected color, Z, P, N, uw, height, tau, order or visibility, or the "
+                "name of a channel, with commas between them",
+                (int)strcspn(word, ","), word);
     }
     return true;
 }
 
 /* All that the picture is made from, but for the maps: so that it can be made again from itself. No clock, no path, no
  * number of threads: the same picture has the same bytes. */
-static bool write_output(const char *path, const scene *s, const arguments *a, const film *f, const char *sets, errors *e)
+static bool write_output(const char *path, const scene *s, const arguments *a, const film *f, const char *sets,
+                         errors *e)
 {
     char crop[64], shadow[METHOD_NAME_SIZE];
     const int width = f->part.x1 - f->part.x0, height = f->part.y1 - f->part.y0;
@@ -79,13 +82,17 @@ static bool write_output(const char *path, const scene *s, const arguments *a, c
     snprintf(crop, sizeof crop, "%d,%d,%d,%d", f->part.x0, f->part.y0, f->part.x1, f->part.y1);
     const image_text text[] = {
         {"Software", OUTPUT_SOFTWARE " " KAGE_VERSION " " REAL_NAME},
-        {"kage:file", base_name(s->path)}, {"kage:scene", s->source},
-        {"kage:set", sets},     {"kage:crop", crop}, {"kage:shadow", shadow}, {"kage:guard", s->guard ? "yes" : "no"},
+        {"kage:file", base_name(s->path)},
+        {"kage:scene", s->source},
+        {"kage:set", sets},
+        {"kage:crop", crop},
+        {"kage:shadow", shadow},
+        {"kage:guard", s->guard ? "yes" : "no"},
     };
     const int texts = sizeof text / sizeof *text;
     if (strcmp(path + strlen(path) - 4, ".png") == 0)
-        return image_write_png(path, width, height, a->bits, f->plane[FILM_R], f->plane[FILM_G], f->plane[FILM_B], texts,
-                               text, e);
+        return image_write_png(path, width, height, a->bits, f->plane[FILM_R], f->plane[FILM_G], f->plane[FILM_B],
+                               texts, text, e);
     image_channel *channel = malloc((size_t)f->planes * sizeof *channel);
     if (!channel)
         return errors_add(e, "%s: out of memory", path);
@@ -103,8 +110,8 @@ static void print_stats(const stats *t, const scene *s, double seconds, double o
     double sum = 0, n = (double)t->rays;
     for (int k = 0; k < STAGES; k++)
         sum += t->seconds[k];
-    printf("render    %9.2f ms  %8.2f ns a sample  %7.2f Mrays/s (camera and shadow)\n", seconds * 1e3, seconds * 1e9 / n,
-           (double)(t->rays + t->shadow_rays) / seconds / 1e6);
+    printf("render    %9.2f ms  %8.2f ns a sample  %7.2f Mrays/s (camera and shadow)\n", seconds * 1e3,
+           seconds * 1e9 / n, (double)(t->rays + t->shadow_rays) / seconds / 1e6);
     for (int k = 0; k < STAGES; k++) /* timed in some tiles; here as its share of the whole */
         printf("  %-8s%9.2f ms  %8.2f ns a sample  %5.1f %%\n", stage_names[k], seconds * 1e3 * t->seconds[k] / sum,
                seconds * 1e9 / n * t->seconds[k] / sum, 100 * t->seconds[k] / sum);
@@ -143,7 +150,8 @@ static void hold_signals(const int held[2], struct sigaction before[2])
     }
 }
 
-static bool write_outputs(const scene *s, const arguments *a, const char *const *output, int outputs, const film *f, errors *e)
+static bool write_outputs(const scene *s, const arguments *a, const char *const *output, int outputs, const film *f,
+                          errors *e)
 {
     static const int held[2] = {SIGINT, SIGTERM};
     struct sigaction before[2];
@@ -186,7 +194,11 @@ static int render_outputs(const scene *s, const arguments *a, const char *const 
 
     stats t;
     progress_bar p;
-    tracer k = {.scene = s, .shadow = s->shadow, .guard = s->guard, .layers = layers, .displaced = s->displaced,
+    tracer k = {.scene = s,
+                .shadow = s->shadow,
+                .guard = s->guard,
+                .layers = layers,
+                .displaced = s->displaced,
                 .self_shadow = s->self_shadow};
     progress_bar_start(&p, a->quiet, base_name(s->path), (long)(part.x1 - part.x0) * (part.y1 - part.y0));
     render_options o = {s->aa, s->aa_threshold, a->threads, a->stats, p.on ? progress_bar_show : NULL, &p};

@@ -71,8 +71,8 @@ static void compact(search *s)
     s->n = n;
 }
 
-/* A crossing between a and b, the gap's sign changing: Newton's steps from b, or halvings where they leave the bracket or
- * do not pay. Returns the confirmed t in *t. */
+/* A crossing between a and b, the gap's sign changing: Newton's steps from b, or halvings where they leave the bracket
+ * or do not pay. Returns the confirmed t in *t. */
 static displaced_result refine(const domain *f, const bump *P, search *s, int i, real a, real b, real *t)
 {
     search one; /* its first lane alone is used */
@@ -152,8 +152,8 @@ static void begin(const domain *f, const bump *P, int n, const rays *x, const re
     }
 }
 
-/* The side on which a ray begins. Where the gap does not tell, because it is 0 there: a ray that starts on the surface is on the side
- * that it leaves to, any other on the one that it comes from. */
+/* The side on which a ray begins. Where the gap does not tell, because it is 0 there: a ray that starts on the surface
+ * is on the side that it leaves to, any other on the one that it comes from. */
 static real side_of(const search *s, int i, real slope)
 {
     if (real_abs(s->gap[i]) > s->tolerance[i] && !s->own[i])
@@ -161,16 +161,16 @@ static real side_of(const search *s, int i, real slope)
     return (slope > 0) == (s->own[i] != 0) ? R(1) : R(-1);
 }
 
-/* Where a ray starts on the surface, the gap is what rounding has made of 0: of sums, too, that are not known here, as of a camera far
- * away. */
+/* Where a ray starts on the surface, the gap is what rounding has made of 0: of sums, too, that are not known here, as
+ * of a camera far away. */
 static real tolerance_of(const search *s, int i)
 {
     const real off = s->own[i] ? 2 * real_abs(s->gap[i]) : 0;
     return real_max(s->tolerance[i], real_min(off, 8 * s->tolerance[i]));
 }
 
-long displaced_search_over(const domain *f, const bump *P, int n, const rays *x, const real *end, const int32_t *own, real *t,
-                          int32_t *found)
+long displaced_search_over(const domain *f, const bump *P, int n, const rays *x, const real *end, const int32_t *own,
+                           real *t, int32_t *found)
 {
     search s;
     real slope[LANES];
@@ -190,8 +190,8 @@ long displaced_search_over(const domain *f, const bump *P, int n, const rays *x,
             /* On its way from the surface itself a ray is on its side until it is clearly on the other. */
             real least = s.own[i] ? s.tolerance[i] : 0;
             real above = s.side[i] * s.gap[i];
-            /* A map's partials are not the slopes of its bilinear surface, so a ray can leave to the other side than they tell: it is
-             * there, and does not turn back. One that has come back to its start turns to it. */
+            /* A map's partials are not the slopes of its bilinear surface, so a ray can leave to the other side than
+             * they tell: it is there, and does not turn back. One that has come back to its start turns to it. */
             if (!s.left[i] && above <= -least && s.side[i] * slope[i] > 0) {
                 s.side[i] = -s.side[i];
                 above = -above;
@@ -256,8 +256,8 @@ static void part_foot(const domain *g, int n, const int32_t *lane, const rays *x
     k->f->ops->foot(k->f, k->part, n, x, t, p);
 }
 
-static void part_steep(const domain *g, int n, const int32_t *lane, const rays *x, const closest_points *p, real Pu_max, real Pw_max, real *rate,
-                       real *reach)
+static void part_steep(const domain *g, int n, const int32_t *lane, const rays *x, const closest_points *p, real Pu_max,
+                       real Pw_max, real *rate, real *reach)
 {
     const part_ground *k = part_of(g);
     (void)lane;
@@ -276,8 +276,8 @@ static void part_within(const domain *g, int n, const int32_t *lane, const close
     }
 }
 
-long displaced_search(const surface *f, const bump *P, int part, int n, const rays *x, const real *end, const int32_t *on, real *t,
-                     int32_t *found)
+long displaced_search(const surface *f, const bump *P, int part, int n, const rays *x, const real *end,
+                      const int32_t *on, real *t, int32_t *found)
 {
     const part_ground k = {{part_shell, part_foot, part_steep, part_within, f->ops->loose, STEPS}, f, part};
     int32_t own[LANES];
@@ -297,7 +297,8 @@ static void keep_nearer(int n, int part, const real *t, const int32_t *found, in
         }
 }
 
-void displaced_hit(const surface *f, const bump *P, int n, const rays *x, const ray_origins *from, int32_t id, hits *h, displaced_counts *c)
+void displaced_hit(const surface *f, const bump *P, int n, const rays *x, const ray_origins *from, int32_t id, hits *h,
+                   displaced_counts *c)
 {
     real t[LANES];
     int32_t found[LANES], on[LANES];
@@ -314,7 +315,7 @@ void displaced_hit(const surface *f, const bump *P, int n, const rays *x, const 
 }
 
 void displaced_occlude(const surface *f, const bump *P, int n, const rays *x, const int32_t *on, real *lit,
-                      displaced_counts *c)
+                       displaced_counts *c)
 {
     real t[LANES], end[LANES];
     int32_t found[LANES];

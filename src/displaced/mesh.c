@@ -1,9 +1,9 @@
-/* True displacement of a mesh: Q + P N over each triangle, N the unit of the normal between its corners. What stands over a triangle is a prism
- * whose sides two neighbours share where their normals at the common corners are the same: then the rough surface has no gap. It has one at a crease,
- * and at a seam of the texture where P differs.
+/* True displacement of a mesh: Q + P N over each triangle, N the unit of the normal between its corners. What stands
+ * over a triangle is a prism whose sides two neighbours share where their normals at the common corners are the same:
+ * then the rough surface has no gap. It has one at a crease, and at a seam of the texture where P differs.
  *
- * displace.c searches along a ray over each triangle whose prism the ray may pass, many pairs side by side. The foot of a place is
- * that from which N leads to it, by Newton's iteration.
+ * displace.c searches along a ray over each triangle whose prism the ray may pass, many pairs side by side. The foot of
+ * a place is that from which N leads to it, by Newton's iteration.
  */
 #include "mesh/mesh.h"
 
@@ -13,11 +13,14 @@
 #include <stdlib.h>
 
 enum {
-    SEARCH = 1024, /* steps along a ray over one triangle: what is steeper than they tell apart is at a pole of the texture */
-    STEPS = 4,    /* of Newton's iteration: normals turn by less than a right angle over a triangle, and by far less on a fine mesh */
+    SEARCH = 1024, /* steps along a ray over one triangle: what is steeper than they tell apart is at a pole of the
+                      texture */
+    STEPS = 4, /* of Newton's iteration: normals turn by less than a right angle over a triangle, and by far less on a
+                  fine mesh */
 };
 
-#define OVERLAP 1e-4 /* by how much of a triangle its rough surface goes on beyond it, so that no hit is between two */
+#define OVERLAP 1e-4 /* by how much of a triangle its rough surface goes on beyond it, so that no hit is between two   \
+                      */
 #define AIR 1e-5     /* of the boxes, against float */
 
 static inline vec3 get(const vec3s *v, int i) { return (vec3){(double)v->x[i], (double)v->y[i], (double)v->z[i]}; }
@@ -88,7 +91,8 @@ static void narrow(double a, double b, double lo, double hi, double *t0, double 
     *t1 = fmin(*t1, fmax(x, y));
 }
 
-/* Between what is lowest and highest of it along the mean normal, and not farther out past each side than the normals there lean. */
+/* Between what is lowest and highest of it along the mean normal, and not farther out past each side than the normals
+ * there lean. */
 static bool shell_of(const mesh_triangle *x, double air, vec3 r, vec3 s, double lo, double hi, double *from, double *to)
 {
     double bulge, low = HUGE_VAL, high = -HUGE_VAL;
@@ -114,7 +118,8 @@ static bool shell_of(const mesh_triangle *x, double air, vec3 r, vec3 s, double 
 
 mesh_prism mesh_prism_at(const mesh_triangle *x, double b, double c, double h)
 {
-    const vec3 M = mesh_mix(x->normal, b, c), Mb = vec3_sub(x->normal[1], x->normal[0]), Mc = vec3_sub(x->normal[2], x->normal[0]);
+    const vec3 M = mesh_mix(x->normal, b, c), Mb = vec3_sub(x->normal[1], x->normal[0]),
+               Mc = vec3_sub(x->normal[2], x->normal[0]);
     const double length = vec3_length(M), k = h / length;
     mesh_prism p;
     p.N = vec3_scale(M, 1 / length);
@@ -139,7 +144,8 @@ static void foot_of(const mesh_triangle *x, vec3 at, closest_points *out, int la
     const vec3 n = vec3_cross(vec3_sub(x->at[1], x->at[0]), vec3_sub(x->at[2], x->at[0]));
     double b = 1.0 / 3, c = 1.0 / 3, h = vec3_dot(vec3_sub(at, x->at[0]), n) / vec3_length(n);
     double off = HUGE_VAL, area = vec3_length(n);
-    for (int step = 0; step < STEPS && off > 1e-16 * area; step++) { /* what is off by 1e-8 of the size, squared: the step was the last */
+    for (int step = 0; step < STEPS && off > 1e-16 * area;
+         step++) { /* what is off by 1e-8 of the size, squared: the step was the last */
         const mesh_prism p = mesh_prism_at(x, b, c, h);
         const vec3 d = vec3_sub(at, p.place), up = vec3_cross(p.Xb, p.Xc);
         const double det = vec3_dot(up, p.N), k = det > 0 ? 1 / det : 0; /* beyond where normals meet: stay */
@@ -171,12 +177,14 @@ typedef struct pieces {
 
 static const mesh_triangle *piece(const domain *g, int32_t lane) { return &((const pieces *)g)->x[lane]; }
 
-static void pieces_shell(const domain *g, int n, const rays *x, const real *end, real Pmin, real Pmax, real *t0, real *t1)
+static void pieces_shell(const domain *g, int n, const rays *x, const real *end, real Pmin, real Pmax, real *t0,
+                         real *t1)
 {
     const double air = AIR * ((const pieces *)g)->f->space.radius;
     for (int i = 0; i < n; i++) {
         double from = 0, to = (double)end[i];
-        const bool some = shell_of(piece(g, i), air, get(&x->r, i), get(&x->s, i), (double)Pmin, (double)Pmax, &from, &to);
+        const bool some =
+            shell_of(piece(g, i), air, get(&x->r, i), get(&x->s, i), (double)Pmin, (double)Pmax, &from, &to);
         t0[i] = some ? (real)from : R(1);
         t1[i] = some ? real_min((real)to, end[i]) : R(-1);
     }
@@ -188,9 +196,10 @@ static void pieces_foot(const domain *g, int n, const int32_t *lane, const rays 
         foot_of(piece(g, lane[i]), vec3_add(get(&x->r, i), vec3_scale(get(&x->s, i), (double)t[i])), p, i);
 }
 
-/* By how much normals turn over a triangle for its shortest side says how far it is to where they meet; halfway there gradients at most double. */
-static void pieces_steep(const domain *g, int n, const int32_t *lane, const rays *x, const closest_points *p, real Pu_max, real Pw_max, real *rate,
-                         real *reach)
+/* By how much normals turn over a triangle for its shortest side says how far it is to where they meet; halfway there
+ * gradients at most double. */
+static void pieces_steep(const domain *g, int n, const int32_t *lane, const rays *x, const closest_points *p,
+                         real Pu_max, real Pw_max, real *rate, real *reach)
 {
     const double height = ((const pieces *)g)->f->height;
     for (int i = 0; i < n; i++) {
@@ -201,7 +210,8 @@ static void pieces_steep(const domain *g, int n, const int32_t *lane, const rays
             side = fmin(side, vec3_length(vec3_sub(f->at[(k + 1) % 3], f->at[k])));
         }
         const double bend = side / fmax(turn, 1e-6), radius = fmax(bend - height, 0.1 * bend);
-        const bs_vec3 gu = lane_get(&p->gu, i), gw = lane_get(&p->gw, i), gh = lane_get(&p->gh, i), d = lane_get(&x->s, i);
+        const bs_vec3 gu = lane_get(&p->gu, i), gw = lane_get(&p->gw, i), gh = lane_get(&p->gh, i),
+                      d = lane_get(&x->s, i);
         const real s = real_sqrt(bs_dot(d, d));
         const real k = 2 * (real_sqrt(bs_dot(gu, gu)) * Pu_max + real_sqrt(bs_dot(gw, gw)) * Pw_max);
         const real up = (turn > 0 ? 2 : 1) * real_sqrt(bs_dot(gh, gh));
@@ -210,8 +220,8 @@ static void pieces_steep(const domain *g, int n, const int32_t *lane, const rays
     }
 }
 
-/* (u,w) of a place of the triangle, as far as it goes on, that is near the foot: the foot's own where it is one. So P goes on from there without
- * a step, which a ray that comes by would cross. */
+/* (u,w) of a place of the triangle, as far as it goes on, that is near the foot: the foot's own where it is one. So P
+ * goes on from there without a step, which a ray that comes by would cross. */
 static void pieces_within(const domain *g, int n, const int32_t *lane, const closest_points *p, real *u, real *w)
 {
     for (int i = 0; i < n; i++) {
@@ -272,8 +282,14 @@ static void starts_on(tour *k, const pieces *g, int32_t *own)
 /* Each search knows its ray and its triangle alone, so that nothing depends on the order. */
 static void search_all(tour *k)
 {
-    const pieces g = {{.shell = pieces_shell, .foot = pieces_foot, .steep = pieces_steep, .within = pieces_within, .loose = true, .steps = SEARCH},
-                      k->f, k->triangle};
+    const pieces g = {{.shell = pieces_shell,
+                       .foot = pieces_foot,
+                       .steep = pieces_steep,
+                       .within = pieces_within,
+                       .loose = true,
+                       .steps = SEARCH},
+                      k->f,
+                      k->triangle};
     real end[LANES], t[LANES];
     int32_t found[LANES], own[LANES];
     for (int i = 0; i < k->n; i++)
@@ -282,7 +298,8 @@ static void search_all(tour *k)
     k->counts.evaluations += displaced_search_over(&g.base, k->P, k->n, &k->y, end, own, t, found);
     for (int i = 0; i < k->n; i++) {
         const int at = k->of[i];
-        const bool nearer = found[i] != DISPLACED_MISSED && t[i] > 0 && (t[i] < k->t[at] || (t[i] == k->t[at] && k->index[i] < k->index_hit[at]));
+        const bool nearer = found[i] != DISPLACED_MISSED && t[i] > 0 &&
+                            (t[i] < k->t[at] || (t[i] == k->t[at] && k->index[i] < k->index_hit[at]));
         if (!nearer)
             continue;
         k->t[at] = t[i];
@@ -298,7 +315,8 @@ static void visit(void *user, int32_t index)
     const int i = k->n;
     double from = 0, to = (double)k->end[k->lane];
     k->triangle[i] = mesh_triangle_of(k->f, index);
-    if (!shell_of(&k->triangle[i], AIR * k->f->space.radius, get(&k->x->r, k->lane), get(&k->x->s, k->lane), (double)k->P->Pmin, (double)k->P->Pmax, &from, &to))
+    if (!shell_of(&k->triangle[i], AIR * k->f->space.radius, get(&k->x->r, k->lane), get(&k->x->s, k->lane),
+                  (double)k->P->Pmin, (double)k->P->Pmax, &from, &to))
         return;
     k->n++;
     k->of[i] = k->lane;
@@ -309,7 +327,8 @@ static void visit(void *user, int32_t index)
         search_all(k);
 }
 
-/* t[i] becomes the nearest hit with 0 < t < t[i], on the triangle index[i], which is -1 where there is none. k->own is set. */
+/* t[i] becomes the nearest hit with 0 < t < t[i], on the triangle index[i], which is -1 where there is none. k->own is
+ * set. */
 static void go_round(tour *k, int n, const rays *x, real *t, int32_t *index, displaced_counts *c)
 {
     k->x = x;
@@ -323,7 +342,8 @@ static void go_round(tour *k, int n, const rays *x, real *t, int32_t *index, dis
         k->end[i] = t[i];
         index[i] = -1;
         k->lane = i;
-        if (bvh_enter(&k->f->space, k->f->space.radius + k->f->height, get(&x->r, i), get(&x->s, i), &from, &to, at, way, &far))
+        if (bvh_enter(&k->f->space, k->f->space.radius + k->f->height, get(&x->r, i), get(&x->s, i), &from, &to, at,
+                      way, &far))
             bvh_along(k->f->rough, at, way, far, visit, k);
     }
     search_all(k);
@@ -331,8 +351,8 @@ static void go_round(tour *k, int n, const rays *x, real *t, int32_t *index, dis
     c->uncertain += k->counts.uncertain;
 }
 
-static void rough_hit(const surface *base, const bump *P, int n, const rays *x, const ray_origins *from, int32_t id, hits *h,
-                      displaced_counts *c)
+static void rough_hit(const surface *base, const bump *P, int n, const rays *x, const ray_origins *from, int32_t id,
+                      hits *h, displaced_counts *c)
 {
     int32_t index[LANES];
     tour k;
@@ -348,7 +368,8 @@ static void rough_hit(const surface *base, const bump *P, int n, const rays *x, 
         }
 }
 
-static void rough_occlude(const surface *base, const bump *P, int n, const rays *x, bool from_it, real *lit, displaced_counts *c)
+static void rough_occlude(const surface *base, const bump *P, int n, const rays *x, bool from_it, real *lit,
+                          displaced_counts *c)
 {
     int32_t index[LANES];
     real t[LANES];
@@ -364,8 +385,10 @@ static void rough_occlude(const surface *base, const bump *P, int n, const rays 
         lit[i] = index[i] >= 0 ? 0 : lit[i];
 }
 
-/* The height changes along N there, whatever the triangle itself is like: so the rough surface is as smooth as the mesh is shown. */
-static void rough_feet(const surface *base, const bump *P, int n, const rays *x, const real *t, int32_t *part, closest_points *p)
+/* The height changes along N there, whatever the triangle itself is like: so the rough surface is as smooth as the mesh
+ * is shown. */
+static void rough_feet(const surface *base, const bump *P, int n, const rays *x, const real *t, int32_t *part,
+                       closest_points *p)
 {
     (void)P;
     for (int i = 0; i < n; i++) {

@@ -4,7 +4,8 @@
 
 #include "wave/lane.h"
 
-/* At the height h over Q: the unit normal n of the smooth surface, and the partials of Q + h n while h stays the same. */
+/* At the height h over Q: the unit normal n of the smooth surface, and the partials of Q + h n while h stays the same.
+ */
 typedef struct offset {
     bs_vec3 n, U, W;
 } offset;
@@ -38,7 +39,8 @@ static inline offset offset_of(bs_vec3 Qu, bs_vec3 Qw, bs_vec3 Quu, bs_vec3 Quw,
     const real il = 1 / offset_length(N);
     offset o;
     o.n = offset_scale(N, il);
-    bs_vec3 nu = offset_mix(bs_cross(Quu, Qw), 1, bs_cross(Qu, Quw)), nw = offset_mix(bs_cross(Quw, Qw), 1, bs_cross(Qu, Qww));
+    bs_vec3 nu = offset_mix(bs_cross(Quu, Qw), 1, bs_cross(Qu, Quw)),
+            nw = offset_mix(bs_cross(Quw, Qw), 1, bs_cross(Qu, Qww));
     o.U = offset_mix(Qu, h * il, offset_mix(nu, -bs_dot(nu, o.n), o.n));
     o.W = offset_mix(Qw, h * il, offset_mix(nw, -bs_dot(nw, o.n), o.n));
     return o;

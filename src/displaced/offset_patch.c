@@ -1,7 +1,7 @@
 /* The rough surface of a sheet, X = Q + P n/|n|, as a sheet itself: so that rays are searched for it as for any other.
  *
- * With n = Qu x Qw, X_u = Qu + P_u n/|n| + P (n/|n|)_u, and (n/|n|)_u is n_u = Quu x Qw + Qu x Quw without its part along n, over |n|.
- * Bounds are those of balls: a vector that is within r of c.
+ * With n = Qu x Qw, X_u = Qu + P_u n/|n| + P (n/|n|)_u, and (n/|n|)_u is n_u = Quu x Qw + Qu x Quw without its part
+ * along n, over |n|. Bounds are those of balls: a vector that is within r of c.
  */
 #include "patch/patch.h"
 
@@ -69,7 +69,8 @@ STAGE static void add_height(int n, const double *restrict P, patch_jets *restri
     }
 }
 
-static void rough_eval(const patch *base, int n, const int32_t *part, const double *u, const double *w, int order, patch_jets *out)
+static void rough_eval(const patch *base, int n, const int32_t *part, const double *u, const double *w, int order,
+                       patch_jets *out)
 {
     const rough *k = (const rough *)base;
     expr_jets P;
@@ -114,7 +115,8 @@ typedef struct normals {
 static normals normals_of(ball n)
 {
     const double length = vec3_length(n.c), sine = n.r / length;
-    return (normals){vec3_scale(n.c, 1 / length), length, sine * sqrt(2 / (1 + sqrt(1 - sine * sine))), sine, length - n.r};
+    return (normals){vec3_scale(n.c, 1 / length), length, sine * sqrt(2 / (1 + sqrt(1 - sine * sine))), sine,
+                     length - n.r};
 }
 
 /* (n/|n|)_u, from n_u. The projections along two directions differ by the sine of their angle. */
@@ -128,7 +130,8 @@ static ball turn_of(ball nu, const normals *n)
 static double most(const double range[2]) { return greater(fabs(range[0]), fabs(range[1])); }
 
 /* range becomes range + p n + h v, n a number and v within r of it; air. */
-static void add_to(double range[2], const double p[2], double n, double n_air, const double h[2], double v, double v_air)
+static void add_to(double range[2], const double p[2], double n, double n_air, const double h[2], double v,
+                   double v_air)
 {
     const double off = most(p) * n_air + most(h) * v_air;
     const double air = off + AIR * (most(range) + most(p) * (fabs(n) + n_air) + most(h) * (fabs(v) + v_air));
@@ -142,7 +145,8 @@ static void unknown(double range[2])
     range[1] = HUGE_VAL;
 }
 
-static void rough_bound(const patch *base, int part, const double u[2], const double w[2], patch_bounds *out, patch_hessians *second)
+static void rough_bound(const patch *base, int part, const double u[2], const double w[2], patch_bounds *out,
+                        patch_hessians *second)
 {
     const rough *k = (const rough *)base;
     const double none[2] = {0, 0};

@@ -1,4 +1,5 @@
-/* True displacement of a sheet: its rough surface is a sheet too (patch_offset_new.c), and rays are searched for it as for any other. */
+/* True displacement of a sheet: its rough surface is a sheet too (patch_offset_new.c), and rays are searched for it as
+ * for any other. */
 #include "patch/surface.h"
 
 #include "displaced/march.h"
@@ -67,8 +68,8 @@ static void add_counts(displaced_counts *c, patch_counts q)
     c->uncertain += q.unsure;
 }
 
-static void rough_hit(const surface *base, const bump *P, int n, const rays *x, const ray_origins *from, int32_t id, hits *h,
-                      displaced_counts *c)
+static void rough_hit(const surface *base, const bump *P, int n, const rays *x, const ray_origins *from, int32_t id,
+                      hits *h, displaced_counts *c)
 {
     const patch_surface *f = rough_of(base, P);
     patch_counts q = {0};
@@ -79,7 +80,8 @@ static void rough_hit(const surface *base, const bump *P, int n, const rays *x, 
     add_counts(c, q);
 }
 
-static void rough_occlude(const surface *base, const bump *P, int n, const rays *x, bool own, real *lit, displaced_counts *c)
+static void rough_occlude(const surface *base, const bump *P, int n, const rays *x, bool own, real *lit,
+                          displaced_counts *c)
 {
     const patch_surface *f = rough_of(base, P);
     patch_counts q = {0};
@@ -91,7 +93,8 @@ static void rough_occlude(const surface *base, const bump *P, int n, const rays 
 }
 
 /* The height, and how all change in space: the dual vectors of U, W and n at that height. */
-static void rough_feet(const surface *base, const bump *P, int n, const rays *x, const real *t, int32_t *part, closest_points *p)
+static void rough_feet(const surface *base, const bump *P, int n, const rays *x, const real *t, int32_t *part,
+                       closest_points *p)
 {
     const surface *shape = form_of((const patch_surface *)base, P)->shape;
     partials q;

@@ -1,10 +1,10 @@
 /* Bounds of the value and of the first partials, by interval arithmetic in forward mode: beside each slot's bounds run
  * those of its partials along u and along w.
  *
- * They are bounds for differences too, so each operation must be Lipschitz over all the values that its operands can take
- * in the box, not only have a derivative almost everywhere: a kink has the derivatives of both its sides and all between,
- * a jump has an infinite one, unless what decides about the jump does not change in that direction. As everywhere here,
- * 0 times infinity is 0: what does not change, changes nothing.
+ * They are bounds for differences too, so each operation must be Lipschitz over all the values that its operands can
+ * take in the box, not only have a derivative almost everywhere: a kink has the derivatives of both its sides and all
+ * between, a jump has an infinite one, unless what decides about the jump does not change in that direction. As
+ * everywhere here, 0 times infinity is 0: what does not change, changes nothing.
  */
 #include "expr/bound_slopes.h"
 
@@ -20,10 +20,7 @@ static interval positive(double x, double y)
     return (interval){z.lo > 1e-300 ? z.lo : 0, most(z.hi, TINY)};
 }
 
-static interval sign(interval a)
-{
-    return (interval){a.lo < 0 ? -1 : a.lo > 0, a.hi > 0 ? 1 : -(a.hi < 0)};
-}
+static interval sign(interval a) { return (interval){a.lo < 0 ? -1 : a.lo > 0, a.hi > 0 ? 1 : -(a.hi < 0)}; }
 
 /* d a^b / da = b a^(b-1) */
 static interval power_by_base(interval a, interval b)

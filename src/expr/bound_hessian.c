@@ -1,5 +1,5 @@
-/* Bounds of the second partials, by interval arithmetic in forward mode, beside those of value and gradient (expr_gradient.c). Where a
- * slope may jump in the box they are infinite.
+/* Bounds of the second partials, by interval arithmetic in forward mode, beside those of value and gradient
+ * (expr_gradient.c). Where a slope may jump in the box they are infinite.
  */
 #include "expr/bound_slopes.h"
 
@@ -37,7 +37,8 @@ static triple angle_bend(interval a, interval b)
 {
     if (b.lo <= 0 && contains(a, 0))
         return (triple){everything, everything, everything};
-    const interval r = reciprocal(add(square(a), square(b))), x = multiply(b, r), y = multiply(a, r), xy = times(2, multiply(x, y));
+    const interval r = reciprocal(add(square(a), square(b))), x = multiply(b, r), y = multiply(a, r),
+                   xy = times(2, multiply(x, y));
     return (triple){negative(xy), add(square(y), negative(square(x))), xy};
 }
 
@@ -61,11 +62,15 @@ static triple bends_of(const expr_code *p, interval a, interval b, interval f)
         d = expr_partials_range(p, a, b, f).b;
         return is_point(d, d.lo) ? (triple){zero, zero, zero} : (triple){everything, everything, everything};
     case OP_POWI:
-        return (triple){times(p->k * (p->k - 1), p->k == 2 ? one : p->k == 3 ? a : power_range(a, p->k - 2)), zero, zero};
+        return (triple){times(p->k * (p->k - 1), p->k == 2   ? one
+                                                 : p->k == 3 ? a
+                                                             : power_range(a, p->k - 2)),
+                        zero, zero};
     case OP_POW:
         if (b.lo < b.hi || a.lo <= 0)
             break;
-        return (triple){times(b.lo * (b.lo - 1), range(OP_POW, a, (interval){b.lo - 2, b.lo - 2})), everything, everything};
+        return (triple){times(b.lo * (b.lo - 1), range(OP_POW, a, (interval){b.lo - 2, b.lo - 2})), everything,
+                        everything};
     case OP_SIN:
     case OP_COS:
         return (triple){negative(f), zero, zero};
@@ -149,7 +154,8 @@ static bend choice(const expr_code *p, const interval *value, const slope *s, co
     return z;
 }
 
-void expr_bound_hessian(const expr *e, double u0, double u1, double w0, double w1, expr_bounds *out, expr_hessians *second)
+void expr_bound_hessian(const expr *e, double u0, double u1, double w0, double w1, expr_bounds *out,
+                        expr_hessians *second)
 {
     interval value[EXPR_SLOTS] = {{u0, u1}, {w0, w1}};
     slope s[EXPR_SLOTS] = {{{one, zero}}, {{zero, one}}};

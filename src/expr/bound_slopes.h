@@ -1,5 +1,5 @@
-/* Bounds of partials, as far as those of first (expr_gradient.c) and of second order (expr_bend.c) share them. Private to the
- * expr_* files. As everywhere there, 0 times infinity is 0: what does not change, changes nothing.
+/* Bounds of partials, as far as those of first (expr_gradient.c) and of second order (expr_bend.c) share them. Private
+ * to the expr_* files. As everywhere there, 0 times infinity is 0: what does not change, changes nothing.
  */
 #ifndef KAGE_EXPR_BOUND_SLOPES_H
 #define KAGE_EXPR_BOUND_SLOPES_H

@@ -83,9 +83,10 @@ static interval about(double f, double u, double v, double x, double y, double b
     return (interval){most(f - off, -limit), least(f + off, limit)};
 }
 
-/* Bounds of all partials, of order 1, 2 and 3. The first is 2.9262, at the centre of a cell whose four gradients are at their worst;
- * found on a grid of 4001 x 4001, rounded up by more than it can rise between. The others by the triangle inequality, with gradients below
- * 1.4143, fades whose derivatives are below 1.876, 5.78 and 60, and places in the unit square. */
+/* Bounds of all partials, of order 1, 2 and 3. The first is 2.9262, at the centre of a cell whose four gradients are at
+ * their worst; found on a grid of 4001 x 4001, rounded up by more than it can rise between. The others by the triangle
+ * inequality, with gradients below 1.4143, fades whose derivatives are below 1.876, 5.78 and 60, and places in the unit
+ * square. */
 noise_bounds expr_noise_range(interval a, interval b)
 {
     const double SLOPE = 2.93, BEND = 31, THIRD = 260, x = 0.5 * (a.hi - a.lo), y = 0.5 * (b.hi - b.lo);
@@ -94,12 +95,9 @@ noise_bounds expr_noise_range(interval a, interval b)
         return (noise_bounds){f, d, d, dd, dd, dd};
     const noise_jet n = noise_at(a.lo + x, b.lo + y);
     return (noise_bounds){
-        about(n.f, n.x, n.y, x, y, BEND, 1),
-        about(n.x, n.xx, n.xy, x, y, THIRD, SLOPE),
-        about(n.y, n.xy, n.yy, x, y, THIRD, SLOPE),
-        about(n.xx, THIRD, THIRD, x, y, 0, BEND),
-        about(n.xy, THIRD, THIRD, x, y, 0, BEND),
-        about(n.yy, THIRD, THIRD, x, y, 0, BEND),
+        about(n.f, n.x, n.y, x, y, BEND, 1),        about(n.x, n.xx, n.xy, x, y, THIRD, SLOPE),
+        about(n.y, n.xy, n.yy, x, y, THIRD, SLOPE), about(n.xx, THIRD, THIRD, x, y, 0, BEND),
+        about(n.xy, THIRD, THIRD, x, y, 0, BEND),   about(n.yy, THIRD, THIRD, x, y, 0, BEND),
     };
 }
 

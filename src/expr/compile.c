@@ -109,10 +109,7 @@ static operand fold(enum expr_op op, int n, const operand *arg)
     return expr_emit_constant(out.v[0]);
 }
 
-static operand with_constant(emitter *e, enum expr_op op, operand a, double k)
-{
-    return append(e, op, 1, &a, k);
-}
+static operand with_constant(emitter *e, enum expr_op op, operand a, double k) { return append(e, op, 1, &a, k); }
 
 /* a^k for those k that are cheaper, and more exact, without logarithm. False: for another k. */
 static bool simple_power(emitter *e, operand a, double k, operand *z)

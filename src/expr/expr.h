@@ -23,7 +23,7 @@ typedef struct expr expr;
 
 /* Where and why a text is no expression. */
 typedef struct expr_error {
-    size_t offset; /* byte in the text */
+    size_t offset;     /* byte in the text */
     char message[160]; /* what is wrong, what was expected; without place or newline */
 } expr_error;
 
@@ -45,12 +45,12 @@ typedef struct expr_bounds {
     double v[2], u[2], w[2];
 } expr_bounds;
 
-/* As expr_bound_value, and bounds of the first partials: never NaN, infinite where none is known. With L the larger magnitude
- * of u's and M that of w's, |e(p) - e(q)| <= L |pu - qu| + M |pw - qw| for all points p and q of the box at which e is
- * defined, in exact arithmetic, with 0 infinity = 0. So at a kink (abs, min, max, clamp) they hold the slopes of both
- * sides; and they are infinite along a direction in which a jump may lie in the box, its edge included (floor, mod,
- * select unless its branches are the same, atan2's cut, poles), and where a slope is (sqrt, log, u^0.5 at 0; asin at 1).
- * They also hold the partials of expr_eval, unless intermediate results underflow. */
+/* As expr_bound_value, and bounds of the first partials: never NaN, infinite where none is known. With L the larger
+ * magnitude of u's and M that of w's, |e(p) - e(q)| <= L |pu - qu| + M |pw - qw| for all points p and q of the box at
+ * which e is defined, in exact arithmetic, with 0 infinity = 0. So at a kink (abs, min, max, clamp) they hold the
+ * slopes of both sides; and they are infinite along a direction in which a jump may lie in the box, its edge included
+ * (floor, mod, select unless its branches are the same, atan2's cut, poles), and where a slope is (sqrt, log, u^0.5 at
+ * 0; asin at 1). They also hold the partials of expr_eval, unless intermediate results underflow. */
 void expr_bound_gradient(const expr *e, double u0, double u1, double w0, double w1, expr_bounds *out);
 
 /* Bounds of the second partials. */
@@ -58,8 +58,10 @@ typedef struct expr_hessians {
     double uu[2], uw[2], ww[2];
 } expr_hessians;
 
-/* The same, and bounds of the second partials: Lipschitz bounds of the first ones likewise, so infinite where a slope may jump. */
-void expr_bound_hessian(const expr *e, double u0, double u1, double w0, double w1, expr_bounds *out, expr_hessians *second);
+/* The same, and bounds of the second partials: Lipschitz bounds of the first ones likewise, so infinite where a slope
+ * may jump. */
+void expr_bound_hessian(const expr *e, double u0, double u1, double w0, double w1, expr_bounds *out,
+                        expr_hessians *second);
 
 void expr_free(expr *e);
 

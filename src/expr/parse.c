@@ -24,14 +24,14 @@ typedef struct function {
 } function;
 
 static const function functions[] = {
-    {"sin", 1, 1, OP_SIN},     {"cos", 1, 1, OP_COS},          {"tan", 1, 1, OP_TAN},
-    {"asin", 1, 1, OP_ASIN},   {"acos", 1, 1, OP_ACOS},        {"atan", 1, 1, OP_ATAN},
-    {"sinh", 1, 1, OP_SINH},   {"cosh", 1, 1, OP_COSH},        {"tanh", 1, 1, OP_TANH},
-    {"exp", 1, 1, OP_EXP},     {"log", 1, 1, OP_LOG},          {"sqrt", 1, 1, OP_SQRT},
-    {"abs", 1, 1, OP_ABS},     {"floor", 1, 1, OP_FLOOR},      {"noise", 2, 2, OP_NOISE},
-    {"atan2", 2, 2, OP_ATAN2}, {"mod", 2, 2, OP_MOD},          {"pow", 2, 2, OP_POW},
-    {"min", 2, ANY_NUMBER, OP_MIN}, {"max", 2, ANY_NUMBER, OP_MAX},
-    {"clamp", 3, 3, OP_MIN},   {"select", 3, 4, OP_SELECT},
+    {"sin", 1, 1, OP_SIN},          {"cos", 1, 1, OP_COS},          {"tan", 1, 1, OP_TAN},
+    {"asin", 1, 1, OP_ASIN},        {"acos", 1, 1, OP_ACOS},        {"atan", 1, 1, OP_ATAN},
+    {"sinh", 1, 1, OP_SINH},        {"cosh", 1, 1, OP_COSH},        {"tanh", 1, 1, OP_TANH},
+    {"exp", 1, 1, OP_EXP},          {"log", 1, 1, OP_LOG},          {"sqrt", 1, 1, OP_SQRT},
+    {"abs", 1, 1, OP_ABS},          {"floor", 1, 1, OP_FLOOR},      {"noise", 2, 2, OP_NOISE},
+    {"atan2", 2, 2, OP_ATAN2},      {"mod", 2, 2, OP_MOD},          {"pow", 2, 2, OP_POW},
+    {"min", 2, ANY_NUMBER, OP_MIN}, {"max", 2, ANY_NUMBER, OP_MAX}, {"clamp", 3, 3, OP_MIN},
+    {"select", 3, 4, OP_SELECT},
 };
 enum { FUNCTIONS = sizeof functions / sizeof functions[0] };
 

@@ -23,13 +23,35 @@ enum {
 enum expr_op {
     OP_CONST, /* k */
     /* one operand and a constant */
-    OP_ADDK, OP_MULK,
+    OP_ADDK,
+    OP_MULK,
     OP_POWI, /* a^k, k an integer in 2..EXPR_MAX_POWER */
     /* one operand */
-    OP_SIN, OP_COS, OP_TAN, OP_ASIN, OP_ACOS, OP_ATAN, OP_SINH, OP_COSH, OP_TANH, OP_EXP, OP_LOG, OP_SQRT,
-    OP_ABS, OP_FLOOR,
+    OP_SIN,
+    OP_COS,
+    OP_TAN,
+    OP_ASIN,
+    OP_ACOS,
+    OP_ATAN,
+    OP_SINH,
+    OP_COSH,
+    OP_TANH,
+    OP_EXP,
+    OP_LOG,
+    OP_SQRT,
+    OP_ABS,
+    OP_FLOOR,
     /* two */
-    OP_ADD, OP_SUB, OP_MUL, OP_DIV, OP_MOD, OP_ATAN2, OP_POW, OP_NOISE, OP_MIN, OP_MAX,
+    OP_ADD,
+    OP_SUB,
+    OP_MUL,
+    OP_DIV,
+    OP_MOD,
+    OP_ATAN2,
+    OP_POW,
+    OP_NOISE,
+    OP_MIN,
+    OP_MAX,
     /* three, four */
     OP_SELECT, /* b where a < 0, else c */
     OP_SELECT4 /* b where a < 0, c where a = 0, d where a > 0 */
@@ -48,10 +70,10 @@ enum {
 };
 
 typedef struct expr_code {
-    uint8_t op;      /* enum expr_op */
-    uint8_t z;       /* slot of the result */
-    uint8_t arg[4];  /* slots of the operands */
-    uint8_t has[4];  /* their parts */
+    uint8_t op;     /* enum expr_op */
+    uint8_t z;      /* slot of the result */
+    uint8_t arg[4]; /* slots of the operands */
+    uint8_t has[4]; /* their parts */
     uint8_t has_z;
     double k;
 } expr_code;

@@ -109,23 +109,23 @@ STAGE static void stage_compare_zero(int n, double *restrict d, const double *re
 typedef void stage1(int n, int order, const double *restrict a, double *restrict f, double *restrict d,
                     double *restrict dd);
 
-#define STAGE1(name, rule)                                                                                   \
-    STAGE static void name(int n, int order, const double *restrict a, double *restrict f,                   \
-                           double *restrict d, double *restrict dd)                                          \
-    {                                                                                                        \
-        if (order == 0)                                                                                      \
-            for (int i = 0; i < n; i++)                                                                      \
-                f[i] = rule(a[i]).f;                                                                         \
-        else if (order == 1)                                                                                 \
-            for (int i = 0; i < n; i++) {                                                                    \
-                rule1 r = rule(a[i]);                                                                        \
-                f[i] = r.f, d[i] = r.d;                                                                      \
-            }                                                                                                \
-        else                                                                                                 \
-            for (int i = 0; i < n; i++) {                                                                    \
-                rule1 r = rule(a[i]);                                                                        \
-                f[i] = r.f, d[i] = r.d, dd[i] = r.dd;                                                        \
-            }                                                                                                \
+#define STAGE1(name, rule)                                                                                             \
+    STAGE static void name(int n, int order, const double *restrict a, double *restrict f, double *restrict d,         \
+                           double *restrict dd)                                                                        \
+    {                                                                                                                  \
+        if (order == 0)                                                                                                \
+            for (int i = 0; i < n; i++)                                                                                \
+                f[i] = rule(a[i]).f;                                                                                   \
+        else if (order == 1)                                                                                           \
+            for (int i = 0; i < n; i++) {                                                                              \
+                rule1 r = rule(a[i]);                                                                                  \
+                f[i] = r.f, d[i] = r.d;                                                                                \
+            }                                                                                                          \
+        else                                                                                                           \
+            for (int i = 0; i < n; i++) {                                                                              \
+                rule1 r = rule(a[i]);                                                                                  \
+                f[i] = r.f, d[i] = r.d, dd[i] = r.dd;                                                                  \
+            }                                                                                                          \
     }
 
 STAGE1(stage_sin, rule_sin)
@@ -171,9 +171,9 @@ STAGE static void stage_powi(int n, int order, const double *restrict a, double 
 
 /* By enum expr_op. */
 static stage1 *const stages1[] = {
-    [OP_SIN] = stage_sin,   [OP_COS] = stage_cos,   [OP_TAN] = stage_tan,   [OP_ASIN] = stage_asin,
-    [OP_ACOS] = stage_acos, [OP_ATAN] = stage_atan, [OP_SINH] = stage_sinh, [OP_COSH] = stage_cosh,
-    [OP_TANH] = stage_tanh, [OP_EXP] = stage_exp,   [OP_LOG] = stage_log,   [OP_SQRT] = stage_sqrt,
+    [OP_SIN] = stage_sin,   [OP_COS] = stage_cos,     [OP_TAN] = stage_tan,   [OP_ASIN] = stage_asin,
+    [OP_ACOS] = stage_acos, [OP_ATAN] = stage_atan,   [OP_SINH] = stage_sinh, [OP_COSH] = stage_cosh,
+    [OP_TANH] = stage_tanh, [OP_EXP] = stage_exp,     [OP_LOG] = stage_log,   [OP_SQRT] = stage_sqrt,
     [OP_ABS] = stage_abs,   [OP_FLOOR] = stage_floor,
 };
 
@@ -186,24 +186,24 @@ typedef struct partials2 {
 typedef void stage2(int n, int order, const double *restrict a, const double *restrict b, double *restrict f,
                     partials2 *restrict d);
 
-#define STAGE2(name, rule)                                                                                   \
-    STAGE static void name(int n, int order, const double *restrict a, const double *restrict b,             \
-                           double *restrict f, partials2 *restrict d)                                        \
-    {                                                                                                        \
-        if (order == 0)                                                                                      \
-            for (int i = 0; i < n; i++)                                                                      \
-                f[i] = rule(a[i], b[i]).f;                                                                   \
-        else if (order == 1)                                                                                 \
-            for (int i = 0; i < n; i++) {                                                                    \
-                rule2 r = rule(a[i], b[i]);                                                                  \
-                f[i] = r.f, d->a[i] = r.a, d->b[i] = r.b;                                                    \
-            }                                                                                                \
-        else                                                                                                 \
-            for (int i = 0; i < n; i++) {                                                                    \
-                rule2 r = rule(a[i], b[i]);                                                                  \
-                f[i] = r.f, d->a[i] = r.a, d->b[i] = r.b;                                                    \
-                d->aa[i] = r.aa, d->ab[i] = r.ab, d->bb[i] = r.bb;                                           \
-            }                                                                                                \
+#define STAGE2(name, rule)                                                                                             \
+    STAGE static void name(int n, int order, const double *restrict a, const double *restrict b, double *restrict f,   \
+                           partials2 *restrict d)                                                                      \
+    {                                                                                                                  \
+        if (order == 0)                                                                                                \
+            for (int i = 0; i < n; i++)                                                                                \
+                f[i] = rule(a[i], b[i]).f;                                                                             \
+        else if (order == 1)                                                                                           \
+            for (int i = 0; i < n; i++) {                                                                              \
+                rule2 r = rule(a[i], b[i]);                                                                            \
+                f[i] = r.f, d->a[i] = r.a, d->b[i] = r.b;                                                              \
+            }                                                                                                          \
+        else                                                                                                           \
+            for (int i = 0; i < n; i++) {                                                                              \
+                rule2 r = rule(a[i], b[i]);                                                                            \
+                f[i] = r.f, d->a[i] = r.a, d->b[i] = r.b;                                                              \
+                d->aa[i] = r.aa, d->ab[i] = r.ab, d->bb[i] = r.bb;                                                     \
+            }                                                                                                          \
     }
 
 STAGE2(stage_div, rule_div)

@@ -133,8 +133,9 @@ STAGE static void box_occlude_own(const surface *base, int n, const rays *x, con
         int k = part[i] >> 1, high = part[i] & 1;
         real along = k == 0 ? sx : k == 1 ? sy : sz;
         real away = high ? along : -along;
-        real out = real_min(real_min(box_exit(x->r.x[i], sx, f.lo[0], f.hi[0]), box_exit(x->r.y[i], sy, f.lo[1], f.hi[1])),
-                            box_exit(x->r.z[i], sz, f.lo[2], f.hi[2]));
+        real out =
+            real_min(real_min(box_exit(x->r.x[i], sx, f.lo[0], f.hi[0]), box_exit(x->r.y[i], sy, f.lo[1], f.hi[1])),
+                     box_exit(x->r.z[i], sz, f.lo[2], f.hi[2]));
         lit[i] = ((away < 0) & (out < 1)) ? 0 : lit[i];
     }
 }
@@ -157,8 +158,8 @@ static face box_face(const box *f, int part)
 static const real *axis(const vec3s *v, int k) { return k == 0 ? v->x : k == 1 ? v->y : v->z; }
 static real *axis_of(vec3s *v, int k) { return k == 0 ? v->x : k == 1 ? v->y : v->z; }
 
-static void box_shell(const surface *base, int part, int n, const rays *x, const real *end, real Pmin, real Pmax, real *t0,
-                      real *t1)
+static void box_shell(const surface *base, int part, int n, const rays *x, const real *end, real Pmin, real Pmax,
+                      real *t0, real *t1)
 {
     const box *f = (const box *)base;
     const face c = box_face(f, part);
@@ -194,8 +195,8 @@ static void box_foot(const surface *base, int part, int n, const rays *x, const 
     }
 }
 
-static void box_steep(const surface *base, int part, int n, const rays *x, const closest_points *p, real Pu_max, real Pw_max, real *rate,
-                      real *reach)
+static void box_steep(const surface *base, int part, int n, const rays *x, const closest_points *p, real Pu_max,
+                      real Pw_max, real *rate, real *reach)
 {
     const box *f = (const box *)base;
     const face c = box_face(f, part);
@@ -226,8 +227,8 @@ static void box_box(const surface *base, double lo[3], double hi[3])
 }
 
 static const surface_ops box_methods = {
-    "box", box_hit,   box_hit_own, box_locate, box_eval,  box_occlude, box_occlude_own, box_extent, box_box,
-    6,     box_shell, box_foot,   box_steep,  false,
+    "box",      box_hit, box_hit_own, box_locate, box_eval, box_occlude, box_occlude_own,
+    box_extent, box_box, 6,           box_shell,  box_foot, box_steep,   false,
 };
 
 surface *box_new(vec3 from, vec3 to)

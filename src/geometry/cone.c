@@ -1,5 +1,5 @@
-/* Cone and cylinder about an axis, open or with caps. The side is Q(u,w) = F + rho (cos u X + sin u Z) + y Y, with w the way
- * down it from its upper end: rho = r_to + w sin a, y = length - w cos a, a the angle between side and axis.
+/* Cone and cylinder about an axis, open or with caps. The side is Q(u,w) = F + rho (cos u X + sin u Z) + y Y, with w
+ * the way down it from its upper end: rho = r_to + w sin a, y = length - w cos a, a the angle between side and axis.
  *
  * A cylinder is the cone with a = 0. Part 0 is the side, 1 the cap on top, 2 the one at the bottom; the caps are discs.
  */
@@ -38,31 +38,33 @@ KM_INLINE local local_from(const cone *f, const vec3s *r, const vec3s *s, int i)
 
 KM_INLINE local local_of(const cone *f, const rays *x, int i) { return local_from(f, &x->r, &x->s, i); }
 
-/* Two stretches of a ray: in the solid within the endless side, and between the ends. Each is empty where its ends are the
- * wrong way round. */
+/* Two stretches of a ray: in the solid within the endless side, and between the ends. Each is empty where its ends are
+ * the wrong way round. */
 typedef struct spans {
     real in, out, from, to;
 } spans;
 
 /* For the cone whose radius is rho at the axis' lower end, and the ends at heights lo and hi.
- * The roots of a t^2 + 2 b t + c are taken from the ray's place nearest to the cone's middle, so that no digit is lost to the
- * way there; the discriminant b^2 - a c is a difference of two squares, which cancels only at a tangent. Below 0 its root is NaN,
- * and so is what follows: every comparison with that is false. (Choices by more than one comparison would keep gcc 12 from
- * vectorising the loops.) */
+ * The roots of a t^2 + 2 b t + c are taken from the ray's place nearest to the cone's middle, so that no digit is lost
+ * to the way there; the discriminant b^2 - a c is a difference of two squares, which cancels only at a tangent. Below 0
+ * its root is NaN, and so is what follows: every comparison with that is false. (Choices by more than one comparison
+ * would keep gcc 12 from vectorising the loops.) */
 KM_INLINE spans cone_spans(const cone *f, real rho, real lo, real hi, local l)
 {
     real s2 = l.sx * l.sx + l.sy * l.sy + l.sz * l.sz;
     real tc = -(l.ox * l.sx + (l.oy - R(0.5) * f->length) * l.sy + l.oz * l.sz) / s2;
     real ox = l.ox + tc * l.sx, oy = l.oy + tc * l.sy, oz = l.oz + tc * l.sz;
     real grow = f->rise * l.sy, r = rho + f->rise * oy;
-    real a = l.sx * l.sx + l.sz * l.sz - grow * grow, b = ox * l.sx + oz * l.sz - grow * r, c = ox * ox + oz * oz - r * r;
+    real a = l.sx * l.sx + l.sz * l.sz - grow * grow, b = ox * l.sx + oz * l.sz - grow * r,
+         c = ox * ox + oz * oz - r * r;
     real vx = r * l.sx - grow * ox, vz = r * l.sz - grow * oz, cross = ox * l.sz - oz * l.sx;
     real d = vx * vx + vz * vz - cross * cross;
-    /* a < 0: steeper than the side, the ray is in both halves of the double cone and in this one towards where it widens; its d
-     * is below 0 by rounding alone */
+    /* a < 0: steeper than the side, the ray is in both halves of the double cone and in this one towards where it
+     * widens; its d is below 0 by rounding alone */
     real h = real_sqrt(a < 0 ? real_abs(d) : d);
     real q = b > 0 ? -b - h : h - b;
-    real t0 = q / a, t1 = c / q; /* a = 0, a ray along the side: t0 is infinite; q = 0: t1 is NaN where t0 is the root */
+    real t0 = q / a,
+         t1 = c / q; /* a = 0, a ray along the side: t0 is infinite; q = 0: t1 is NaN where t0 is the root */
     real low = real_min(t1, t0), high = real_max(t1, t0);
     real steep_in = grow > 0 ? high : -REAL_FAR, steep_out = grow > 0 ? REAL_FAR : low;
     real in = a < 0 ? steep_in : low, out = a < 0 ? steep_out : high;
@@ -109,8 +111,14 @@ KM_INLINE void hit(const surface *base, int capped, int n, const rays *x, int32_
     }
 }
 
-STAGE static void cone_open_hit(const surface *base, int n, const rays *x, int32_t id, hits *h) { hit(base, 0, n, x, id, h); }
-STAGE static void cone_capped_hit(const surface *base, int n, const rays *x, int32_t id, hits *h) { hit(base, 1, n, x, id, h); }
+STAGE static void cone_open_hit(const surface *base, int n, const rays *x, int32_t id, hits *h)
+{
+    hit(base, 0, n, x, id, h);
+}
+STAGE static void cone_capped_hit(const surface *base, int n, const rays *x, int32_t id, hits *h)
+{
+    hit(base, 1, n, x, id, h);
+}
 
 KM_INLINE void occlude(const surface *base, int capped, int n, const rays *x, real *lit)
 {
@@ -122,8 +130,14 @@ KM_INLINE void occlude(const surface *base, int capped, int n, const rays *x, re
     }
 }
 
-STAGE static void cone_open_occlude(const surface *base, int n, const rays *x, real *lit) { occlude(base, 0, n, x, lit); }
-STAGE static void cone_capped_occlude(const surface *base, int n, const rays *x, real *lit) { occlude(base, 1, n, x, lit); }
+STAGE static void cone_open_occlude(const surface *base, int n, const rays *x, real *lit)
+{
+    occlude(base, 0, n, x, lit);
+}
+STAGE static void cone_capped_occlude(const surface *base, int n, const rays *x, real *lit)
+{
+    occlude(base, 1, n, x, lit);
+}
 
 /* The part that a hit is on is the one that it is farthest out towards, as with a box. */
 STAGE static void cone_part(const cone *restrict base, int n, const rays *restrict x, const real *restrict t,
@@ -224,7 +238,8 @@ STAGE static void cone_caps_bend(int n, const int32_t *restrict part, vec3s *res
     }
 }
 
-static void cone_eval(const surface *base, int n, const int32_t *part, const real *u, const real *w, int order, partials *q)
+static void cone_eval(const surface *base, int n, const int32_t *part, const real *u, const real *w, int order,
+                      partials *q)
 {
     const cone *f = (const cone *)base;
     cone_side_eval(f, n, u, w, order, q);
@@ -247,8 +262,8 @@ KM_INLINE real cone_open_far(const cone *f, local l, int *met)
     return t;
 }
 
-/* From a place of a capped one the solid is entered here or not at all; entered, it is left through the first of its other
- * parts, and of the side through that other root. */
+/* From a place of a capped one the solid is entered here or not at all; entered, it is left through the first of its
+ * other parts, and of the side through that other root. */
 KM_INLINE real cone_capped_far(const cone *f, local l, int part, int *met)
 {
     real grow = f->rise * l.sy, r = f->from + f->rise * l.oy;
@@ -262,7 +277,8 @@ KM_INLINE real cone_capped_far(const cone *f, local l, int part, int *met)
     return out;
 }
 
-KM_INLINE void hit_own(const surface *base, int capped, int n, const rays *x, const ray_origins *from, int32_t id, hits *h)
+KM_INLINE void hit_own(const surface *base, int capped, int n, const rays *x, const ray_origins *from, int32_t id,
+                       hits *h)
 {
     const cone f = *(const cone *)base;
     for (int i = 0; i < n; i++) {
@@ -277,12 +293,14 @@ KM_INLINE void hit_own(const surface *base, int capped, int n, const rays *x, co
     }
 }
 
-STAGE static void cone_open_hit_own(const surface *base, int n, const rays *x, const ray_origins *from, int32_t id, hits *h)
+STAGE static void cone_open_hit_own(const surface *base, int n, const rays *x, const ray_origins *from, int32_t id,
+                                    hits *h)
 {
     hit_own(base, 0, n, x, from, id, h);
 }
 
-STAGE static void cone_capped_hit_own(const surface *base, int n, const rays *x, const ray_origins *from, int32_t id, hits *h)
+STAGE static void cone_capped_hit_own(const surface *base, int n, const rays *x, const ray_origins *from, int32_t id,
+                                      hits *h)
 {
     hit_own(base, 1, n, x, from, id, h);
 }
@@ -311,8 +329,8 @@ STAGE static void cone_capped_occlude_own(const surface *base, int n, const rays
 
 /* ---- for true displacement: side and caps each by itself ---- */
 
-/* Q + P n/|n| on the side is on the cone whose radius is larger by P/cos a, from w = 0 to its side's end. Seen along the axis
- * that is from lo to hi. */
+/* Q + P n/|n| on the side is on the cone whose radius is larger by P/cos a, from w = 0 to its side's end. Seen along
+ * the axis that is from lo to hi. */
 STAGE static void cone_side_shell(const cone *restrict base, int n, const rays *restrict x, const real *restrict end,
                                   real Pmin, real Pmax, real *restrict t0, real *restrict t1)
 {
@@ -324,8 +342,8 @@ STAGE static void cone_side_shell(const cone *restrict base, int n, const rays *
         local l = local_of(&f, x, i);
         spans k = cone_spans(&f, outer, lo, hi, l), core = cone_spans(&f, inner, lo, hi, l);
         real in = real_max(k.from, k.in), out = real_min(k.to, k.out), from = real_max(in, 0);
-        /* Within the core the gap is below 0, so that a ray that has come in through the outer cone has met the rough side before
-         * it, unless the foot was beyond an end. */
+        /* Within the core the gap is below 0, so that a ray that has come in through the outer cone has met the rough
+         * side before it, unless the foot was beyond an end. */
         int crossed = exact & (inner > 0) & (core.in <= core.out) & (core.in > from) & (from == k.in);
         out = crossed ? real_min(core.in, out) : out;
         t0[i] = from;
@@ -335,8 +353,8 @@ STAGE static void cone_side_shell(const cone *restrict base, int n, const rays *
 
 static const plane *cap_of(const surface *base, int part) { return &((const cone *)base)->cap[part - 1]; }
 
-static void cone_shell(const surface *base, int part, int n, const rays *x, const real *end, real Pmin, real Pmax, real *t0,
-                       real *t1)
+static void cone_shell(const surface *base, int part, int n, const rays *x, const real *end, real Pmin, real Pmax,
+                       real *t0, real *t1)
 {
     if (part == 0)
         cone_side_shell((const cone *)base, n, x, end, Pmin, Pmax, t0, t1);
@@ -374,10 +392,10 @@ static void cone_foot(const surface *base, int part, int n, const rays *x, const
     }
 }
 
-/* The directions of h, of w and around the axis are at right angles, so that the ray's way is shared between them (Cauchy and
- * Schwarz); |grad u| is 1/(distance to the axis), within half of which it at most doubles. */
-STAGE static void cone_side_steep(int n, const rays *restrict x, const closest_points *restrict p, real Pu_max, real Pw_max,
-                                  real *restrict rate, real *restrict reach)
+/* The directions of h, of w and around the axis are at right angles, so that the ray's way is shared between them
+ * (Cauchy and Schwarz); |grad u| is 1/(distance to the axis), within half of which it at most doubles. */
+STAGE static void cone_side_steep(int n, const rays *restrict x, const closest_points *restrict p, real Pu_max,
+                                  real Pw_max, real *restrict rate, real *restrict reach)
 {
     for (int i = 0; i < n; i++) {
         real sx = x->s.x[i], sy = x->s.y[i], sz = x->s.z[i], s = real_sqrt(sx * sx + sy * sy + sz * sz);
@@ -387,8 +405,8 @@ STAGE static void cone_side_steep(int n, const rays *restrict x, const closest_p
     }
 }
 
-static void cone_steep(const surface *base, int part, int n, const rays *x, const closest_points *p, real Pu_max, real Pw_max, real *rate,
-                       real *reach)
+static void cone_steep(const surface *base, int part, int n, const rays *x, const closest_points *p, real Pu_max,
+                       real Pw_max, real *rate, real *reach)
 {
     if (part == 0)
         cone_side_steep(n, x, p, Pu_max, Pw_max, rate, reach);
@@ -418,21 +436,22 @@ static void cone_box(const surface *base, double lo[3], double hi[3])
     const cone *f = (const cone *)base;
     for (int k = 0; k < 3; k++) {
         const double Y = (double)f->Y[k], across = sqrt(fmax(1 - Y * Y, 0));
-        const double a = (double)f->F[k], b = a + (double)f->length * Y, ra = (double)f->from * across, rb = (double)f->to * across;
+        const double a = (double)f->F[k], b = a + (double)f->length * Y, ra = (double)f->from * across,
+                     rb = (double)f->to * across;
         lo[k] = fmin(a - ra, b - rb);
         hi[k] = fmax(a + ra, b + rb);
     }
 }
 
 static const surface_ops cone_methods[2][2] = {
-    {{"cylinder", cone_open_hit, cone_open_hit_own, cone_locate, cone_eval, cone_open_occlude, cone_open_occlude_own, cone_extent, cone_box,
-      1,          cone_shell,    cone_foot,         cone_steep,  false},
-     {"cylinder", cone_capped_hit, cone_capped_hit_own, cone_locate, cone_eval, cone_capped_occlude, cone_capped_occlude_own, cone_extent, cone_box,
-      3,          cone_shell,      cone_foot,           cone_steep,  false}},
-    {{"cone", cone_open_hit, cone_open_hit_own, cone_locate, cone_eval, cone_open_occlude, cone_open_occlude_own, cone_extent, cone_box,
-      1,      cone_shell,    cone_foot,         cone_steep,  true},
-     {"cone", cone_capped_hit, cone_capped_hit_own, cone_locate, cone_eval, cone_capped_occlude, cone_capped_occlude_own, cone_extent, cone_box,
-      3,      cone_shell,      cone_foot,           cone_steep,  true}},
+    {{"cylinder", cone_open_hit, cone_open_hit_own, cone_locate, cone_eval, cone_open_occlude, cone_open_occlude_own,
+      cone_extent, cone_box, 1, cone_shell, cone_foot, cone_steep, false},
+     {"cylinder", cone_capped_hit, cone_capped_hit_own, cone_locate, cone_eval, cone_capped_occlude,
+      cone_capped_occlude_own, cone_extent, cone_box, 3, cone_shell, cone_foot, cone_steep, false}},
+    {{"cone", cone_open_hit, cone_open_hit_own, cone_locate, cone_eval, cone_open_occlude, cone_open_occlude_own,
+      cone_extent, cone_box, 1, cone_shell, cone_foot, cone_steep, true},
+     {"cone", cone_capped_hit, cone_capped_hit_own, cone_locate, cone_eval, cone_capped_occlude,
+      cone_capped_occlude_own, cone_extent, cone_box, 3, cone_shell, cone_foot, cone_steep, true}},
 };
 
 static void store(real to[3], vec3 v)
@@ -445,8 +464,10 @@ static void store(real to[3], vec3 v)
 surface *cone_new(vec3 from, double from_radius, vec3 to, double to_radius, bool open)
 {
     const vec3 axis = vec3_sub(to, from);
-    const double length = vec3_length(axis), slope = from_radius - to_radius, side = sqrt(length * length + slope * slope);
-    const bool good = length > 0 && from_radius >= 0 && to_radius >= 0 && from_radius + to_radius > 0 && side < HUGE_VAL;
+    const double length = vec3_length(axis), slope = from_radius - to_radius,
+                 side = sqrt(length * length + slope * slope);
+    const bool good =
+        length > 0 && from_radius >= 0 && to_radius >= 0 && from_radius + to_radius > 0 && side < HUGE_VAL;
     cone *f = good ? calloc(1, sizeof *f) : NULL;
     if (!f)
         return NULL;

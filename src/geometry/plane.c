@@ -49,32 +49,41 @@ static inline void hit(const surface *base, enum bounds end, int n, const rays *
 }
 
 /* A ray from the plane does not come back to it. */
-static inline void hit_own(const surface *base, enum bounds end, int n, const rays *x, const ray_origins *from, int32_t id, hits *h)
+static inline void hit_own(const surface *base, enum bounds end, int n, const rays *x, const ray_origins *from,
+                           int32_t id, hits *h)
 {
     const plane f = *(const plane *)base;
     for (int i = 0; i < n; i++) {
         real t = plane_t(&f, x->r.x[i], x->r.y[i], x->r.z[i], x->s.x[i], x->s.y[i], x->s.z[i]);
-        int in = end == NOWHERE ? 1 : plane_inside(&f, x, i, end, t), take = in & (from->id[i] != id) & (t > 0) & (t < h->t[i]);
+        int in = end == NOWHERE ? 1 : plane_inside(&f, x, i, end, t),
+            take = in & (from->id[i] != id) & (t > 0) & (t < h->t[i]);
         h->t[i] = take ? t : h->t[i];
         h->id[i] = take ? id : h->id[i];
     }
 }
 
-STAGE static void plane_hit(const surface *base, int n, const rays *x, int32_t id, hits *h) { hit(base, NOWHERE, n, x, id, h); }
+STAGE static void plane_hit(const surface *base, int n, const rays *x, int32_t id, hits *h)
+{
+    hit(base, NOWHERE, n, x, id, h);
+}
 
 STAGE static void rectangle_hit(const surface *base, int n, const rays *x, int32_t id, hits *h)
 {
     hit(base, AT_SIDES, n, x, id, h);
 }
 
-STAGE static void disc_hit(const surface *base, int n, const rays *x, int32_t id, hits *h) { hit(base, AT_RIM, n, x, id, h); }
+STAGE static void disc_hit(const surface *base, int n, const rays *x, int32_t id, hits *h)
+{
+    hit(base, AT_RIM, n, x, id, h);
+}
 
 STAGE static void plane_hit_own(const surface *base, int n, const rays *x, const ray_origins *from, int32_t id, hits *h)
 {
     hit_own(base, NOWHERE, n, x, from, id, h);
 }
 
-STAGE static void rectangle_hit_own(const surface *base, int n, const rays *x, const ray_origins *from, int32_t id, hits *h)
+STAGE static void rectangle_hit_own(const surface *base, int n, const rays *x, const ray_origins *from, int32_t id,
+                                    hits *h)
 {
     hit_own(base, AT_SIDES, n, x, from, id, h);
 }
@@ -122,14 +131,20 @@ static inline void occlude(const surface *base, enum bounds end, int n, const ra
         lit[i] = plane_cut(&f, x, i, end, 1) < 1 ? 0 : lit[i];
 }
 
-STAGE static void plane_occlude(const surface *base, int n, const rays *x, real *lit) { occlude(base, NOWHERE, n, x, lit); }
+STAGE static void plane_occlude(const surface *base, int n, const rays *x, real *lit)
+{
+    occlude(base, NOWHERE, n, x, lit);
+}
 
 STAGE static void rectangle_occlude(const surface *base, int n, const rays *x, real *lit)
 {
     occlude(base, AT_SIDES, n, x, lit);
 }
 
-STAGE static void disc_occlude(const surface *base, int n, const rays *x, real *lit) { occlude(base, AT_RIM, n, x, lit); }
+STAGE static void disc_occlude(const surface *base, int n, const rays *x, real *lit)
+{
+    occlude(base, AT_RIM, n, x, lit);
+}
 
 /* ---- for true displacement ---- */
 
@@ -146,8 +161,8 @@ static inline void clip_rim(real u, real w, real du, real dw, real rim, real *t0
     *t1 = real_min(to, *t1);
 }
 
-static inline void shell(const surface *base, enum bounds bound, int n, const rays *x, const real *end, real Pmin, real Pmax,
-                         real *restrict t0, real *restrict t1)
+static inline void shell(const surface *base, enum bounds bound, int n, const rays *x, const real *end, real Pmin,
+                         real Pmax, real *restrict t0, real *restrict t1)
 {
     const plane f = *(const plane *)base;
     for (int i = 0; i < n; i++) {
@@ -156,19 +171,22 @@ static inline void shell(const surface *base, enum bounds bound, int n, const ra
         real from = 0, to = end[i];
         clip(rx * f.N[0] + ry * f.N[1] + rz * f.N[2], sx * f.N[0] + sy * f.N[1] + sz * f.N[2], Pmin, Pmax, &from, &to);
         if (bound == AT_SIDES) {
-            clip(rx * f.Du[0] + ry * f.Du[1] + rz * f.Du[2], sx * f.Du[0] + sy * f.Du[1] + sz * f.Du[2], 0, 1, &from, &to);
-            clip(rx * f.Dw[0] + ry * f.Dw[1] + rz * f.Dw[2], sx * f.Dw[0] + sy * f.Dw[1] + sz * f.Dw[2], 0, 1, &from, &to);
+            clip(rx * f.Du[0] + ry * f.Du[1] + rz * f.Du[2], sx * f.Du[0] + sy * f.Du[1] + sz * f.Du[2], 0, 1, &from,
+                 &to);
+            clip(rx * f.Dw[0] + ry * f.Dw[1] + rz * f.Dw[2], sx * f.Dw[0] + sy * f.Dw[1] + sz * f.Dw[2], 0, 1, &from,
+                 &to);
         }
         if (bound == AT_RIM)
             clip_rim(rx * f.Du[0] + ry * f.Du[1] + rz * f.Du[2], rx * f.Dw[0] + ry * f.Dw[1] + rz * f.Dw[2],
-                     sx * f.Du[0] + sy * f.Du[1] + sz * f.Du[2], sx * f.Dw[0] + sy * f.Dw[1] + sz * f.Dw[2], f.R, &from, &to);
+                     sx * f.Du[0] + sy * f.Du[1] + sz * f.Du[2], sx * f.Dw[0] + sy * f.Dw[1] + sz * f.Dw[2], f.R, &from,
+                     &to);
         t0[i] = from;
         t1[i] = to;
     }
 }
 
-static void plane_shell(const surface *base, int part, int n, const rays *x, const real *end, real Pmin, real Pmax, real *t0,
-                        real *t1)
+static void plane_shell(const surface *base, int part, int n, const rays *x, const real *end, real Pmin, real Pmax,
+                        real *t0, real *t1)
 {
     (void)part;
     shell(base, NOWHERE, n, x, end, Pmin, Pmax, t0, t1);
@@ -181,15 +199,16 @@ static void rectangle_shell(const surface *base, int part, int n, const rays *x,
     shell(base, AT_SIDES, n, x, end, Pmin, Pmax, t0, t1);
 }
 
-static void disc_shell(const surface *base, int part, int n, const rays *x, const real *end, real Pmin, real Pmax, real *t0,
-                       real *t1)
+static void disc_shell(const surface *base, int part, int n, const rays *x, const real *end, real Pmin, real Pmax,
+                       real *t0, real *t1)
 {
     (void)part;
     shell(base, AT_RIM, n, x, end, Pmin, Pmax, t0, t1);
 }
 
 /* The dual basis is in the plane, so Du.(X - O) is u of the foot. */
-STAGE static void plane_foot(const surface *base, int part, int n, const rays *x, const real *restrict t, closest_points *restrict p)
+STAGE static void plane_foot(const surface *base, int part, int n, const rays *x, const real *restrict t,
+                             closest_points *restrict p)
 {
     const plane f = *(const plane *)base;
     (void)part;
@@ -205,8 +224,8 @@ STAGE static void plane_foot(const surface *base, int part, int n, const rays *x
 }
 
 /* u, w and the height are linear along a ray, so the rate holds for all of it. */
-STAGE static void plane_steep(const surface *base, int part, int n, const rays *x, const closest_points *p, real Pu_max, real Pw_max,
-                              real *restrict rate, real *restrict reach)
+STAGE static void plane_steep(const surface *base, int part, int n, const rays *x, const closest_points *p, real Pu_max,
+                              real Pw_max, real *restrict rate, real *restrict reach)
 {
     const plane f = *(const plane *)base;
     (void)part;
@@ -267,25 +286,27 @@ static void disc_box(const surface *base, double lo[3], double hi[3])
 {
     const plane *f = (const plane *)base;
     for (int k = 0; k < 3; k++) {
-        const double O = (double)f->O[k], U = (double)f->U[k], W = (double)f->W[k], r = (double)f->R * sqrt(U * U + W * W);
+        const double O = (double)f->O[k], U = (double)f->U[k], W = (double)f->W[k],
+                     r = (double)f->R * sqrt(U * U + W * W);
         lo[k] = O - r;
         hi[k] = O + r;
     }
 }
 
 static const surface_ops plane_methods = {
-    "plane", plane_hit,   plane_hit_own, plane_locate, plane_eval, plane_occlude, NULL, plane_extent, plane_box,
-    1,       plane_shell, plane_foot,    plane_steep,  false,
+    "plane",   plane_hit, plane_hit_own, plane_locate, plane_eval,  plane_occlude, NULL, plane_extent,
+    plane_box, 1,         plane_shell,   plane_foot,   plane_steep, false,
 };
 
 static const surface_ops rectangle_methods = {
-    "rectangle", rectangle_hit,   rectangle_hit_own, plane_locate, plane_eval, rectangle_occlude, NULL, rectangle_extent, rectangle_box,
-    1,           rectangle_shell, plane_foot,        plane_steep,  false,
+    "rectangle",       rectangle_hit, rectangle_hit_own, plane_locate,  plane_eval,
+    rectangle_occlude, NULL,          rectangle_extent,  rectangle_box, 1,
+    rectangle_shell,   plane_foot,    plane_steep,       false,
 };
 
 static const surface_ops disc_methods = {
-    "disc", disc_hit,   disc_hit_own, plane_locate, plane_eval, disc_occlude, NULL, disc_extent, disc_box,
-    1,      disc_shell, plane_foot,   plane_steep,  false,
+    "disc",   disc_hit, disc_hit_own, plane_locate, plane_eval,  disc_occlude, NULL, disc_extent,
+    disc_box, 1,        disc_shell,   plane_foot,   plane_steep, false,
 };
 
 static void store(real to[3], vec3 v)

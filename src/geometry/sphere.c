@@ -12,7 +12,8 @@ typedef struct sphere {
 /* Both roots of |r + s t - C|^2 = R^2, t0 <= t1; 0 where there is none.
  * The discriminant is taken from the foot of the perpendicular from C to the ray, |s|^2 R^2 - |s|^2 |foot|^2, which
  * keeps the digits that b^2 - a c loses for a small sphere far away [Haines et al., Ray Tracing Gems, ch. 7]. */
-static inline int sphere_roots(const sphere *f, real rx, real ry, real rz, real sx, real sy, real sz, real *t0, real *t1)
+static inline int sphere_roots(const sphere *f, real rx, real ry, real rz, real sx, real sy, real sz, real *t0,
+                               real *t1)
 {
     real ox = rx - f->C[0], oy = ry - f->C[1], oz = rz - f->C[2];
     real a = sx * sx + sy * sy + sz * sz, tc = -(ox * sx + oy * sy + oz * sz) / a;
@@ -43,7 +44,8 @@ static inline real sphere_far(const sphere *f, real rx, real ry, real rz, real s
     return -2 * ((rx - f->C[0]) * sx + (ry - f->C[1]) * sy + (rz - f->C[2]) * sz) / (sx * sx + sy * sy + sz * sz);
 }
 
-STAGE static void sphere_hit_own(const surface *base, int n, const rays *x, const ray_origins *from, int32_t id, hits *h)
+STAGE static void sphere_hit_own(const surface *base, int n, const rays *x, const ray_origins *from, int32_t id,
+                                 hits *h)
 {
     const sphere f = *(const sphere *)base;
     for (int i = 0; i < n; i++) {
@@ -131,8 +133,8 @@ STAGE static void sphere_occlude_own(const surface *base, int n, const rays *x, 
 
 /* ---- for true displacement ---- */
 
-/* The outer sphere's stretch. From within the inner one it begins at that one's far side; all others go through it, as a ray that is below
- * the rough surface already meets it on the far side only. */
+/* The outer sphere's stretch. From within the inner one it begins at that one's far side; all others go through it, as
+ * a ray that is below the rough surface already meets it on the far side only. */
 STAGE static void sphere_shell(const surface *base, int part, int n, const rays *x, const real *restrict end, real Pmin,
                                real Pmax, real *restrict t0, real *restrict t1)
 {
@@ -150,7 +152,8 @@ STAGE static void sphere_shell(const surface *base, int part, int n, const rays 
     }
 }
 
-STAGE static void sphere_foot(const surface *base, int part, int n, const rays *x, const real *restrict t, closest_points *restrict p)
+STAGE static void sphere_foot(const surface *base, int part, int n, const rays *x, const real *restrict t,
+                              closest_points *restrict p)
 {
     const sphere f = *(const sphere *)base;
     (void)part;
@@ -175,9 +178,10 @@ STAGE static void sphere_foot(const surface *base, int part, int n, const rays *
     }
 }
 
-/* |grad u| is 1/(distance to the axis), |grad w| 1/(distance to the centre): within half of either they at most double. */
-STAGE static void sphere_steep(const surface *base, int part, int n, const rays *x, const closest_points *p, real Pu_max, real Pw_max,
-                               real *restrict rate, real *restrict reach)
+/* |grad u| is 1/(distance to the axis), |grad w| 1/(distance to the centre): within half of either they at most double.
+ */
+STAGE static void sphere_steep(const surface *base, int part, int n, const rays *x, const closest_points *p,
+                               real Pu_max, real Pw_max, real *restrict rate, real *restrict reach)
 {
     (void)base;
     (void)part;
@@ -211,8 +215,9 @@ static void sphere_box(const surface *base, double lo[3], double hi[3])
 }
 
 static const surface_ops sphere_methods = {
-    "sphere", sphere_hit,   sphere_hit_own, sphere_locate, sphere_eval, sphere_occlude, sphere_occlude_own, sphere_extent, sphere_box,
-    1,        sphere_shell, sphere_foot,    sphere_steep,  false,
+    "sphere",       sphere_hit,         sphere_hit_own, sphere_locate, sphere_eval,
+    sphere_occlude, sphere_occlude_own, sphere_extent,  sphere_box,    1,
+    sphere_shell,   sphere_foot,        sphere_steep,   false,
 };
 
 surface *sphere_new(vec3 centre, double radius)

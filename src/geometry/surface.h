@@ -23,12 +23,12 @@ typedef struct surface_ops {
     /* The nearest hit with 0 < t < h->t: where there is one, set h->t, and h->id = id. */
     void (*hit)(const surface *f, int n, const rays *x, int32_t id, hits *h);
 
-    /* The same for rays that have left a surface. Those that have left this one, from->id[i] = id, begin at from->at on its
-     * from->part, and this start does not count. */
+    /* The same for rays that have left a surface. Those that have left this one, from->id[i] = id, begin at from->at on
+     * its from->part, and this start does not count. */
     void (*hit_own)(const surface *f, int n, const rays *x, const ray_origins *from, int32_t id, hits *h);
 
-    /* Where on the surface the hits r + s t are: the part (the face of a box, 0 elsewhere), u and w. part[i] holds what `hit` told: a mesh's
-     * triangle, which stays. */
+    /* Where on the surface the hits r + s t are: the part (the face of a box, 0 elsewhere), u and w. part[i] holds what
+     * `hit` told: a mesh's triangle, which stays. */
     void (*locate)(const surface *f, int n, const rays *x, const real *t, int32_t *part, real *u, real *w);
 
     /* Q and its partials at (u,w): the first always, Quu, Quw and Qww where order is 2. */
@@ -49,21 +49,22 @@ typedef struct surface_ops {
 
     int parts; /* part is in 0..parts-1; 1 of a mesh, whose triangles differ in nothing that is asked by part alone */
 
-    /* For true displacement (displace.c), with a part of the surface taken as if it alone were there. All three are NULL where no
-     * foot is known (surface_transformed). */
+    /* For true displacement (displace.c), with a part of the surface taken as if it alone were there. All three are
+     * NULL where no foot is known (surface_transformed). */
 
-    /* The stretch t0 <= t <= t1 of each ray, within 0..end[i], that may meet Q + P n/|n| for Pmin <= P <= Pmax: all such places
-     * are in it. t0 > t1: there is none. */
-    void (*shell)(const surface *f, int part, int n, const rays *x, const real *end, real Pmin, real Pmax, real *t0, real *t1);
+    /* The stretch t0 <= t <= t1 of each ray, within 0..end[i], that may meet Q + P n/|n| for Pmin <= P <= Pmax: all
+     * such places are in it. t0 > t1: there is none. */
+    void (*shell)(const surface *f, int part, int n, const rays *x, const real *end, real Pmin, real Pmax, real *t0,
+                  real *t1);
 
-    /* The foot of the perpendicular from each r + s t to the surface: (u,w), the height over it, and how these change in space
-     * (gradients). (u,w) may lie outside the extent. */
+    /* The foot of the perpendicular from each r + s t to the surface: (u,w), the height over it, and how these change
+     * in space (gradients). (u,w) may lie outside the extent. */
     void (*foot)(const surface *f, int part, int n, const rays *x, const real *t, closest_points *p);
 
     /* Bounds along each ray from r + s t on, for a P that changes by at most Pu_max and Pw_max per u and w: how fast
      * height - P can change with t, and how far in t that holds. */
-    void (*steep)(const surface *f, int part, int n, const rays *x, const closest_points *p, real Pu_max, real Pw_max, real *rate,
-                  real *reach);
+    void (*steep)(const surface *f, int part, int n, const rays *x, const closest_points *p, real Pu_max, real Pw_max,
+                  real *rate, real *reach);
 
     /* Whether a stretch may also lead over places beyond the part's extent, so that hits there are none. */
     bool loose;
@@ -72,7 +73,8 @@ typedef struct surface_ops {
 struct surface {
     const surface_ops *ops;
     void (*free)(surface *f); /* NULL: it owns nothing but itself */
-    const struct displaced_ops *rough; /* its own way to its rough surface (displace.h), in place of shell, foot and steep; NULL: none */
+    const struct displaced_ops
+        *rough; /* its own way to its rough surface (displace.h), in place of shell, foot and steep; NULL: none */
 };
 
 /* Q = origin + u U + w W; over all (u,w), or over 0..1 where `bounded`. NULL where U and W are parallel, zero or not
@@ -87,31 +89,35 @@ surface *box_new(vec3 from, vec3 to);
  * 0..pi, in radians. NULL where radius <= 0. */
 surface *sphere_new(vec3 centre, double radius);
 
-/* Q = centre + u U + w W, u^2 + w^2 <= radius^2, U and W unit vectors at right angles to each other and to the normal: with
- * frame.h's about it, U = x and W = -z. NULL where radius <= 0 or the normal has no direction. */
+/* Q = centre + u U + w W, u^2 + w^2 <= radius^2, U and W unit vectors at right angles to each other and to the normal:
+ * with frame.h's about it, U = x and W = -z. NULL where radius <= 0 or the normal has no direction. */
 surface *disc_new(vec3 centre, vec3 normal, double radius);
 
-/* The cone between two discs across the axis from..to; with equal radii a cylinder. Q = from + rho (cos u X + sin u Z) + y Y,
- * Y along the axis and X and Z across it as frame.h has them; u the angle in -pi..pi, w the way down the side from `to`, in scene
- * units. Unless `open`, with caps: part 1 at `to`, 2 at `from`, each with disc_new's (u,w) about its own n. NULL where from = to,
- * or no radius is above 0. */
+/* The cone between two discs across the axis from..to; with equal radii a cylinder. Q = from + rho (cos u X + sin u Z)
+ * + y Y, Y along the axis and X and Z across it as frame.h has them; u the angle in -pi..pi, w the way down the side
+ * from `to`, in scene units. Unless `open`, with caps: part 1 at `to`, 2 at `from`, each with disc_new's (u,w) about
+ * its own n. NULL where from = to, or no radius is above 0. */
 surface *cone_new(vec3 from, double from_radius, vec3 to, double to_radius, bool open);
 
-/* Q = centre + (major + minor cos w) (cos u X + sin u Z) - minor sin w Y: u the angle around the axis, w that around the tube, 0 on
- * the outside and downwards positive, both in -pi..pi. NULL unless 0 < minor < major and the axis has a direction. */
+/* Q = centre + (major + minor cos w) (cos u X + sin u Z) - minor sin w Y: u the angle around the axis, w that around
+ * the tube, 0 on the outside and downwards positive, both in -pi..pi. NULL unless 0 < minor < major and the axis has a
+ * direction. */
 surface *torus_new(vec3 centre, vec3 axis, double major, double minor);
 
-/* The image of a surface by an affine map. `from` must outlive it, and is no such image itself. It has the (u,w) of `from`; but
- * where the map mirrors u runs the other way in its extent (on a plane: -u), so that n points outward still. Where the map does not
- * keep angles, images of round surfaces have no feet. NULL where the map leaves nothing of a volume (then only: or out of memory). */
+/* The image of a surface by an affine map. `from` must outlive it, and is no such image itself. It has the (u,w) of
+ * `from`; but where the map mirrors u runs the other way in its extent (on a plane: -u), so that n points outward
+ * still. Where the map does not keep angles, images of round surfaces have no feet. NULL where the map leaves nothing
+ * of a volume (then only: or out of memory). */
 surface *surface_transformed(const surface *from, const affine *m);
-/* Q(u,w) from its points alone (sheet.h): three expressions, or Bezier patches, each a part. n = Qu x Qw is outward by definition.
- * Owns q, also on failure. NULL where Q has no bounds over its range, or is all in one place (then only: or out of memory). */
+/* Q(u,w) from its points alone (sheet.h): three expressions, or Bezier patches, each a part. n = Qu x Qw is outward by
+ * definition. Owns q, also on failure. NULL where Q has no bounds over its range, or is all in one place (then only: or
+ * out of memory). */
 struct patch;
 surface *patch_surface_new(struct patch *q);
 
-/* The image of such a surface by an affine map, in leaves of its own: what surface_transformed makes of it has no true displacement.
- * `from` must outlive it; as there, where the map mirrors u runs the other way. NULL: as patch_surface_new. */
+/* The image of such a surface by an affine map, in leaves of its own: what surface_transformed makes of it has no true
+ * displacement. `from` must outlive it; as there, where the map mirrors u runs the other way. NULL: as
+ * patch_surface_new. */
 surface *patch_surface_affine(const surface *from, const affine *m);
 
 void surface_free(surface *f);

@@ -1,9 +1,10 @@
 /* Torus: Q(u,w) = C + (M + m cos w) (cos u X + sin u Z) - m sin w Y.
  *
- * A ray meets it where a quartic is 0, which float does not bear, and whose closed form does not bear rays that graze. So all is
- * in double, and the roots are bracketed: between two places where the quartic's derivative is 0 there is one root, or none. The
- * place of the ray that is nearest to C is the origin, which leaves no cubic term, so that its derivative t^3 + P t + Q has
- * roots in closed form; rounding there can only lose a ray that misses a tangent by it. The root within a bracket is that of
+ * A ray meets it where a quartic is 0, which float does not bear, and whose closed form does not bear rays that graze.
+ * So all is in double, and the roots are bracketed: between two places where the quartic's derivative is 0 there is one
+ * root, or none. The place of the ray that is nearest to C is the origin, which leaves no cubic term, so that its
+ * derivative t^3 + P t + Q has roots in closed form; rounding there can only lose a ray that misses a tangent by it.
+ * The root within a bracket is that of
  *
  *     G = (distance to the axis - M)^2 + (height)^2 - m^2,
  *
@@ -29,7 +30,8 @@ typedef struct torus {
     double M, m;
 } torus;
 
-/* A ray in the frame, from the place nearest to C on; its direction is a unit vector. r + s t is `way` = t speed - start there. */
+/* A ray in the frame, from the place nearest to C on; its direction is a unit vector. r + s t is `way` = t speed -
+ * start there. */
 typedef struct local {
     double ox, oy, oz, dx, dy, dz, speed, start;
 } local;
@@ -52,7 +54,8 @@ KM_INLINE void root_begin(roots *k, int i, int some, double a, double b, int abo
     k->way[i] = 0.5 * (a + b);
 }
 
-/* A step of Newton's iteration for a function with that value and slope, or to the bracket's middle where that would leave it. */
+/* A step of Newton's iteration for a function with that value and slope, or to the bracket's middle where that would
+ * leave it. */
 KM_INLINE void root_step(roots *k, int i, double value, double slope, double close)
 {
     double way = k->way[i], a = k->a[i], b = k->b[i], before = value * k->side[i];
@@ -98,7 +101,8 @@ KM_INLINE double tube(double M, double m, local l, double way)
     return d * d + y * y - m * m;
 }
 
-/* Where the quartic t^4 + p t^2 + q t + r is level, from the least on; three times the same where there is but one such place. */
+/* Where the quartic t^4 + p t^2 + q t + r is level, from the least on; three times the same where there is but one such
+ * place. */
 typedef struct levels {
     double x[3];
 } levels;
@@ -119,8 +123,8 @@ KM_INLINE levels level_places(double M, double m, local l)
     return z;
 }
 
-/* The places between which each root of a ray is alone, from way `from` to `to`; all in a sphere about the torus, so large that its
- * surface is outside. */
+/* The places between which each root of a ray is alone, from way `from` to `to`; all in a sphere about the torus, so
+ * large that its surface is outside. */
 typedef struct stretches {
     double e[5];
 } stretches;
@@ -136,8 +140,8 @@ KM_INLINE stretches stretches_of(double M, double m, local l, double from, doubl
 }
 
 /* Bracket the first root with 0 < t < end[i], of a torus with a tube of radius m. */
-STAGE static void torus_bracket(const torus *restrict base, double m, int n, const rays *restrict x, const real *restrict end,
-                                search *restrict k)
+STAGE static void torus_bracket(const torus *restrict base, double m, int n, const rays *restrict x,
+                                const real *restrict end, search *restrict k)
 {
     const torus f = *base;
     for (int i = 0; i < n; i++) {
@@ -216,7 +220,8 @@ KM_INLINE place place_of(const torus *f, const rays *v, int i, real t)
     return p;
 }
 
-STAGE static void torus_locate(const surface *base, int n, const rays *x, const real *t, int32_t *part, real *u, real *w)
+STAGE static void torus_locate(const surface *base, int n, const rays *x, const real *t, int32_t *part, real *u,
+                               real *w)
 {
     const torus f = *(const torus *)base;
     for (int i = 0; i < n; i++) {
@@ -241,7 +246,8 @@ STAGE static void torus_eval(const surface *base, int n, const int32_t *part, co
     const torus f = *(const torus *)base;
     (void)part;
     for (int i = 0; i < n; i++) {
-        double cu = km_cos((double)u[i]), su = km_sin((double)u[i]), c = f.m * km_cos((double)w[i]), s = f.m * km_sin((double)w[i]);
+        double cu = km_cos((double)u[i]), su = km_sin((double)u[i]), c = f.m * km_cos((double)w[i]),
+               s = f.m * km_sin((double)w[i]);
         double rho = f.M + c, x = rho * cu, z = rho * su;
         q->Q.x[i] = (real)(f.C[0] + x * f.X[0] - s * f.Y[0] + z * f.Z[0]);
         q->Q.y[i] = (real)(f.C[1] + x * f.X[1] - s * f.Y[1] + z * f.Z[1]);
@@ -252,7 +258,8 @@ STAGE static void torus_eval(const surface *base, int n, const int32_t *part, co
     if (order < 2)
         return;
     for (int i = 0; i < n; i++) {
-        double cu = km_cos((double)u[i]), su = km_sin((double)u[i]), c = f.m * km_cos((double)w[i]), s = f.m * km_sin((double)w[i]);
+        double cu = km_cos((double)u[i]), su = km_sin((double)u[i]), c = f.m * km_cos((double)w[i]),
+               s = f.m * km_sin((double)w[i]);
         double rho = f.M + c;
         put(&f, &q->Quu, i, -rho * cu, 0, -rho * su);
         put(&f, &q->Quw, i, s * su, 0, -s * cu);
@@ -274,8 +281,8 @@ STAGE static void torus_occlude(const surface *base, int n, const rays *x, real 
     }
 }
 
-/* From a place of the torus one root is 0. What is left is the cubic t^3 + A t^2 + B t + C, C = 8 M m (distance to the axis) n.s,
- * with t a length of the ray; it is level at t0 <= t1, which a quadratic tells. */
+/* From a place of the torus one root is 0. What is left is the cubic t^3 + A t^2 + B t + C, C = 8 M m (distance to the
+ * axis) n.s, with t a length of the ray; it is level at t0 <= t1, which a quadratic tells. */
 typedef struct cubic {
     double A, B, C, t0, t1, T; /* T: of the whole s */
 } cubic;
@@ -289,7 +296,8 @@ KM_INLINE cubic cubic_of(const torus *f, const rays *v, int i)
     double dz = k * (sx * f->Z[0] + sy * f->Z[1] + sz * f->Z[2]);
     place p = place_of(f, v, i, 0);
     double id = 1 / p.d, ex = p.x * id, ez = p.z * id, c = p.d - f->M, ic = 1 / sqrt(c * c + p.y * p.y);
-    double nc = c * ic, ny = p.y * ic, d = f->M + f->m * nc; /* n, and the place on the torus: away from and along the axis */
+    double nc = c * ic, ny = p.y * ic,
+           d = f->M + f->m * nc; /* n, and the place on the torus: away from and along the axis */
     double along = ex * dx + ez * dz, pd = d * along + f->m * ny * dy;
     double A = 4 * pd, B = 4 * pd * pd + 4 * f->M * d - 4 * f->M * f->M * (dx * dx + dz * dz);
     double C = 8 * f->M * f->m * d * (nc * along + ny * dy);
@@ -347,7 +355,8 @@ STAGE static void torus_own_step(double close, int n, cubics *restrict k)
     }
 }
 
-/* Those from elsewhere by the quartic, those from the torus itself by the cubic; each kind has no way to go in the other's search. */
+/* Those from elsewhere by the quartic, those from the torus itself by the cubic; each kind has no way to go in the
+ * other's search. */
 static void torus_hit_own(const surface *base, int n, const rays *x, const ray_origins *from, int32_t id, hits *h)
 {
     const torus *f = (const torus *)base;
@@ -371,14 +380,14 @@ static void torus_hit_own(const surface *base, int n, const rays *x, const ray_o
 /* ---- for true displacement ---- */
 
 /* Where a ray is in the sphere and between the planes about a torus with a tube of radius m. */
-STAGE static void torus_bounds(const torus *restrict base, double m, int n, const rays *restrict x, const real *restrict end,
-                               real *restrict t0, real *restrict t1)
+STAGE static void torus_bounds(const torus *restrict base, double m, int n, const rays *restrict x,
+                               const real *restrict end, real *restrict t0, real *restrict t1)
 {
     const torus f = *base;
     for (int i = 0; i < n; i++) {
         local l = local_of(&f, x, i);
         double B = sqrt((f.M + m) * (f.M + m) - (l.ox * l.ox + l.oy * l.oy + l.oz * l.oz)); /* NaN beside the sphere */
-        double y0 = (-m - l.oy) / l.dy, y1 = (m - l.oy) / l.dy;                              /* along the planes: as in box.c */
+        double y0 = (-m - l.oy) / l.dy, y1 = (m - l.oy) / l.dy; /* along the planes: as in box.c */
         double from = most(-l.start, most(least(y0, y1), -B)), to = least(most(y0, y1), B);
         int some = from <= to;
         real last = (real)((to + l.start) / l.speed);
@@ -388,8 +397,8 @@ STAGE static void torus_bounds(const torus *restrict base, double m, int n, cons
 }
 
 /* From outside the shell begins where the outer torus is met first. */
-STAGE static void torus_enter(const torus *restrict base, double m, int n, const rays *restrict x, const roots *restrict k,
-                              real *restrict t0, real *restrict t1)
+STAGE static void torus_enter(const torus *restrict base, double m, int n, const rays *restrict x,
+                              const roots *restrict k, real *restrict t0, real *restrict t1)
 {
     const torus f = *base;
     for (int i = 0; i < n; i++) {
@@ -403,8 +412,8 @@ STAGE static void torus_enter(const torus *restrict base, double m, int n, const
 }
 
 /* What lies between two places of the shell, the hole or the tube's core, is left to the search. */
-static void torus_shell(const surface *base, int part, int n, const rays *x, const real *end, real Pmin, real Pmax, real *t0,
-                        real *t1)
+static void torus_shell(const surface *base, int part, int n, const rays *x, const real *end, real Pmin, real Pmax,
+                        real *t0, real *t1)
 {
     const torus *f = (const torus *)base;
     const double m = f->m + (double)Pmax;
@@ -435,10 +444,11 @@ STAGE static void torus_foot(const surface *base, int part, int n, const rays *x
     }
 }
 
-/* The directions of h, u and w are at right angles, so that the ray's way is shared between them (Cauchy and Schwarz). |grad u|
- * is 1/(distance to the axis), |grad w| 1/(distance to the tube's middle): within half of either they at most double. */
-STAGE static void torus_steep(const surface *base, int part, int n, const rays *x, const closest_points *p, real Pu_max, real Pw_max,
-                              real *restrict rate, real *restrict reach)
+/* The directions of h, u and w are at right angles, so that the ray's way is shared between them (Cauchy and Schwarz).
+ * |grad u| is 1/(distance to the axis), |grad w| 1/(distance to the tube's middle): within half of either they at most
+ * double. */
+STAGE static void torus_steep(const surface *base, int part, int n, const rays *x, const closest_points *p, real Pu_max,
+                              real Pw_max, real *restrict rate, real *restrict reach)
 {
     (void)base;
     (void)part;
@@ -472,8 +482,8 @@ static void torus_box(const surface *base, double lo[3], double hi[3])
 }
 
 static const surface_ops torus_methods = {
-    "torus", torus_hit,   torus_hit_own, torus_locate, torus_eval, torus_occlude, torus_occlude_own, torus_extent, torus_box,
-    1,       torus_shell, torus_foot,    torus_steep,  false,
+    "torus",   torus_hit, torus_hit_own, torus_locate, torus_eval,  torus_occlude, torus_occlude_own, torus_extent,
+    torus_box, 1,         torus_shell,   torus_foot,   torus_steep, false,
 };
 
 static void store(double to[3], vec3 v)

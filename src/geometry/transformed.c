@@ -1,12 +1,13 @@
-/* A surface under an affine map: rays are taken back into the space of the surface that is mapped, and what it tells is brought
- * from there. Directions are not made unit vectors, so that t is the same in both.
+/* A surface under an affine map: rays are taken back into the space of the surface that is mapped, and what it tells is
+ * brought from there. Directions are not made unit vectors, so that t is the same in both.
  *
- * A map that mirrors would turn n = Qu x Qw inward; so there u runs the other way, and as seen from outside u goes to the right
- * still where w goes down.
+ * A map that mirrors would turn n = Qu x Qw inward; so there u runs the other way, and as seen from outside u goes to
+ * the right still where w goes down.
  *
- * Heights are in scene units along the normal of the image. The foot of a perpendicular stays one where angles stay right. Where they
- * do not it is another, but on flat surfaces: their images are flat, and have their own. So planes become planes and have no
- * need of all this, and for true displacement each face of a box becomes a rectangle. Stretched round ones have no feet.
+ * Heights are in scene units along the normal of the image. The foot of a perpendicular stays one where angles stay
+ * right. Where they do not it is another, but on flat surfaces: their images are flat, and have their own. So planes
+ * become planes and have no need of all this, and for true displacement each face of a box becomes a rectangle.
+ * Stretched round ones have no feet.
  */
 #include "base/affine.h"
 #include "wave/lane.h"
@@ -61,7 +62,8 @@ STAGE static void rays_back(const transformed *restrict base, int n, const rays 
 /* v = k M v + o, by the columns of M. */
 static inline void apply(int n, const real M[3][3], real k, const real o[3], vec3s *v)
 {
-    const real xx = k * M[0][0], xy = k * M[0][1], xz = k * M[0][2], yx = k * M[1][0], yy = k * M[1][1], yz = k * M[1][2];
+    const real xx = k * M[0][0], xy = k * M[0][1], xz = k * M[0][2], yx = k * M[1][0], yy = k * M[1][1],
+               yz = k * M[1][2];
     const real zx = k * M[2][0], zy = k * M[2][1], zz = k * M[2][2], ox = o[0], oy = o[1], oz = o[2];
     for (int i = 0; i < n; i++) {
         real x = v->x[i], y = v->y[i], z = v->z[i];
@@ -80,7 +82,8 @@ STAGE static void vectors_to(const transformed *f, int n, real k, vec3s *v) { ap
 STAGE static void gradients_to(const transformed *f, int n, real k, vec3s *v) { apply(n, f->back, k, nowhere, v); }
 
 /* And back by that of the way there. */
-STAGE static void gradients_back(const transformed *restrict base, int n, real k, const vec3s *restrict v, vec3s *restrict to)
+STAGE static void gradients_back(const transformed *restrict base, int n, real k, const vec3s *restrict v,
+                                 vec3s *restrict to)
 {
     const transformed f = *base;
     for (int i = 0; i < n; i++) {
@@ -127,7 +130,8 @@ static void transformed_hit_own(const surface *base, int n, const rays *x, const
     f->from->ops->hit_own(f->from, n, &y, &there, id, h);
 }
 
-static void transformed_locate(const surface *base, int n, const rays *x, const real *t, int32_t *part, real *u, real *w)
+static void transformed_locate(const surface *base, int n, const rays *x, const real *t, int32_t *part, real *u,
+                               real *w)
 {
     const transformed *f = of(base);
     rays y;
@@ -136,7 +140,8 @@ static void transformed_locate(const surface *base, int n, const rays *x, const 
     turn_u(f, n, u, u);
 }
 
-static void transformed_eval(const surface *base, int n, const int32_t *part, const real *u, const real *w, int order, partials *q)
+static void transformed_eval(const surface *base, int n, const int32_t *part, const real *u, const real *w, int order,
+                             partials *q)
 {
     const transformed *f = of(base);
     real v[LANES];
@@ -176,8 +181,8 @@ static void transformed_extent(const surface *base, int part, double u[2], doubl
 
 /* ---- for true displacement, by maps that keep angles ---- */
 
-static void similar_shell(const surface *base, int part, int n, const rays *x, const real *end, real Pmin, real Pmax, real *t0,
-                          real *t1)
+static void similar_shell(const surface *base, int part, int n, const rays *x, const real *end, real Pmin, real Pmax,
+                          real *t0, real *t1)
 {
     const transformed *f = of(base);
     rays y;
@@ -198,8 +203,8 @@ static void similar_foot(const surface *base, int part, int n, const rays *x, co
     gradients_to(f, n, f->scale, &p->gh);
 }
 
-static void similar_steep(const surface *base, int part, int n, const rays *x, const closest_points *p, real Pu_max, real Pw_max, real *rate,
-                          real *reach)
+static void similar_steep(const surface *base, int part, int n, const rays *x, const closest_points *p, real Pu_max,
+                          real Pw_max, real *rate, real *reach)
 {
     const transformed *f = of(base);
     rays y;
@@ -218,8 +223,8 @@ static void similar_steep(const surface *base, int part, int n, const rays *x, c
 
 /* ---- the same on a box, by any map ---- */
 
-static void faces_shell(const surface *base, int part, int n, const rays *x, const real *end, real Pmin, real Pmax, real *t0,
-                        real *t1)
+static void faces_shell(const surface *base, int part, int n, const rays *x, const real *end, real Pmin, real Pmax,
+                        real *t0, real *t1)
 {
     const surface *face = &of(base)->face[part].base;
     face->ops->shell(face, 0, n, x, end, Pmin, Pmax, t0, t1);
@@ -231,8 +236,8 @@ static void faces_foot(const surface *base, int part, int n, const rays *x, cons
     face->ops->foot(face, 0, n, x, t, p);
 }
 
-static void faces_steep(const surface *base, int part, int n, const rays *x, const closest_points *p, real Pu_max, real Pw_max, real *rate,
-                        real *reach)
+static void faces_steep(const surface *base, int part, int n, const rays *x, const closest_points *p, real Pu_max,
+                        real Pw_max, real *rate, real *reach)
 {
     const surface *face = &of(base)->face[part].base;
     face->ops->steep(face, 0, n, x, p, Pu_max, Pw_max, rate, reach);
@@ -267,7 +272,8 @@ static bool flat_image(plane *to, const surface *f, int part, const affine *m, d
     const real u = (real)ends, w = 0;
     partials q;
     f->ops->eval(f, 1, &p, &u, &w, 1, &q);
-    return plane_place(to, affine_point(m, lane(&q.Q)), vec3_scale(affine_vector(m, lane(&q.Qu)), turn), affine_vector(m, lane(&q.Qw)));
+    return plane_place(to, affine_point(m, lane(&q.Q)), vec3_scale(affine_vector(m, lane(&q.Qu)), turn),
+                       affine_vector(m, lane(&q.Qw)));
 }
 
 static surface *plane_image(const surface *f, const affine *m, double turn, double ends)

@@ -14,10 +14,7 @@
 #define MEMORY_LIMIT ((size_t)1 << 32)
 
 /* Zeroed, as a damaged chunk may fill less of its buffer than it claims: the same file gives the same answer. */
-static void *limited_alloc(size_t size)
-{
-    return size > MEMORY_LIMIT ? NULL : calloc(1, size);
-}
+static void *limited_alloc(size_t size) { return size > MEMORY_LIMIT ? NULL : calloc(1, size); }
 
 typedef struct exr_reader {
     int fd;
@@ -84,8 +81,7 @@ static const exr_attr_chlist_entry_t *find(const exr_attr_chlist_t *list, const 
 }
 
 /* The channel of that name, or the only one, or Y. */
-static bool choose(exr_reader *r, const exr_attr_chlist_t *list, const char *name,
-                   const exr_attr_chlist_entry_t **out)
+static bool choose(exr_reader *r, const exr_attr_chlist_t *list, const char *name, const exr_attr_chlist_entry_t **out)
 {
     *out = NULL;
     for (int c = 0; c < list->num_channels; c++)
@@ -179,8 +175,9 @@ static bool unpack(exr_reader *r, exr_plane *p, int x, int y)
             if (size > left || (wanted && ch->width != chunk->width))
                 return refuse(r, "OpenEXR: a chunk has a wrong size");
             if (wanted)
-                to_float(p->out->v + ((size_t)(y + line) * (size_t)p->out->width + (size_t)x) * (size_t)p->values + p->which, p->values,
-                         from, ch->width, ch->data_type);
+                to_float(p->out->v + ((size_t)(y + line) * (size_t)p->out->width + (size_t)x) * (size_t)p->values +
+                             p->which,
+                         p->values, from, ch->width, ch->data_type);
             from += size;
             left -= size;
         }
@@ -190,8 +187,7 @@ static bool unpack(exr_reader *r, exr_plane *p, int x, int y)
 /* Decode one chunk, whose first sample is (x, y) of the image. */
 static bool decode_chunk(exr_reader *r, exr_plane *p, const exr_chunk_info_t *chunk, int x, int y)
 {
-    if (chunk->width < 1 || chunk->height < 1 || chunk->width > p->out->width - x ||
-        chunk->height > p->out->height - y)
+    if (chunk->width < 1 || chunk->height < 1 || chunk->width > p->out->width - x || chunk->height > p->out->height - y)
         return refuse(r, "OpenEXR: a chunk does not lie within the image");
     if (chunk->packed_size == 0 ||
         (chunk->compression == EXR_COMPRESSION_NONE && chunk->packed_size != chunk->unpacked_size))
@@ -215,8 +211,7 @@ static bool decode_scanlines(exr_reader *r, exr_plane *p, int first_y)
         return refuse(r, "OpenEXR: chunks without lines");
     for (int y = 0; y < p->out->height; y += lines) {
         exr_chunk_info_t chunk = {0};
-        if (!good(r, exr_read_scanline_chunk_info(p->ctx, 0, first_y + y, &chunk)) ||
-            !decode_chunk(r, p, &chunk, 0, y))
+        if (!good(r, exr_read_scanline_chunk_info(p->ctx, 0, first_y + y, &chunk)) || !decode_chunk(r, p, &chunk, 0, y))
             return false;
     }
     return true;
@@ -248,15 +243,17 @@ static bool all_finite(exr_reader *r, const image *m, int values)
             float v = m->v[(size_t)y * (size_t)width + (size_t)x];
             if (!isfinite(v)) {
                 snprintf(r->why, IMAGE_WHY, "the sample in column %d of row %d (both from 0) is %s", x / values, y,
-                         isnan(v) ? "NaN" : v > 0 ? "infinite" : "-infinite");
+                         isnan(v) ? "NaN"
+                         : v > 0  ? "infinite"
+                                  : "-infinite");
                 return false;
             }
         }
     return true;
 }
 
-static bool decode_channel(exr_reader *r, exr_plane *p, const exr_attr_chlist_entry_t *channel, int which, exr_storage_t storage,
-                           int first_y)
+static bool decode_channel(exr_reader *r, exr_plane *p, const exr_attr_chlist_entry_t *channel, int which,
+                           exr_storage_t storage, int first_y)
 {
     p->channel = channel->name.str;
     p->which = which;
@@ -278,7 +275,8 @@ static bool decode(exr_reader *r, exr_plane *p, const char *name, bool color)
         return false;
     if (storage != EXR_STORAGE_SCANLINE && storage != EXR_STORAGE_TILED)
         return refuse(r, "the OpenEXR file holds deep samples; a flat image is expected");
-    if (!good(r, exr_get_channels(p->ctx, 0, &list)) || !(color ? choose_colors(r, list, channel) : choose(r, list, name, channel)) ||
+    if (!good(r, exr_get_channels(p->ctx, 0, &list)) ||
+        !(color ? choose_colors(r, list, channel) : choose(r, list, name, channel)) ||
         !good(r, exr_get_data_window(p->ctx, 0, &window)))
         return false;
     const char *why = image_alloc(p->out, (int64_t)window.max.x - window.min.x + 1,

@@ -133,8 +133,8 @@ static const char *refuse(int width, int height, int channels, const image_chann
     return why;
 }
 
-bool image_write_exr(const char *path, int width, int height, int channels, const image_channel *channel,
-                     int texts, const image_text *text, errors *e)
+bool image_write_exr(const char *path, int width, int height, int channels, const image_channel *channel, int texts,
+                     const image_text *text, errors *e)
 {
     const size_t n = channels > 0 ? (size_t)channels : 0;
     image_channel *sorted = malloc((n + 1) * sizeof *sorted);

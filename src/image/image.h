@@ -32,7 +32,8 @@ bool image_read(const char *path, const char *channel, image *out, errors *e);
 /* How the values of a colour stand for light. */
 typedef enum image_encoding { IMAGE_BY_KIND, IMAGE_SRGB, IMAGE_LINEAR } image_encoding;
 
-/* Read a file in colour: four values a pixel, that is 4 x width values a row; linear red, green and blue, and alpha, which is 1.
+/* Read a file in colour: four values a pixel, that is 4 x width values a row; linear red, green and blue, and alpha,
+ * which is 1.
  *
  * PNG: any kind; sRGB unless IMAGE_LINEAR is asked for. What else it says of its gamma is not looked at.
  * OpenEXR: as above; R, G and B, or Y as a grey. Always linear; IMAGE_SRGB is an error.
@@ -53,13 +54,13 @@ typedef struct image_channel {
 /* Write an OpenEXR file of float32 channels (scanlines, ZIP), in any order given, with the texts as string
  * attributes and nothing that depends on the clock. The file appears whole (written aside, then renamed)
  * or not at all. False with a message in *e that names the file. */
-bool image_write_exr(const char *path, int width, int height, int channels, const image_channel *channel,
-                     int texts, const image_text *text, errors *e);
+bool image_write_exr(const char *path, int width, int height, int channels, const image_channel *channel, int texts,
+                     const image_text *text, errors *e);
 
 /* Write a PNG of 8 or 16 bits from linear R, G, B in 0..1 (clamped; NaN becomes 0) through the sRGB transfer
  * function, marked as sRGB, rounded to nearest, without dither. The same promises as above. */
-bool image_write_png(const char *path, int width, int height, int bits, const float *r, const float *g,
-                     const float *b, int texts, const image_text *text, errors *e);
+bool image_write_png(const char *path, int width, int height, int bits, const float *r, const float *g, const float *b,
+                     int texts, const image_text *text, errors *e);
 
 /* Whether the file is a PNG that says in its text Software that it comes from the program, of any version. */
 bool image_png_is_from(const char *path, const char *program);

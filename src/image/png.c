@@ -24,10 +24,7 @@ static void on_error(png_structp png, png_const_charp message)
 }
 
 /* Warnings are about chunks that no sample depends on. */
-static void on_warning(png_structp png, png_const_charp message)
-{
-    (void)png, (void)message;
-}
+static void on_warning(png_structp png, png_const_charp message) { (void)png, (void)message; }
 
 static bool refuse(png_job *job, const char *why)
 {
@@ -92,7 +89,8 @@ static bool decode(png_job *job, FILE *file, bool color, image *out)
                                ? "the PNG has a palette; a grey one is expected, of 8 or 16 bits"
                                : "the PNG is in colour; a grey one is expected, of 8 or 16 bits");
     const int values = color ? 4 : 1;
-    const char *why = image_alloc(out, png_get_image_width(job->png, job->info), png_get_image_height(job->png, job->info), values);
+    const char *why =
+        image_alloc(out, png_get_image_width(job->png, job->info), png_get_image_height(job->png, job->info), values);
     if (why)
         return refuse(job, why);
     const int bytes = png_get_bit_depth(job->png, job->info) == 16 ? 2 : 1;
@@ -175,7 +173,7 @@ typedef struct png_out {
     file_writer file;
     uint64_t size; /* so far */
     srgb *curve;
-    uint16_t *code;  /* of a row, one channel */
+    uint16_t *code; /* of a row, one channel */
     png_bytep row;
     png_textp text;
 } png_out;
@@ -188,10 +186,7 @@ static void write_bytes(png_structp png, png_bytep data, size_t size)
     o->size += size;
 }
 
-static void flush_nothing(png_structp png)
-{
-    (void)png;
-}
+static void flush_nothing(png_structp png) { (void)png; }
 
 static bool is_ascii(const char *s)
 {
@@ -257,8 +252,8 @@ static bool encode(png_job *job, png_out *o, int width, int height, int bits, co
     return true;
 }
 
-bool image_write_png(const char *path, int width, int height, int bits, const float *r, const float *g,
-                     const float *b, int texts, const image_text *text, errors *e)
+bool image_write_png(const char *path, int width, int height, int bits, const float *r, const float *g, const float *b,
+                     int texts, const image_text *text, errors *e)
 {
     const char *refused = image_refuse_size(width, height);
     if (refused || (bits != 8 && bits != 16))

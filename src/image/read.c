@@ -43,8 +43,8 @@ static bool read_any(FILE *file, const char *channel, bool color, image *out, bo
     if (*is_exr)
         return image_read_exr(file, channel, color, out, why);
     if (n < sizeof png || memcmp(first, png, sizeof png) != 0) {
-        snprintf(why, IMAGE_WHY, n ? "its first bytes are those of neither a PNG nor an OpenEXR file"
-                                   : "the file is empty");
+        snprintf(why, IMAGE_WHY,
+                 n ? "its first bytes are those of neither a PNG nor an OpenEXR file" : "the file is empty");
         return false;
     }
     if (channel) {
@@ -77,7 +77,9 @@ static bool all_opaque(const image *m, errors *e)
     for (int y = 0; y < m->height; y++)
         for (int x = 0; x < m->width; x++)
             if (m->v[4 * ((size_t)y * (size_t)m->width + (size_t)x) + 3] != 1)
-                return errors_add(e, "the pixel in column %d of row %d (both from 0) is transparent; an opaque image is expected", x, y);
+                return errors_add(
+                    e, "the pixel in column %d of row %d (both from 0) is transparent; an opaque image is expected", x,
+                    y);
     return true;
 }
 
@@ -87,7 +89,8 @@ bool image_read_color(const char *path, image_encoding encoding, image *out, boo
     if (ok && *is_exr && encoding == IMAGE_SRGB)
         ok = errors_add(e, "an OpenEXR file is linear; srgb is for PNG");
     if (ok && !*is_exr && encoding != IMAGE_LINEAR)
-        ok = srgb_decode((size_t)out->width * (size_t)out->height, out->v) || errors_add(e, "there is not enough memory for the image");
+        ok = srgb_decode((size_t)out->width * (size_t)out->height, out->v) ||
+             errors_add(e, "there is not enough memory for the image");
     if (!ok) {
         free(out->v);
         *out = (image){0};

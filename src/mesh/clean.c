@@ -8,10 +8,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define FLAT 1e-10   /* a triangle that is lower than this share of its longest side has no direction */
-#define FACING 0.05  /* a corner's normal is on the triangle's side by this at least */
-#define TEXTURE 1e6  /* no texture coordinate is farther */
-enum { FAN = 512 };  /* triangles about a vertex; beyond that the mean over all stands for every corner, so that time stays linear */
+#define FLAT 1e-10  /* a triangle that is lower than this share of its longest side has no direction */
+#define FACING 0.05 /* a corner's normal is on the triangle's side by this at least */
+#define TEXTURE 1e6 /* no texture coordinate is farther */
+enum {
+    FAN = 512
+}; /* triangles about a vertex; beyond that the mean over all stands for every corner, so that time stays linear */
 
 static vec3 wide(const float v[3]) { return (vec3){(double)v[0], (double)v[1], (double)v[2]}; }
 
@@ -66,7 +68,7 @@ static void drop_flat(mesh_data *d)
 {
     int n = 0;
     for (int k = 0; k < d->n; k++) {
-        if (is_flat((const float (*)[3])d->at[k], area_of((const float (*)[3])d->at[k])))
+        if (is_flat((const float(*)[3])d->at[k], area_of((const float(*)[3])d->at[k])))
             continue;
         memmove(d->at[n], d->at[k], sizeof d->at[n]);
         d->skin[n++] = d->skin[k];
@@ -89,7 +91,7 @@ static void count_bare(mesh_data *d)
 
 /* Which corners are at one place: corner[first[k]] to corner[first[k + 1] - 1] for each place k. */
 typedef struct places {
-    int32_t *of;     /* of each corner */
+    int32_t *of; /* of each corner */
     int32_t *first, *corner;
     int n;
 } places;
@@ -149,7 +151,7 @@ static bool find_places(const mesh_data *d, places *p)
 /* The triangle's unit normal times the angle at that corner: what does not depend on how a flat face is cut. */
 static vec3 weighed(const mesh_data *d, int corner)
 {
-    const float (*at)[3] = (const float (*)[3])d->at[corner / 3];
+    const float(*at)[3] = (const float(*)[3])d->at[corner / 3];
     const vec3 a = wide(at[corner % 3]);
     const vec3 b = vec3_sub(wide(at[(corner + 1) % 3]), a), c = vec3_sub(wide(at[(corner + 2) % 3]), a);
     const double cosine = vec3_dot(b, c) / (vec3_length(b) * vec3_length(c));
@@ -162,13 +164,13 @@ static void smooth_place(mesh_data *d, const int32_t *corner, int n, double leas
     for (int i = 0; n > FAN && i < n; i++)
         all = vec3_add(all, weighed(d, corner[i]));
     for (int i = 0; i < n; i++) {
-        const vec3 own = vec3_unit(area_of((const float (*)[3])d->at[corner[i] / 3]));
+        const vec3 own = vec3_unit(area_of((const float(*)[3])d->at[corner[i] / 3]));
         vec3 sum = all;
         float *to = d->skin[corner[i] / 3].normal[corner[i] % 3];
         if (to[0] != 0 || to[1] != 0 || to[2] != 0)
             continue;
         for (int j = 0; n <= FAN && j < n; j++) {
-            const vec3 one = vec3_unit(area_of((const float (*)[3])d->at[corner[j] / 3]));
+            const vec3 one = vec3_unit(area_of((const float(*)[3])d->at[corner[j] / 3]));
             if (i == j || vec3_dot(own, one) >= least)
                 sum = vec3_add(sum, weighed(d, corner[j]));
         }
@@ -181,7 +183,8 @@ static bool smooth(mesh_data *d, double crease)
 {
     places p;
     const bool good = find_places(d, &p);
-    const double least = km_cos(crease * (3.14159265358979323846 / 180)) - 1e-6; /* float's coordinates do not tell it closer */
+    const double least =
+        km_cos(crease * (3.14159265358979323846 / 180)) - 1e-6; /* float's coordinates do not tell it closer */
     for (int k = 0; good && k < p.n; k++)
         smooth_place(d, p.corner + p.first[k], p.first[k + 1] - p.first[k], least);
     free_places(&p);
@@ -212,13 +215,15 @@ static void exchange(float *a, float *b, size_t bytes)
     memcpy(b, x, bytes);
 }
 
-/* Where the file's normals are all on the other side of a triangle, they are right and the order of its corners is not. */
+/* Where the file's normals are all on the other side of a triangle, they are right and the order of its corners is not.
+ */
 static void turn_round(mesh_data *d)
 {
     for (int k = 0; k < d->n; k++) {
-        const vec3 n = area_of((const float (*)[3])d->at[k]);
+        const vec3 n = area_of((const float(*)[3])d->at[k]);
         mesh_skin *x = &d->skin[k];
-        if (!(vec3_dot(n, wide(x->normal[0])) < 0 && vec3_dot(n, wide(x->normal[1])) < 0 && vec3_dot(n, wide(x->normal[2])) < 0))
+        if (!(vec3_dot(n, wide(x->normal[0])) < 0 && vec3_dot(n, wide(x->normal[1])) < 0 &&
+              vec3_dot(n, wide(x->normal[2])) < 0))
             continue;
         exchange(d->at[k][1], d->at[k][2], sizeof d->at[k][1]);
         exchange(x->normal[1], x->normal[2], sizeof x->normal[1]);
@@ -231,7 +236,7 @@ static void turn_round(mesh_data *d)
 static void bend_back(mesh_data *d)
 {
     for (int k = 0; k < d->n; k++) {
-        const vec3 n = vec3_unit(area_of((const float (*)[3])d->at[k]));
+        const vec3 n = vec3_unit(area_of((const float(*)[3])d->at[k]));
         for (int i = 0; i < 3; i++)
             if (!(vec3_dot(n, wide(d->skin[k].normal[i])) >= FACING)) {
                 narrow(n, d->skin[k].normal[i]);

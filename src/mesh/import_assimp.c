@@ -1,8 +1,9 @@
-/* Models from files, by assimp, which this file alone knows. It runs in a process of its own (mesh_file.c), for what a broken file may do to it.
+/* Models from files, by assimp, which this file alone knows. It runs in a process of its own (mesh_file.c), for what a
+ * broken file may do to it.
  *
- * Of a model its triangles are taken, all of its nodes where their matrices put them; polygons are divided; materials, textures, bones,
- * cameras and lights are not. Files are right-handed, as these formats say: z changes its sign, and with it the order of corners. Texture
- * coordinates have their v upward, also glTF's as assimp tells them: w = 1 - v.
+ * Of a model its triangles are taken, all of its nodes where their matrices put them; polygons are divided; materials,
+ * textures, bones, cameras and lights are not. Files are right-handed, as these formats say: z changes its sign, and
+ * with it the order of corners. Texture coordinates have their v upward, also glTF's as assimp tells them: w = 1 - v.
  */
 #include "mesh/mesh_data.h"
 
@@ -79,7 +80,8 @@ static size_t size_of(struct aiFile *base)
 static enum aiReturn seek(struct aiFile *base, size_t offset, enum aiOrigin origin)
 {
     const int from = origin == aiOrigin_SET ? SEEK_SET : origin == aiOrigin_CUR ? SEEK_CUR : SEEK_END;
-    return fseek(((source *)(void *)base->UserData)->file, (long)offset, from) == 0 ? aiReturn_SUCCESS : aiReturn_FAILURE;
+    return fseek(((source *)(void *)base->UserData)->file, (long)offset, from) == 0 ? aiReturn_SUCCESS
+                                                                                    : aiReturn_FAILURE;
 }
 
 static void flush(struct aiFile *base) { (void)base; }
@@ -104,7 +106,14 @@ static struct aiFile *open_one(struct aiFileIO *io, const char *path, const char
             fclose(f);
         return NULL;
     }
-    *s = (source){{.FileSizeProc = size_of, .FlushProc = flush, .ReadProc = read_some, .SeekProc = seek, .TellProc = tell, .WriteProc = write_none}, f, of};
+    *s = (source){{.FileSizeProc = size_of,
+                   .FlushProc = flush,
+                   .ReadProc = read_some,
+                   .SeekProc = seek,
+                   .TellProc = tell,
+                   .WriteProc = write_none},
+                  f,
+                  of};
     s->base.UserData = (aiUserData)(void *)s;
     return &s->base;
 }
@@ -131,8 +140,8 @@ static double place(const struct aiMatrix4x4 *m, int row, const struct aiVector3
     return (double)r[0] * (double)v->x + (double)r[1] * (double)v->y + (double)r[2] * (double)v->z + (double)r[3] * one;
 }
 
-/* Normals go by the matrix of cofactors, which is the inverse's transpose times the determinant; so where that is below 0 they are turned
- * back, as the triangles are. Returns the determinant. */
+/* Normals go by the matrix of cofactors, which is the inverse's transpose times the determinant; so where that is below
+ * 0 they are turned back, as the triangles are. Returns the determinant. */
 static double cofactors(const struct aiMatrix4x4 *m, struct aiMatrix4x4 *to)
 {
     const float *r = &m->a1;
@@ -149,7 +158,8 @@ static double cofactors(const struct aiMatrix4x4 *m, struct aiMatrix4x4 *to)
     return det;
 }
 
-static void take_corner(const struct aiMesh *from, unsigned index, const struct aiMatrix4x4 *m, const struct aiMatrix4x4 *normals, float at[3], float normal[3], float uv[2])
+static void take_corner(const struct aiMesh *from, unsigned index, const struct aiMatrix4x4 *m,
+                        const struct aiMatrix4x4 *normals, float at[3], float normal[3], float uv[2])
 {
     for (int k = 0; k < 3; k++) {
         const float sign = k == 2 ? -1 : 1; /* right-handed to left-handed */
@@ -167,12 +177,15 @@ static void take_mesh(harvest *h, const struct aiMesh *from, const struct aiMatr
     const bool mirrors = cofactors(m, &normals) < 0;
     for (unsigned k = 0; k < from->mNumFaces; k++) {
         const struct aiFace *f = &from->mFaces[k];
-        if (f->mNumIndices != 3 || f->mIndices[0] >= from->mNumVertices || f->mIndices[1] >= from->mNumVertices || f->mIndices[2] >= from->mNumVertices)
+        if (f->mNumIndices != 3 || f->mIndices[0] >= from->mNumVertices || f->mIndices[1] >= from->mNumVertices ||
+            f->mIndices[2] >= from->mNumVertices)
             continue; /* points and lines; assimp's validation has refused the rest */
         if (h->to)
-            for (int i = 0; i < 3; i++) { /* the change of handedness turns the corners' order, a matrix that mirrors turns it back */
+            for (int i = 0; i < 3;
+                 i++) { /* the change of handedness turns the corners' order, a matrix that mirrors turns it back */
                 const int c = mirrors || i == 0 ? i : 3 - i;
-                take_corner(from, f->mIndices[i], m, &normals, h->to->at[h->n][c], h->to->skin[h->n].normal[c], h->to->skin[h->n].uv[c]);
+                take_corner(from, f->mIndices[i], m, &normals, h->to->at[h->n][c], h->to->skin[h->n].normal[c],
+                            h->to->skin[h->n].uv[c]);
             }
         h->n++;
     }
@@ -249,7 +262,8 @@ bool mesh_import(const char *path, const mesh_listener *to, mesh_data *out, char
     struct aiPropertyStore *how = aiCreatePropertyStore();
     aiSetImportPropertyInteger(how, AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
     aiSetImportPropertyInteger(how, AI_CONFIG_IMPORT_NO_SKELETON_MESHES, 1);
-    const struct aiScene *s = aiImportFileExWithProperties(path, aiProcess_ValidateDataStructure | aiProcess_Triangulate | aiProcess_SortByPType, &io, how);
+    const struct aiScene *s = aiImportFileExWithProperties(
+        path, aiProcess_ValidateDataStructure | aiProcess_Triangulate | aiProcess_SortByPType, &io, how);
     bool good = false;
     if (!s) {
         const char *text = aiGetErrorString();

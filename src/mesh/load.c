@@ -1,5 +1,5 @@
-/* A model's file is read in a process of its own: whatever a broken file does to the importer, crash, go round for ever or take all memory,
- * ends there, and is an error here. The triangles come back through a pipe.
+/* A model's file is read in a process of its own: whatever a broken file does to the importer, crash, go round for ever
+ * or take all memory, ends there, and is an error here. The triangles come back through a pipe.
  */
 #include "mesh/mesh_data.h"
 
@@ -129,7 +129,8 @@ static bool receive_all(int from, const progress *w, files *opened, letter *l, m
     *out = l->data;
     out->at = malloc(sizeof *out->at * (size_t)out->n);
     out->skin = malloc(sizeof *out->skin * (size_t)out->n);
-    if (out->at && out->skin && receive(from, out->at, sizeof *out->at * (size_t)out->n) && receive(from, out->skin, sizeof *out->skin * (size_t)out->n))
+    if (out->at && out->skin && receive(from, out->at, sizeof *out->at * (size_t)out->n) &&
+        receive(from, out->skin, sizeof *out->skin * (size_t)out->n))
         return true;
     snprintf(l->why, sizeof l->why, "%s", out->at && out->skin ? "its reader ended too soon" : "out of memory");
     mesh_data_free(out);
@@ -162,7 +163,8 @@ static bool can_open(const char *path, size_t *size, char why[MESH_WHY])
     if (!f || fstat(fileno(f), &about) != 0)
         snprintf(why, MESH_WHY, "%s", strerror(errno));
     else if (!known)
-        snprintf(why, MESH_WHY, "no known kind of model, expected a name that ends in .obj, .ply, .stl, .gltf, .glb or .off");
+        snprintf(why, MESH_WHY,
+                 "no known kind of model, expected a name that ends in .obj, .ply, .stl, .gltf, .glb or .off");
     else if (!S_ISREG(about.st_mode))
         snprintf(why, MESH_WHY, "no regular file");
     else if (about.st_size == 0)
@@ -206,7 +208,8 @@ bool mesh_file_read(const char *path, const progress *w, files *opened, mesh_dat
     else if (l.is == WRONG)
         snprintf(why, MESH_WHY, "%s", l.why);
     else if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU)
-        snprintf(why, MESH_WHY, "reading it takes for ever, expected at most %d seconds", SECONDS + (int)(size / MIB / MIB_A_SECOND));
+        snprintf(why, MESH_WHY, "reading it takes for ever, expected at most %d seconds",
+                 SECONDS + (int)(size / MIB / MIB_A_SECOND));
     else
         snprintf(why, MESH_WHY, "its reader broke down over it, expected a sound file");
     clean(why);

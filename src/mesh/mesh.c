@@ -1,7 +1,8 @@
-/* Triangle meshes: hits, places, Q and its partials, shadows. A ray against a triangle is Woop, Benthin and Wald's test of 2013, in double:
- * the ray becomes an axis, and each edge is on one side of it, told by a sum that is the same, but for its sign, for the two triangles that share
- * the edge. So no ray passes between them. Which triangles are tried, Embree tells (bvh.h); of hits at one place the triangle of the lowest
- * index counts, so that the order in which they come does not.
+/* Triangle meshes: hits, places, Q and its partials, shadows. A ray against a triangle is Woop, Benthin and Wald's test
+ * of 2013, in double: the ray becomes an axis, and each edge is on one side of it, told by a sum that is the same, but
+ * for its sign, for the two triangles that share the edge. So no ray passes between them. Which triangles are tried,
+ * Embree tells (bvh.h); of hits at one place the triangle of the lowest index counts, so that the order in which they
+ * come does not.
  */
 #include "mesh/mesh.h"
 
@@ -13,7 +14,8 @@
 
 #define MARGIN 4e-6f /* of where a ray ends in the tree's units, against float, as the boxes have it */
 #define SPREAD (1 / 4096.0)
-#define THIN 2e-5 /* a texture triangle that is lower than this share of the largest coordinate has no digits of float left */
+#define THIN                                                                                                           \
+    2e-5 /* a texture triangle that is lower than this share of the largest coordinate has no digits of float left */
 
 static inline vec3 get(const vec3s *v, int i) { return (vec3){(double)v->x[i], (double)v->y[i], (double)v->z[i]}; }
 static inline vec3 wide(const float v[3]) { return (vec3){(double)v[0], (double)v[1], (double)v[2]}; }
@@ -39,7 +41,8 @@ mesh_triangle mesh_triangle_of(const mesh *f, int32_t index)
 
 /* ---- a ray and a triangle ---- */
 
-/* A ray as an axis: coordinate `z` is the one along which it goes most, and the others are sheared so that it goes along that alone. */
+/* A ray as an axis: coordinate `z` is the one along which it goes most, and the others are sheared so that it goes
+ * along that alone. */
 typedef struct shear {
     int x, y, z;
     double r[3], sx, sy, sz;
@@ -66,7 +69,8 @@ static bool meets(const float at[3][3], const shear *k, double *t)
         x[i] = (double)at[i][k->x] - k->r[k->x] - k->sx * z[i];
         y[i] = (double)at[i][k->y] - k->r[k->y] - k->sy * z[i];
     }
-    const double U = x[2] * y[1] - y[2] * x[1], V = x[0] * y[2] - y[0] * x[2], W = x[1] * y[0] - y[1] * x[0], all = U + V + W;
+    const double U = x[2] * y[1] - y[2] * x[1], V = x[0] * y[2] - y[0] * x[2], W = x[1] * y[0] - y[1] * x[0],
+                 all = U + V + W;
     if (((U < 0) | (V < 0) | (W < 0)) & ((U > 0) | (V > 0) | (W > 0)))
         return false;
     *t = (U * z[0] + V * z[1] + W * z[2]) * k->sz / all;
@@ -89,7 +93,7 @@ static float visit(void *user, int32_t index, float end)
 {
     patch_query *q = user;
     double t;
-    if (index == q->but || !meets((const float (*)[3])q->f->d.at[index], &q->k, &t) || !(t > q->from))
+    if (index == q->but || !meets((const float(*)[3])q->f->d.at[index], &q->k, &t) || !(t > q->from))
         return end;
     if (!(t < q->to || (t == q->to && q->index >= 0 && index < q->index)))
         return end;
@@ -151,7 +155,8 @@ static void mesh_occlude(const surface *base, int n, const rays *x, real *lit)
 /* The shares of the second and the third corner at the foot of p on the triangle, kept within it. */
 static void foot_shares(const mesh_triangle *x, vec3 p, double *b, double *c)
 {
-    const vec3 B = vec3_sub(x->at[1], x->at[0]), C = vec3_sub(x->at[2], x->at[0]), d = vec3_sub(p, x->at[0]), n = vec3_cross(B, C);
+    const vec3 B = vec3_sub(x->at[1], x->at[0]), C = vec3_sub(x->at[2], x->at[0]), d = vec3_sub(p, x->at[0]),
+               n = vec3_cross(B, C);
     const double k = 1 / vec3_dot(n, n);
     *b = k * vec3_dot(n, vec3_cross(d, C));
     *c = k * vec3_dot(n, vec3_cross(B, d));
@@ -166,8 +171,9 @@ static void keep_inside(double *b, double *c)
     *c *= k;
 }
 
-/* Where on its triangle a ray starts, as double has it: the triangle itself is left out by its index, and a neighbour at whose edge that is by
- * `beyond`, where other hits begin: double's error over the sine of the ray's angle to it, down to 1e-4. */
+/* Where on its triangle a ray starts, as double has it: the triangle itself is left out by its index, and a neighbour
+ * at whose edge that is by `beyond`, where other hits begin: double's error over the sine of the ray's angle to it,
+ * down to 1e-4. */
 static vec3 departure(const mesh *f, int32_t index, vec3 at, vec3 s, double *beyond)
 {
     const mesh_triangle x = mesh_triangle_of(f, index);
@@ -201,7 +207,8 @@ static void mesh_occlude_own(const surface *base, int n, const rays *x, const in
         if (!(lit[i] > 0))
             continue;
         double beyond;
-        const vec3 r = get(&x->r, i), to = vec3_add(r, get(&x->s, i)), from = departure(q.f, part[i], r, get(&x->s, i), &beyond);
+        const vec3 r = get(&x->r, i), to = vec3_add(r, get(&x->s, i)),
+                   from = departure(q.f, part[i], r, get(&x->s, i), &beyond);
         seek(&q, from, vec3_sub(to, from), beyond, 1, part[i]);
         lit[i] = q.index >= 0 ? 0 : lit[i];
     }
@@ -224,7 +231,8 @@ static void mesh_locate(const surface *base, int n, const rays *x, const real *t
 
 void mesh_shares(const mesh_triangle *x, double u, double w, double *b, double *c)
 {
-    const double bu = x->u[1] - x->u[0], bw = x->w[1] - x->w[0], cu = x->u[2] - x->u[0], cw = x->w[2] - x->w[0], k = 1 / (bu * cw - cu * bw);
+    const double bu = x->u[1] - x->u[0], bw = x->w[1] - x->w[0], cu = x->u[2] - x->u[0], cw = x->w[2] - x->w[0],
+                 k = 1 / (bu * cw - cu * bw);
     u -= x->u[0];
     w -= x->w[0];
     *b = k * (u * cw - w * cu);
@@ -239,12 +247,14 @@ static vec3 along(const vec3 v[3], double b, double c)
     return vec3_add(vec3_scale(vec3_sub(v[1], v[0]), b), vec3_scale(vec3_sub(v[2], v[0]), c));
 }
 
-static void mesh_eval(const surface *base, int n, const int32_t *part, const real *u, const real *w, int order, partials *q)
+static void mesh_eval(const surface *base, int n, const int32_t *part, const real *u, const real *w, int order,
+                      partials *q)
 {
     const mesh *f = (const mesh *)base;
     for (int i = 0; i < n; i++) {
         const mesh_triangle x = mesh_triangle_of(f, part[i]);
-        const double bu = x.u[1] - x.u[0], bw = x.w[1] - x.w[0], cu = x.u[2] - x.u[0], cw = x.w[2] - x.w[0], k = 1 / (bu * cw - cu * bw);
+        const double bu = x.u[1] - x.u[0], bw = x.w[1] - x.w[0], cu = x.u[2] - x.u[0], cw = x.w[2] - x.w[0],
+                     k = 1 / (bu * cw - cu * bw);
         double b, c;
         mesh_shares(&x, (double)u[i], (double)w[i], &b, &c);
         keep_inside(&b, &c);
@@ -256,7 +266,8 @@ static void mesh_eval(const surface *base, int n, const int32_t *part, const rea
         if (order < 2)
             continue;
         const double over = 1 / vec3_length(N);
-        const vec3 nu = vec3_scale(along(x.normal, k * cw, -k * bw), over), nw = vec3_scale(along(x.normal, -k * cu, k * bu), over);
+        const vec3 nu = vec3_scale(along(x.normal, k * cw, -k * bw), over),
+                   nw = vec3_scale(along(x.normal, -k * cu, k * bu), over);
         put(&q->Quu, i, vec3_scale(n_unit, -vec3_dot(nu, Qu)));
         put(&q->Quw, i, vec3_scale(n_unit, -0.5 * (vec3_dot(nu, Qw) + vec3_dot(nw, Qu))));
         put(&q->Qww, i, vec3_scale(n_unit, -vec3_dot(nw, Qw)));
@@ -327,7 +338,8 @@ static void lay_texture(mesh *f)
 {
     find_range(f);
     const double most = fmax(fmax(fabs(f->u[0]), fabs(f->u[1])), fmax(fabs(f->w[0]), fabs(f->w[1])));
-    const double range = f->u[1] - f->u[0], fold = f->u[1] + range, step = SPREAD * fmax(most, fmax(range, f->w[1] - f->w[0]));
+    const double range = f->u[1] - f->u[0], fold = f->u[1] + range,
+                 step = SPREAD * fmax(most, fmax(range, f->w[1] - f->w[0]));
     f->d.notes.folded = f->d.notes.spread = 0;
     for (int k = 0; k < f->d.n; k++) {
         mesh_skin *x = &f->d.skin[k];
@@ -444,7 +456,8 @@ static void narrow(vec3 v, float to[3])
     to[2] = (float)v.z;
 }
 
-/* A map that mirrors exchanges what is outward, so corners follow the other way, and u is turned about the middle of its range. */
+/* A map that mirrors exchanges what is outward, so corners follow the other way, and u is turned about the middle of
+ * its range. */
 surface *mesh_moved(const surface *base, const affine *m)
 {
     const mesh *from = (const mesh *)base;
@@ -456,15 +469,18 @@ surface *mesh_moved(const surface *base, const affine *m)
     f->textured = from->textured;
     memcpy(f->u, from->u, sizeof f->u);
     memcpy(f->w, from->w, sizeof f->w);
-    f->d = (mesh_data){from->d.n, malloc(sizeof *f->d.at * (size_t)from->d.n), malloc(sizeof *f->d.skin * (size_t)from->d.n), from->d.notes};
+    f->d = (mesh_data){from->d.n, malloc(sizeof *f->d.at * (size_t)from->d.n),
+                       malloc(sizeof *f->d.skin * (size_t)from->d.n), from->d.notes};
     for (int k = 0; f->d.at && f->d.skin && k < f->d.n; k++)
         for (int i = 0; i < 3; i++) {
             const int to = mirrors && i ? 3 - i : i;
             const vec3 n = wide(from->d.skin[k].normal[i]);
-            const vec3 to_n = vec3_add(vec3_add(vec3_scale(back.x, n.x), vec3_scale(back.y, n.y)), vec3_scale(back.z, n.z));
+            const vec3 to_n =
+                vec3_add(vec3_add(vec3_scale(back.x, n.x), vec3_scale(back.y, n.y)), vec3_scale(back.z, n.z));
             narrow(affine_point(m, wide(from->d.at[k][i])), f->d.at[k][to]);
             narrow(vec3_unit(to_n), f->d.skin[k].normal[to]);
-            f->d.skin[k].uv[to][0] = mirrors ? (float)(from->u[0] + from->u[1] - (double)from->d.skin[k].uv[i][0]) : from->d.skin[k].uv[i][0];
+            f->d.skin[k].uv[to][0] = mirrors ? (float)(from->u[0] + from->u[1] - (double)from->d.skin[k].uv[i][0])
+                                             : from->d.skin[k].uv[i][0];
             f->d.skin[k].uv[to][1] = from->d.skin[k].uv[i][1];
         }
     if (f->d.at && f->d.skin)

@@ -1,12 +1,13 @@
 /* Triangle meshes as surfaces. Private to mesh*.c and to what makes and exports meshes.
  *
- * On a triangle Q(u,w) is linear, and (u,w) are its texture coordinates. n is along the normal N that is interpolated between the corners:
- * Qu and Qw are the triangle's own without their parts along N. Then a and b of the method are exactly how (u,w) change along a ray
- * where places are Q + h N. Quu, Quw and Qww are along N and such that the curvature is that by which N turns.
+ * On a triangle Q(u,w) is linear, and (u,w) are its texture coordinates. n is along the normal N that is interpolated
+ * between the corners: Qu and Qw are the triangle's own without their parts along N. Then a and b of the method are
+ * exactly how (u,w) change along a ray where places are Q + h N. Quu, Quw and Qww are along N and such that the
+ * curvature is that by which N turns.
  *
- * A triangle whose texture is mirrored would have n inward. Its u is laid beyond the end of the range, mirrored: u -> 2 fold - u, `fold` one
- * range beyond the end, so that what looks (u,w) up folds it back (fold.h). Where the texture has no area on a triangle, its corners are
- * moved apart by 1/4096 of the range.
+ * A triangle whose texture is mirrored would have n inward. Its u is laid beyond the end of the range, mirrored: u -> 2
+ * fold - u, `fold` one range beyond the end, so that what looks (u,w) up folds it back (fold.h). Where the texture has
+ * no area on a triangle, its corners are moved apart by 1/4096 of the range.
  */
 #ifndef KAGE_MESH_MESH_H
 #define KAGE_MESH_MESH_H
@@ -29,8 +30,8 @@ typedef struct mesh {
 /* Owns *d, also on failure. It must have been through mesh_clean, and have a triangle. NULL: out of memory. */
 surface *mesh_new(mesh_data *d, const progress *w);
 
-/* The image of a mesh by an affine map, with arrays of its own: what surface_transformed makes of it has no true displacement. Where the map mirrors, u
- * runs the other way in its range, as there. NULL: out of memory. */
+/* The image of a mesh by an affine map, with arrays of its own: what surface_transformed makes of it has no true
+ * displacement. Where the map mirrors, u runs the other way in its range, as there. NULL: out of memory. */
 surface *mesh_moved(const surface *from, const affine *m);
 
 /* For true displacement. */
@@ -49,10 +50,12 @@ static inline vec3 mesh_mix(const vec3 v[3], double b, double c)
     return vec3_add(v[0], vec3_add(vec3_scale(vec3_sub(v[1], v[0]), b), vec3_scale(vec3_sub(v[2], v[0]), c)));
 }
 
-/* How much of b and c, the shares of the second and the third corner, there is at (u,w); not kept within the triangle. */
+/* How much of b and c, the shares of the second and the third corner, there is at (u,w); not kept within the triangle.
+ */
 void mesh_shares(const mesh_triangle *x, double u, double w, double *b, double *c);
 
-/* What is known at the shares b and c of a triangle and at the height h: the place Q + h N, N, and how the place changes with b and with c. */
+/* What is known at the shares b and c of a triangle and at the height h: the place Q + h N, N, and how the place
+ * changes with b and with c. */
 typedef struct mesh_prism {
     vec3 place, N, Xb, Xc;
 } mesh_prism;

@@ -53,8 +53,9 @@ typedef struct mesh_listener {
 } mesh_listener;
 bool mesh_import(const char *path, const mesh_listener *to, mesh_data *out, char why[MESH_WHY]);
 
-/* Check the numbers, leave out triangles without an area, and find a normal for every corner: the file's where it is usable, otherwise the mean over
- * the triangles about the vertex that are within `crease` degrees of this one. `most`: no coordinate is farther. (mesh_clean.c) */
+/* Check the numbers, leave out triangles without an area, and find a normal for every corner: the file's where it is
+ * usable, otherwise the mean over the triangles about the vertex that are within `crease` degrees of this one. `most`:
+ * no coordinate is farther. (mesh_clean.c) */
 bool mesh_clean(mesh_data *d, mesh_normals normals, double crease, double most, char why[MESH_WHY]);
 
 #endif

@@ -19,7 +19,8 @@ typedef struct method {
 
 enum { METHOD_STEPS_MAX = 1024, METHOD_NAME_SIZE = 16 };
 
-/* Read a method's name: none 0 1 2 2+ iter:K march:N exact, with K and N in 1..METHOD_STEPS_MAX. False where text is none. */
+/* Read a method's name: none 0 1 2 2+ iter:K march:N exact, with K and N in 1..METHOD_STEPS_MAX. False where text is
+ * none. */
 bool method_parse(const char *text, method *m);
 
 /* Write its name. */

@@ -45,8 +45,8 @@ static inline real curvature(const hit_group *g, int i, bs_view v)
                         lane_get(&g->q.Qww, i));
 }
 
-/* Where the surface has no two directions the shift is 0, by order none. After the loops of the methods, not in them: there
- * the choice would become a branch, and keep them from being vectorised. */
+/* Where the surface has no two directions the shift is 0, by order none. After the loops of the methods, not in them:
+ * there the choice would become a branch, and keep them from being vectorised. */
 STAGE static void drop_irregular(hit_group *restrict g)
 {
     for (int i = 0; i < g->n; i++) {
@@ -62,18 +62,22 @@ STAGE static void drop_irregular(hit_group *restrict g)
 static inline void by_order(hit_group *g, int i, int order, int guard, real Pmin, real Pmax)
 {
     bs_view v = view(g, i);
-    bs_bump p = {g->h.P[i], order >= 1 ? g->h.Pu[i] : 0,  order >= 1 ? g->h.Pw[i] : 0,
-                 order >= 2 ? g->h.Puu[i] : 0, order == 3 ? g->h.Puw[i] : 0, order >= 2 ? g->h.Pww[i] : 0};
+    bs_bump p = {g->h.P[i],
+                 order >= 1 ? g->h.Pu[i] : 0,
+                 order >= 1 ? g->h.Pw[i] : 0,
+                 order >= 2 ? g->h.Puu[i] : 0,
+                 order == 3 ? g->h.Puw[i] : 0,
+                 order >= 2 ? g->h.Pww[i] : 0};
     bs_shift s = bs_shift_of(order, guard, v, order == 3 ? curvature(g, i, v) : 0, p, bs_slab_of(v, Pmin, Pmax));
     g->tau[i] = s.tau;
     g->order[i] = s.order;
 }
 
-#define BY_ORDER(name, order, guard)                                          \
-    STAGE static void name(hit_group *restrict g, real Pmin, real Pmax)           \
-    {                                                                         \
-        for (int i = 0; i < g->n; i++)                                        \
-            by_order(g, i, order, guard, Pmin, Pmax);                         \
+#define BY_ORDER(name, order, guard)                                                                                   \
+    STAGE static void name(hit_group *restrict g, real Pmin, real Pmax)                                                \
+    {                                                                                                                  \
+        for (int i = 0; i < g->n; i++)                                                                                 \
+            by_order(g, i, order, guard, Pmin, Pmax);                                                                  \
     }
 
 BY_ORDER(order_0, 0, 0)

@@ -1,4 +1,5 @@
-/* The image of another sheet by an affine map: Q = o + x X + y Y + z Z, where that one has (x, y, z); X, Y, Z, o the map's columns. */
+/* The image of another sheet by an affine map: Q = o + x X + y Y + z Z, where that one has (x, y, z); X, Y, Z, o the
+ * map's columns. */
 #include "patch/patch.h"
 
 #include "base/real.h"
@@ -23,7 +24,8 @@ STAGE static void combine(int n, const double *restrict m, double o, const doubl
         to[i] = o + (a * x[i] + b * y[i] + c * z[i]);
 }
 
-static void moved_eval(const patch *base, int n, const int32_t *part, const double *u, const double *w, int order, patch_jets *out)
+static void moved_eval(const patch *base, int n, const int32_t *part, const double *u, const double *w, int order,
+                       patch_jets *out)
 {
     const moved *q = (const moved *)base;
     double there[PATCH_BATCH];
@@ -65,7 +67,8 @@ static void mix(const double m[3], double o, double *const v[3], double turn, do
     to[1] = known ? hi + 1e-15 * size : HUGE_VAL;
 }
 
-static void moved_bound(const patch *base, int part, const double u[2], const double w[2], patch_bounds *out, patch_hessians *second)
+static void moved_bound(const patch *base, int part, const double u[2], const double w[2], patch_bounds *out,
+                        patch_hessians *second)
 {
     const moved *q = (const moved *)base;
     const double a = q->ends + q->turn * u[0], b = q->ends + q->turn * u[1], there[2] = {lesser(a, b), greater(a, b)};
@@ -93,7 +96,8 @@ static const patch_ops moved_methods = {moved_eval, moved_bound, moved_free};
 patch *patch_affine_new(const patch *from, const affine *m)
 {
     moved *q = calloc(1, sizeof *q);
-    const double x[3][3] = {{m->x.x, m->y.x, m->z.x}, {m->x.y, m->y.y, m->z.y}, {m->x.z, m->y.z, m->z.z}}, o[3] = {m->o.x, m->o.y, m->o.z};
+    const double x[3][3] = {{m->x.x, m->y.x, m->z.x}, {m->x.y, m->y.y, m->z.y}, {m->x.z, m->y.z, m->z.z}},
+                 o[3] = {m->o.x, m->o.y, m->o.z};
     if (!q)
         return NULL;
     q->base = *from;

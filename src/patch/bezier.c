@@ -1,4 +1,5 @@
-/* Q(u,w) from bicubic Bezier patches: Q = sum over i and j of B_i(u) B_j(w) p_ij, B Bernstein's polynomials of degree 3. */
+/* Q(u,w) from bicubic Bezier patches: Q = sum over i and j of B_i(u) B_j(w) p_ij, B Bernstein's polynomials of
+ * degree 3. */
 #include "patch/patch.h"
 
 #include "base/real.h"
@@ -37,8 +38,8 @@ STAGE static void bezier_weights(int n, const double *restrict x, weights *restr
     }
 }
 
-/* The patches' control points, side by side: 16 loads that no two lanes share, so that this loop is memory's and not SIMD's
- * (SSE2 has no gathers at all). */
+/* The patches' control points, side by side: 16 loads that no two lanes share, so that this loop is memory's and not
+ * SIMD's (SSE2 has no gathers at all). */
 static void bezier_gather(int n, const int32_t *part, const net *axis, double p[16][PATCH_BATCH])
 {
     for (int i = 0; i < n; i++)
@@ -83,8 +84,8 @@ static void bezier_eval(const patch *base, int n, const int32_t *part, const dou
     }
 }
 
-/* How the control points of the stretch x0..x1 of a cubic come from its own: m[k] has the share of each in the k-th, the cubic's blossom
- * with k times x1 and 3 - k times x0. */
+/* How the control points of the stretch x0..x1 of a cubic come from its own: m[k] has the share of each in the k-th,
+ * the cubic's blossom with k times x1 and 3 - k times x0. */
 static void stretch(double x0, double x1, double m[4][4])
 {
     const double x[2] = {x0, x1};
@@ -106,7 +107,8 @@ static void piece_of(const double *restrict p, double (*restrict a)[4], double (
     double rows[16];
     for (int j = 0; j < 4; j++)
         for (int i = 0; i < 4; i++)
-            rows[4 * j + i] = a[i][0] * p[4 * j] + a[i][1] * p[4 * j + 1] + a[i][2] * p[4 * j + 2] + a[i][3] * p[4 * j + 3];
+            rows[4 * j + i] =
+                a[i][0] * p[4 * j] + a[i][1] * p[4 * j + 1] + a[i][2] * p[4 * j + 2] + a[i][3] * p[4 * j + 3];
     for (int j = 0; j < 4; j++)
         for (int i = 0; i < 4; i++)
             z[4 * j + i] = b[j][0] * rows[i] + b[j][1] * rows[4 + i] + b[j][2] * rows[8 + i] + b[j][3] * rows[12 + i];
@@ -146,9 +148,10 @@ static void bezier_bends(const double p[16], double air, double du, double dw, e
     *z = (expr_hessians){{uu[0], uu[1]}, {uw[0], uw[1]}, {ww[0], ww[1]}};
 }
 
-/* Q is in the hull of the control points of the piece, Qu and Qw in those of their differences. The air is more than what
- * some thirty roundings come to. */
-static void bezier_bound(const patch *base, int part, const double u[2], const double w[2], patch_bounds *out, patch_hessians *second)
+/* Q is in the hull of the control points of the piece, Qu and Qw in those of their differences. The air is more than
+ * what some thirty roundings come to. */
+static void bezier_bound(const patch *base, int part, const double u[2], const double w[2], patch_bounds *out,
+                         patch_hessians *second)
 {
     const bezier *q = (const bezier *)base;
     double a[4][4], b[4][4];

@@ -17,7 +17,8 @@ static void function_eval(const patch *base, int n, const int32_t *part, const d
         expr_eval(q->axis[k], n, u, w, order, &out->axis[k]);
 }
 
-static void function_bound(const patch *base, int part, const double u[2], const double w[2], patch_bounds *out, patch_hessians *second)
+static void function_bound(const patch *base, int part, const double u[2], const double w[2], patch_bounds *out,
+                           patch_hessians *second)
 {
     const function *q = (const function *)base;
     (void)part;

@@ -1,12 +1,12 @@
 /* Where a ray meets a sheet: Q(u,w) = r + s t.
  *
- * The hierarchy tells which leaves the ray may meet, and for each pair of ray and leaf there is a proof that they miss each other, or
- * that they meet once at the most (piece_intersect); otherwise, where the ray grazes, the leaf is halved. So no hit is lost, and none
- * depends on how fine the leaves are. What is left are pairs with one root each, which Newton's iteration finds in three or four
- * steps, many pairs side by side.
+ * The hierarchy tells which leaves the ray may meet, and for each pair of ray and leaf there is a proof that they miss
+ * each other, or that they meet once at the most (piece_intersect); otherwise, where the ray grazes, the leaf is
+ * halved. So no hit is lost, and none depends on how fine the leaves are. What is left are pairs with one root each,
+ * which Newton's iteration finds in three or four steps, many pairs side by side.
  *
- * The first of a ray's roots does not depend on the order in which the hierarchy tells leaves, nor on what it tells too many: the
- * pictures are the same on every processor.
+ * The first of a ray's roots does not depend on the order in which the hierarchy tells leaves, nor on what it tells too
+ * many: the pictures are the same on every processor.
  */
 #include "patch/surface.h"
 
@@ -16,25 +16,26 @@
 #include <stdlib.h>
 
 enum {
-    STEPS = 24,    /* of Newton's iteration */
-    DEPTH = 128,   /* of halvings; each takes one place of the stack */
+    STEPS = 24,      /* of Newton's iteration */
+    DEPTH = 128,     /* of halvings; each takes one place of the stack */
     HALVINGS = 4096, /* of one leaf for one ray: what has not been told apart then is tried, or no hit */
     QUEUE = 1024,    /* leaves that wait to be halved */
 };
 
-#define SETTLED 1e-6  /* a step of this share of the range: the next would be of its square */
-#define BESIDE 1e-5   /* by how much of its range a leaf's root may lie beside it: the neighbour finds the same one */
-#define BEYOND 1e-9   /* and at the end of the sheet, where there is no neighbour, or the seam; of the sheet's range */
+#define SETTLED 1e-6   /* a step of this share of the range: the next would be of its square */
+#define BESIDE 1e-5    /* by how much of its range a leaf's root may lie beside it: the neighbour finds the same one */
+#define BEYOND 1e-9    /* and at the end of the sheet, where there is no neighbour, or the seam; of the sheet's range */
 #define ROUNDING 1e-14 /* of u and w, likewise: pieces can be so small that it counts */
 #define SHRED (1 / 4096.) /* a piece of this share of the range, of which nothing is proved, is tried */
-#define TINY 1e-10    /* a piece of this share of the sheet's size and place is not halved any more: it is a point */
+#define TINY 1e-10 /* a piece of this share of the sheet's size and place is not halved any more: it is a point */
 
 /* Pairs of a ray and a range that are waiting to be solved, side by side. */
 typedef struct pairs {
     int n;
     int32_t lane[PATCH_BATCH], part[PATCH_BATCH];
     double u[PATCH_BATCH], w[PATCH_BATCH], t[PATCH_BATCH];
-    double mu[PATCH_BATCH], mw[PATCH_BATCH], hu[PATCH_BATCH], hw[PATCH_BATCH]; /* the range: its middle and half its width */
+    double mu[PATCH_BATCH], mw[PATCH_BATCH], hu[PATCH_BATCH],
+        hw[PATCH_BATCH];     /* the range: its middle and half its width */
     double close_u, close_w; /* steps that are none but for rounding */
     double rx[PATCH_BATCH], ry[PATCH_BATCH], rz[PATCH_BATCH], sx[PATCH_BATCH], sy[PATCH_BATCH], sz[PATCH_BATCH];
     double open[PATCH_BATCH]; /* 1: under way; 0: settled; -1: has left its range for good */
@@ -148,8 +149,8 @@ static void wait(hunt *h, int lane, const piece *f, double a, double b, bool tri
         solve(h);
 }
 
-/* A piece that is a point, and still does not tell: at a pole, on an edge, where a ray just touches. It is met. What is no farther than
- * its own size from where the ray begins to count may be just the start. */
+/* A piece that is a point, and still does not tell: at a pole, on an edge, where a ray just touches. It is met. What is
+ * no farther than its own size from where the ray begins to count may be just the start. */
 static void take_point(patch_query *k, int lane, const piece *f)
 {
     const vec3 s = k->s[lane];
@@ -182,7 +183,8 @@ static void descend(hunt *h, int lane, const piece *whole)
         for (int which = 0; which < 2; which++) {
             double a, b;
             const piece half = piece_half(f->q, &one, which);
-            const piece_answer answer = piece_intersect(&half, k->r[lane], k->s[lane], k->from[lane], k->to[lane], &a, &b);
+            const piece_answer answer =
+                piece_intersect(&half, k->r[lane], k->s[lane], k->from[lane], k->to[lane], &a, &b);
             if (answer == PIECE_ONCE)
                 wait(h, lane, &half, a, b, false);
             else if (answer == PIECE_OPEN && is_broken(f, &half))

@@ -1,5 +1,5 @@
-/* A surface that is known by its points alone: Q(u,w) over a range of (u,w), in one or several parts. It can be evaluated, and
- * bounded over a box of (u,w); searched.c finds where rays meet it. All in double, whatever `real` is.
+/* A surface that is known by its points alone: Q(u,w) over a range of (u,w), in one or several parts. It can be
+ * evaluated, and bounded over a box of (u,w); searched.c finds where rays meet it. All in double, whatever `real` is.
  */
 #ifndef KAGE_PATCH_PATCH_H
 #define KAGE_PATCH_PATCH_H
@@ -30,13 +30,15 @@ typedef struct patch_hessians {
 typedef struct patch patch;
 
 typedef struct patch_ops {
-    /* order 0: Q; 1: also Qu and Qw; 2: also Quu, Quw and Qww. Reentrant, no allocation; each lane by itself. (u,w) may lie
-     * beyond the range: what holds there is the same formula. */
-    void (*eval)(const patch *q, int n, const int32_t *part, const double *u, const double *w, int order, patch_jets *out);
+    /* order 0: Q; 1: also Qu and Qw; 2: also Quu, Quw and Qww. Reentrant, no allocation; each lane by itself. (u,w) may
+     * lie beyond the range: what holds there is the same formula. */
+    void (*eval)(const patch *q, int n, const int32_t *part, const double *u, const double *w, int order,
+                 patch_jets *out);
 
-    /* All that Q, Qu and Qw can be over the box; and, unless it is NULL, in *second what Quu, Quw and Qww can. The partials are
-     * Lipschitz bounds, as expr_bound_gradient's. */
-    void (*bound)(const patch *q, int part, const double u[2], const double w[2], patch_bounds *out, patch_hessians *second);
+    /* All that Q, Qu and Qw can be over the box; and, unless it is NULL, in *second what Quu, Quw and Qww can. The
+     * partials are Lipschitz bounds, as expr_bound_gradient's. */
+    void (*bound)(const patch *q, int part, const double u[2], const double w[2], patch_bounds *out,
+                  patch_hessians *second);
 
     void (*free)(patch *q);
 } patch_ops;
@@ -48,20 +50,21 @@ struct patch {
     double u[2], w[2]; /* the range, of every part */
 };
 
-/* Q from three expressions over u[0]..u[1], w[0]..w[1]. Owns them, also on failure. kind: a constant. NULL: out of memory. */
+/* Q from three expressions over u[0]..u[1], w[0]..w[1]. Owns them, also on failure. kind: a constant. NULL: out of
+ * memory. */
 patch *patch_function_new(const char *kind, expr *const xyz[3], const double u[2], const double w[2]);
 
-/* Bicubic Bezier patches, each a part over 0..1 in u and in w, from 16 control points each: point 4 j + i goes with the i-th
- * Bernstein polynomial in u and the j-th in w. Copies them. NULL: out of memory. */
+/* Bicubic Bezier patches, each a part over 0..1 in u and in w, from 16 control points each: point 4 j + i goes with the
+ * i-th Bernstein polynomial in u and the j-th in w. Copies them. NULL: out of memory. */
 patch *patch_bezier_new(int patches, const vec3 *point);
 
-/* The rough surface Q + P n/|n| of a sheet, n = Qu x Qw; both must outlive it. It is evaluated to order 1 only, and has no second bounds.
- * NULL: out of memory. */
+/* The rough surface Q + P n/|n| of a sheet, n = Qu x Qw; both must outlive it. It is evaluated to order 1 only, and has
+ * no second bounds. NULL: out of memory. */
 struct bump;
 patch *patch_offset_new(const patch *q, const struct bump *P);
 
-/* The image of a sheet by an affine map. `from` must outlive it. Where the map mirrors, u runs the other way, so that Qu x Qw is the
- * image of that of `from`. NULL: out of memory. */
+/* The image of a sheet by an affine map. `from` must outlive it. Where the map mirrors, u runs the other way, so that
+ * Qu x Qw is the image of that of `from`. NULL: out of memory. */
 patch *patch_affine_new(const patch *from, const affine *m);
 
 #endif

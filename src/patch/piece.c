@@ -49,7 +49,8 @@ piece piece_of(const patch *q, int32_t part, const double u[2], const double w[2
 piece piece_half(const patch *q, const piece *f, int which)
 {
     const double lu = vec3_length(f->A) + f->ea, lw = vec3_length(f->B) + f->eb;
-    const double share_u = (f->u[1] - f->u[0]) / (q->u[1] - q->u[0]), share_w = (f->w[1] - f->w[0]) / (q->w[1] - q->w[0]);
+    const double share_u = (f->u[1] - f->u[0]) / (q->u[1] - q->u[0]),
+                 share_w = (f->w[1] - f->w[0]) / (q->w[1] - q->w[0]);
     const bool known = lu < HUGE_VAL || lw < HUGE_VAL, along_u = known ? lu >= lw : share_u >= share_w;
     double u[2] = {f->u[0], f->u[1]}, w[2] = {f->w[0], f->w[1]};
     double *x = along_u ? u : w;

@@ -1,5 +1,5 @@
-/* A sheet in pieces that are so small, and so flat, that a ray meets most of them once at the most, and can be told to miss them. Each
- * is a parallelogram with a bound of how far the surface is from it:
+/* A sheet in pieces that are so small, and so flat, that a ray meets most of them once at the most, and can be told to
+ * miss them. Each is a parallelogram with a bound of how far the surface is from it:
  *
  *     | Q(u,w) - (c + a A + b B) | <= e,   a and b the place in the piece's range, -1..1 from end to end,
  *     | Qu half - A | <= ea, | Qw half - B | <= eb,   half the range's width in u, in w.
@@ -32,13 +32,13 @@ double piece_radius(const piece *f);
 /* A sheet as leaves. */
 typedef struct pieces {
     int n;
-    piece *piece;  /* owned */
-    vec3 centre; /* all of Q is within `radius` of it */
+    piece *piece; /* owned */
+    vec3 centre;  /* all of Q is within `radius` of it */
     double radius;
 } pieces;
 
-/* flat: by how much, in radians or as a share, Qu and Qw may change within a leaf that is not very small. False: out of memory, or Q
- * has no bounds, when n is 0. pieces_free in either case. */
+/* flat: by how much, in radians or as a share, Qu and Qw may change within a leaf that is not very small. False: out of
+ * memory, or Q has no bounds, when n is 0. pieces_free in either case. */
 bool pieces_of(const patch *q, double flat, pieces *out);
 void pieces_free(pieces *l);
 

@@ -1,5 +1,5 @@
-/* Surfaces that are known by their points alone, with hits found by search (searched_quest.c). All in double: float would bear
- * neither the iteration nor the proofs.
+/* Surfaces that are known by their points alone, with hits found by search (searched_quest.c). All in double: float
+ * would bear neither the iteration nor the proofs.
  */
 #include "patch/surface.h"
 
@@ -81,10 +81,10 @@ static bool has_two_directions(vec3 U, vec3 W)
     return vec3_dot(n, n) > 1e-18 * e * e;
 }
 
-/* Where Qu x Qw = 0, as at the end of a patch that is but a point, n is the limit from within the range: that a little way off. One of
- * the partials is made so short that bs_regular still sees that there is no second direction. Only directions count
- * there: where both are short, as at a cusp, the longer one is made LONG, so that float holds the square of their
- * product. */
+/* Where Qu x Qw = 0, as at the end of a patch that is but a point, n is the limit from within the range: that a little
+ * way off. One of the partials is made so short that bs_regular still sees that there is no second direction. Only
+ * directions count there: where both are short, as at a cusp, the longer one is made LONG, so that float holds the
+ * square of their product. */
 static void take_limit(const patch *q, int32_t part, double u, double w, int lane, vec3s *Qu, vec3s *Qw)
 {
     const double NEAR = 1e-6, SHORT = 1e-9, LONG = 1e-4;
@@ -102,7 +102,8 @@ static void take_limit(const patch *q, int32_t part, double u, double w, int lan
 
 static double clamp(double x, const double range[2]) { return x < range[0] ? range[0] : x > range[1] ? range[1] : x; }
 
-static void searched_eval(const surface *base, int n, const int32_t *part, const real *u, const real *w, int order, partials *q)
+static void searched_eval(const surface *base, int n, const int32_t *part, const real *u, const real *w, int order,
+                          partials *q)
 {
     const patch_surface *f = (const patch_surface *)base;
     for (int at = 0; at < n; at += PATCH_BATCH) {
@@ -157,9 +158,10 @@ static void searched_occlude(const surface *base, int n, const rays *x, real *li
     patch_surface_occlude((const patch_surface *)base, n, x, lit, &c);
 }
 
-/* Rays that start on the surface itself: each is moved onto it as double has it, Q(u,w). Then its own root is t = 0 but for the error that
- * Newton's iteration leaves there, a rounding over the sine of the ray's angle to the surface. Other roots begin beyond that, however near.
- * Rays so flat that their roots have no digit are not searched: light along a surface gives it nothing. */
+/* Rays that start on the surface itself: each is moved onto it as double has it, Q(u,w). Then its own root is t = 0 but
+ * for the error that Newton's iteration leaves there, a rounding over the sine of the ray's angle to the surface. Other
+ * roots begin beyond that, however near. Rays so flat that their roots have no digit are not searched: light along a
+ * surface gives it nothing. */
 typedef struct departures {
     vec3 r[LANES];
     double beyond[LANES]; /* where other roots begin, times |s|; infinite: the ray is not to be searched */
@@ -187,7 +189,8 @@ static void depart(const patch_surface *f, int n, const vec3s *at, const vec3s *
     }
 }
 
-void patch_surface_intersect_own(const patch_surface *f, int n, const rays *x, const ray_origins *from, int32_t id, hits *h, patch_counts *c)
+void patch_surface_intersect_own(const patch_surface *f, int n, const rays *x, const ray_origins *from, int32_t id,
+                                 hits *h, patch_counts *c)
 {
     departures d;
     vec3s at = {0}, s = {0};
@@ -206,7 +209,8 @@ void patch_surface_intersect_own(const patch_surface *f, int n, const rays *x, c
     for (int i = 0; i < n; i++) {
         const bool here = from->id[i] == id;
         const vec3 way = get(&x->s, i);
-        patch_query_add(&k, i, here ? d.r[own] : get(&x->r, i), way, here ? d.beyond[own] / vec3_length(way) : 0, (double)h->t[i]);
+        patch_query_add(&k, i, here ? d.r[own] : get(&x->r, i), way, here ? d.beyond[own] / vec3_length(way) : 0,
+                        (double)h->t[i]);
         own += here;
     }
     patch_query_run(&k, n);
@@ -219,7 +223,8 @@ static void searched_hit_own(const surface *base, int n, const rays *x, const ra
     patch_surface_intersect_own((const patch_surface *)base, n, x, from, id, h, &c);
 }
 
-void patch_surface_occlude_own(const patch_surface *f, int n, const rays *x, const int32_t *part, real *lit, patch_counts *c)
+void patch_surface_occlude_own(const patch_surface *f, int n, const rays *x, const int32_t *part, real *lit,
+                               patch_counts *c)
 {
     departures d;
     patch_query k;

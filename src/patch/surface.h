@@ -1,4 +1,5 @@
-/* What the files of searched surfaces share: a sheet in leaves, and which of them a ray may meet. Private to searched*.c. */
+/* What the files of searched surfaces share: a sheet in leaves, and which of them a ray may meet. Private to
+ * searched*.c. */
 #ifndef KAGE_PATCH_SURFACE_H
 #define KAGE_PATCH_SURFACE_H
 
@@ -11,7 +12,7 @@ typedef struct patch_surface {
     surface_ops *methods; /* its own, as `parts` is */
     patch *q;
     pieces l;
-    bvh *tree; /* over the leaves; its unit is the sheet's radius, its origin the sheet's centre */
+    bvh *tree;   /* over the leaves; its unit is the sheet's radius, its origin the sheet's centre */
     bool broken; /* it may jump, or turn at once: then nothing is proved of some pieces, however small */
     struct displaced_form *rough; /* its rough surfaces so far */
 } patch_surface;
@@ -32,16 +33,17 @@ void patch_surface_free_displaced(displaced_form *first);
 /* For true displacement. */
 extern const struct displaced_ops patch_surface_displaced;
 
-/* The rays that are searched, each from the place of it that is nearest to the sheet's centre on, so that no digit is lost to a
- * far eye: r + s (t - start) is where the ray is at t. */
+/* The rays that are searched, each from the place of it that is nearest to the sheet's centre on, so that no digit is
+ * lost to a far eye: r + s (t - start) is where the ray is at t. */
 typedef struct patch_query {
     const patch_surface *f;
     vec3 r[LANES], s[LANES];
     double start[LANES];
-    double from[LANES], to[LANES]; /* the roots that count are between these, as t - start; `to` becomes the first one found */
+    double from[LANES],
+        to[LANES]; /* the roots that count are between these, as t - start; `to` becomes the first one found */
     bool found[LANES], unsure[LANES]; /* unsure: that it is the first one is not proved */
     bool any;                         /* any root will do */
-    long evaluations;                       /* how often the sheet was evaluated */
+    long evaluations;                 /* how often the sheet was evaluated */
 } patch_query;
 
 /* An empty one. */
@@ -53,10 +55,12 @@ typedef struct patch_counts {
 } patch_counts;
 
 void patch_surface_intersect(const patch_surface *f, int n, const rays *x, int32_t id, hits *h, patch_counts *c);
-void patch_surface_intersect_own(const patch_surface *f, int n, const rays *x, const ray_origins *from, int32_t id, hits *h, patch_counts *c);
+void patch_surface_intersect_own(const patch_surface *f, int n, const rays *x, const ray_origins *from, int32_t id,
+                                 hits *h, patch_counts *c);
 void patch_surface_occlude(const patch_surface *f, int n, const rays *x, real *lit, patch_counts *c);
 /* part: NULL: on any */
-void patch_surface_occlude_own(const patch_surface *f, int n, const rays *x, const int32_t *part, real *lit, patch_counts *c);
+void patch_surface_occlude_own(const patch_surface *f, int n, const rays *x, const int32_t *part, real *lit,
+                               patch_counts *c);
 
 /* Put ray i into the quest: r + s t, from < t < to. */
 void patch_query_add(patch_query *k, int i, vec3 r, vec3 s, double from, double to);

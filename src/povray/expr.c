@@ -1,8 +1,8 @@
-/* From the program back to a text: each operation joins the texts of its operands, which nothing else uses. Sums stay in the order
- * in which kage adds, so parentheses stand wherever POV-Ray, from left to right, would add otherwise.
+/* From the program back to a text: each operation joins the texts of its operands, which nothing else uses. Sums stay
+ * in the order in which kage adds, so parentheses stand wherever POV-Ray, from left to right, would add otherwise.
  *
- * Seen in POV-Ray 3.7: its functions have no ^ but pow, which is C's; mod is C's fmod, ln the natural logarithm, and select
- * compares with 0 as ours does.
+ * Seen in POV-Ray 3.7: its functions have no ^ but pow, which is C's; mod is C's fmod, ln the natural logarithm, and
+ * select compares with 0 as ours does.
  */
 #include "povray/expr.h"
 
@@ -24,10 +24,11 @@ typedef struct piece {
 } piece;
 
 static const char *const names[] = {
-    [OP_SIN] = "sin",   [OP_COS] = "cos",   [OP_TAN] = "tan",   [OP_ASIN] = "asin", [OP_ACOS] = "acos",   [OP_ATAN] = "atan",
-    [OP_SINH] = "sinh", [OP_COSH] = "cosh", [OP_TANH] = "tanh", [OP_EXP] = "exp",   [OP_LOG] = "ln",      [OP_SQRT] = "sqrt",
-    [OP_ABS] = "abs",   [OP_FLOOR] = "floor", [OP_MOD] = "mod", [OP_ATAN2] = "atan2", [OP_POW] = "pow",   [OP_MIN] = "min",
-    [OP_MAX] = "max",   [OP_SELECT] = "select", [OP_SELECT4] = "select",
+    [OP_SIN] = "sin",        [OP_COS] = "cos",   [OP_TAN] = "tan",   [OP_ASIN] = "asin",   [OP_ACOS] = "acos",
+    [OP_ATAN] = "atan",      [OP_SINH] = "sinh", [OP_COSH] = "cosh", [OP_TANH] = "tanh",   [OP_EXP] = "exp",
+    [OP_LOG] = "ln",         [OP_SQRT] = "sqrt", [OP_ABS] = "abs",   [OP_FLOOR] = "floor", [OP_MOD] = "mod",
+    [OP_ATAN2] = "atan2",    [OP_POW] = "pow",   [OP_MIN] = "min",   [OP_MAX] = "max",     [OP_SELECT] = "select",
+    [OP_SELECT4] = "select",
 };
 
 static piece make(enum binding binds, const char *fmt, ...) KAGE_PRINTF(2, 3);
@@ -48,14 +49,17 @@ static piece make(enum binding binds, const char *fmt, ...)
 static piece number(double k)
 {
     pov_digits d = pov_exact(k);
-    return !isfinite(k) ? (piece){0} : k == 3.14159265358979323846 ? make(ATOM, "pi") : make(k < 0 ? SUM : ATOM, "%s", d.text);
+    return !isfinite(k)                  ? (piece){0}
+           : k == 3.14159265358979323846 ? make(ATOM, "pi")
+                                         : make(k < 0 ? SUM : ATOM, "%s", d.text);
 }
 
 /* `a op b`; on the right what does not bind closer, or begins with a sign, is put in parentheses. */
 static piece infix(piece a, const char *op, piece b, enum binding binds)
 {
     bool left = a.binds < binds, right = b.binds <= binds || b.text[0] == '-';
-    return make(binds, "%s%s%s%s%s%s%s", left ? "(" : "", a.text, left ? ")" : "", op, right ? "(" : "", b.text, right ? ")" : "");
+    return make(binds, "%s%s%s%s%s%s%s", left ? "(" : "", a.text, left ? ")" : "", op, right ? "(" : "", b.text,
+                right ? ")" : "");
 }
 
 static piece with_constant(enum expr_op op, piece a, double k)

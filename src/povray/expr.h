@@ -4,8 +4,8 @@
 
 #include "expr/expr.h"
 
-/* The text, owned by the caller (free). NULL where there is none: POV-Ray has no such noise as ours, nor numbers that are not
- * finite; and where memory is out. */
+/* The text, owned by the caller (free). NULL where there is none: POV-Ray has no such noise as ours, nor numbers that
+ * are not finite; and where memory is out. */
 char *expr_pov(const expr *e);
 
 #endif

@@ -5,7 +5,8 @@
 
 bool pov_is_flat(const shape_spec *f, int part)
 {
-    bool round = f->kind == SHAPE_SPHERE || f->kind == SHAPE_TORUS, side = f->kind == SHAPE_CYLINDER || f->kind == SHAPE_CONE;
+    bool round = f->kind == SHAPE_SPHERE || f->kind == SHAPE_TORUS,
+         side = f->kind == SHAPE_CYLINDER || f->kind == SHAPE_CONE;
     return !round && !(side && part == 0);
 }
 
@@ -37,7 +38,8 @@ void pov_clip_rim(pov_text *t, const object *o, int part)
 
 static double *axis(vec3 *v, int k) { return k == 0 ? &v->x : k == 1 ? &v->y : &v->z; }
 
-/* The faces of a box as surface.h numbers them: u and w go along the two next axes on the high side, swapped on the low one. */
+/* The faces of a box as surface.h numbers them: u and w go along the two next axes on the high side, swapped on the low
+ * one. */
 static pov_flat box_face(const shape_spec *f, int part)
 {
     const int k = part >> 1, high = part & 1, a = (k + (high ? 1 : 2)) % 3, b = (k + (high ? 2 : 1)) % 3;
@@ -59,7 +61,8 @@ static pov_flat disc(const shape_spec *f, int part)
         return (pov_flat){.O = f->a, .U = a.x, .W = vec3_scale(a.z, -1)};
     }
     const frame a = frame_about(vec3_sub(f->u, f->a));
-    return part == 1 ? (pov_flat){.O = f->u, .U = a.x, .W = vec3_scale(a.z, -1)} : (pov_flat){.O = f->a, .U = a.x, .W = a.z};
+    return part == 1 ? (pov_flat){.O = f->u, .U = a.x, .W = vec3_scale(a.z, -1)}
+                     : (pov_flat){.O = f->a, .U = a.x, .W = a.z};
 }
 
 double pov_scale(const object *o) { return o->moved ? affine_scale(&o->placed) : 1; }
@@ -82,7 +85,7 @@ shape_spec pov_sized(const object *o)
 pov_flat pov_flat_of(const object *o, int part)
 {
     const shape_spec *f = &o->shape_spec;
-    pov_flat p = f->kind == SHAPE_BOX        ? box_face(f, part)
+    pov_flat p = f->kind == SHAPE_BOX    ? box_face(f, part)
                  : pov_rim(f, part) >= 0 ? disc(f, part)
                                          : (pov_flat){.O = f->a, .U = f->u, .W = f->w};
     if (o->moved) {
@@ -128,15 +131,16 @@ static void hold_casters(region *r, double u, double w, double share)
     hold(r, u1 + share * (u - u1), w1 + share * (w - w1));
 }
 
-/* Where an orthographic camera's ray meets the ground; not before the ray begins, and not beyond all measure where it runs along. */
+/* Where an orthographic camera's ray meets the ground; not before the ray begins, and not beyond all measure where it
+ * runs along. */
 static double meet(const scene *s, double t)
 {
     double end = 100 * (s->view.width + vec3_length(vec3_sub(s->view.at, s->camera.from)));
     return t > 0 ? fmin(t, end) : 0;
 }
 
-/* The edge of what is seen runs along rays through the picture's edge: where they meet the planes at Pmin and Pmax. Those that
- * do not are followed to where the ground is within half a pixel of the horizon. */
+/* The edge of what is seen runs along rays through the picture's edge: where they meet the planes at Pmin and Pmax.
+ * Those that do not are followed to where the ground is within half a pixel of the horizon. */
 void pov_plane_region(const scene *s, const object *o, double u[2], double w[2])
 {
     enum { STEPS = 32 };
@@ -156,7 +160,10 @@ void pov_plane_region(const scene *s, const object *o, double u[2], double w[2])
         hold_place(&r, c->from);
     for (int side = 0; side < 4; side++)
         for (int i = 0; i <= STEPS; i++) {
-            double x = side < 2 ? 2.0 * i / STEPS - 1 : side == 2 ? -1 : 1, y = side < 2 ? 2 * side - 1 : 2.0 * i / STEPS - 1;
+            double x = side < 2    ? 2.0 * i / STEPS - 1
+                       : side == 2 ? -1
+                                   : 1,
+                   y = side < 2 ? 2 * side - 1 : 2.0 * i / STEPS - 1;
             vec3 off = vec3_add(vec3_scale(c->right, x), vec3_scale(c->up, y));
             vec3 ray = c->orthographic ? c->forward : vec3_add(c->forward, off);
             vec3 start = c->orthographic ? vec3_add(c->from, off) : c->from;
@@ -171,7 +178,8 @@ void pov_plane_region(const scene *s, const object *o, double u[2], double w[2])
                 }
                 t = t > 0 && t < t_far ? t : t_far;
                 /* up and away from the plane nothing is seen */
-                if (t == t_far && ((eye > level[1] && slope > 0) || (eye < level[0] && slope < 0)) && t_far * fabs(slope) > far)
+                if (t == t_far && ((eye > level[1] && slope > 0) || (eye < level[0] && slope < 0)) &&
+                    t_far * fabs(slope) > far)
                     continue;
                 hold_place(&r, vec3_add(c->from, vec3_scale(along, t)));
             }
@@ -182,9 +190,11 @@ void pov_plane_region(const scene *s, const object *o, double u[2], double w[2])
         for (int j = 0; j < light_corners(&s->light[k]); j++) {
             vec3 d = vec3_sub(light_corner(&s->light[k], j, f.O), f.O);
             double height = vec3_dot(n, d) - level[0];
-            hold_casters(&r, vec3_dot(r.Du, d), vec3_dot(r.Dw, d), height > level[1] - level[0] ? (level[1] - level[0]) / height : 0);
+            hold_casters(&r, vec3_dot(r.Du, d), vec3_dot(r.Dw, d),
+                         height > level[1] - level[0] ? (level[1] - level[0]) / height : 0);
         }
-    double mu = 0.01 * (r.u[1] - r.u[0]) + 1e-3 / vec3_length(f.U), mw = 0.01 * (r.w[1] - r.w[0]) + 1e-3 / vec3_length(f.W);
+    double mu = 0.01 * (r.u[1] - r.u[0]) + 1e-3 / vec3_length(f.U),
+           mw = 0.01 * (r.w[1] - r.w[0]) + 1e-3 / vec3_length(f.W);
     u[0] = r.u[0] - mu;
     u[1] = r.u[1] + mu;
     w[0] = r.w[0] - mw;

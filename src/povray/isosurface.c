@@ -50,11 +50,12 @@ static double of_zone(const expr *e, double scale, double r, double w0, double w
     return worst;
 }
 
-/* Rays also come to where angles turn without bound: in glass, through a torus' hole, from an eye within. So a round one's function is
- * level from this share of the way on that leads from the nearest rough place to there. */
+/* Rays also come to where angles turn without bound: in glass, through a torus' hole, from an eye within. So a round
+ * one's function is level from this share of the way on that leads from the nearest rough place to there. */
 #define LEVEL 0.25
 
-/* How far from such a place the rough surface stays: a sphere's centre, a cylinder's axis or a torus' tube; a torus' own axis. */
+/* How far from such a place the rough surface stays: a sphere's centre, a cylinder's axis or a torus' tube; a torus'
+ * own axis. */
 static double least_within(const object *o)
 {
     const shape_spec f = pov_sized(o);
@@ -67,8 +68,9 @@ static double least_hole(const object *o)
     return f.radius[0] - f.radius[1] - (double)o->bump->Pmax;
 }
 
-/* u turns about the poles ever faster, and the gradient is infinite there unless P does not depend on u. Zones that narrow
- * towards the poles bound it up to a cap of CAP radians, which is left out: a thousandth of the radius is less than a pixel. */
+/* u turns about the poles ever faster, and the gradient is infinite there unless P does not depend on u. Zones that
+ * narrow towards the poles bound it up to a cap of CAP radians, which is left out: a thousandth of the radius is less
+ * than a pixel. */
 static double of_sphere(const object *o)
 {
     const double CAP = 1e-3, GROWTH = 1.05, WIDEST = 0.05, half = 3.14159265358979323846 / 2;
@@ -112,7 +114,8 @@ static double of_part(const object *o, int part)
         return of_sphere(o);
     if (f->kind == SHAPE_TORUS)
         return of_torus(o);
-    return f->radius[0] == f->radius[1] ? of_cylinder(o) : HUGE_VAL; /* a displaced cone ends on cones, which no container does */
+    return f->radius[0] == f->radius[1] ? of_cylinder(o)
+                                        : HUGE_VAL; /* a displaced cone ends on cones, which no container does */
 }
 
 double pov_isosurface_gradient(const object *o, int part)
@@ -128,7 +131,8 @@ double pov_isosurface_gradient(const object *o, int part)
 /* Mirrors and glass multiply what a hit is off. */
 static double accuracy(const scene *s, const object *o)
 {
-    return (material_sends(&s->material[o->material]) ? 2e-9 : 1e-7) * vec3_length(vec3_sub(s->view.at, s->camera.from));
+    return (material_sends(&s->material[o->material]) ? 2e-9 : 1e-7) *
+           vec3_length(vec3_sub(s->view.at, s->camera.from));
 }
 
 static void put_over(pov_text *t, const char *x, double length)
@@ -155,8 +159,8 @@ static void put_flat(pov_text *t, const scene *s, const object *o, int part, con
     put_over(t, "x", lu);
     pov_print(t, ", ");
     put_over(t, "z", lw);
-    pov_print(t, ") }\n  contained_by { box { <%g, %g, %g>, <%g, %g, %g> } }\n", u[0] * lu, y[0], w[0] * lw, u[1] * lu, y[1],
-              w[1] * lw);
+    pov_print(t, ") }\n  contained_by { box { <%g, %g, %g>, <%g, %g, %g> } }\n", u[0] * lu, y[0], w[0] * lw, u[1] * lu,
+              y[1], w[1] * lw);
     pov_print(t, "  open\n  accuracy %g\n  max_gradient %g // a bound: none is steeper\n", accuracy(s, o),
               pov_isosurface_gradient(o, part));
     pov_matrix(t, p.x, p.y, p.z, p.O);
@@ -195,7 +199,8 @@ static void put_sphere(pov_text *t, const scene *s, const object *o, const char 
     double y[2], radius = f.radius[0];
     pov_levels(o, y);
     begin_function(t, o);
-    pov_print(t, "sqrt(x*x + y*y + z*z) - %s\n    - %s(%s, atan2(sqrt(x*x + z*z), y))", pov_exact(radius).text, name, pov_around(o));
+    pov_print(t, "sqrt(x*x + y*y + z*z) - %s\n    - %s(%s, atan2(sqrt(x*x + z*z), y))", pov_exact(radius).text, name,
+              pov_around(o));
     end_function(t, o);
     pov_print(t, "  contained_by { sphere { 0, %g } }\n  accuracy %g\n", radius + y[1], accuracy(s, o));
     pov_print(t, "  max_gradient %g // a bound but for 0.001 radians around the poles\n  translate %v\n",
@@ -217,8 +222,8 @@ static void put_side(pov_text *t, const scene *s, const object *o, const char *n
     put_over(t, "", pov_scale(o));
     pov_print(t, ")");
     end_function(t, o);
-    pov_print(t, "  contained_by { box { <%g, 0, %g>, <%g, %g, %g> } }\n", -radius - y[1], -radius - y[1], radius + y[1], length,
-              radius + y[1]);
+    pov_print(t, "  contained_by { box { <%g, 0, %g>, <%g, %g, %g> } }\n", -radius - y[1], -radius - y[1],
+              radius + y[1], length, radius + y[1]);
     pov_print(t, "  open\n  accuracy %g\n  max_gradient %g // a bound: none is steeper\n", accuracy(s, o),
               pov_isosurface_gradient(o, 0));
     pov_matrix(t, a.x, a.y, a.z, f.a);
@@ -239,7 +244,8 @@ static void put_torus(pov_text *t, const scene *s, const object *o, const char *
     pov_print(t, "    - %s(%s, atan2(-y, sqrt(x*x + z*z) - %s))", name, pov_around(o), major.text);
     end_function(t, o);
     pov_print(t, "  contained_by { box { <%g, %g, %g>, <%g, %g, %g> } }\n", -wide, -high, -wide, wide, high, wide);
-    pov_print(t, "  accuracy %g\n  max_gradient %g // a bound: none is steeper\n", accuracy(s, o), pov_isosurface_gradient(o, 0));
+    pov_print(t, "  accuracy %g\n  max_gradient %g // a bound: none is steeper\n", accuracy(s, o),
+              pov_isosurface_gradient(o, 0));
     pov_matrix(t, a.x, a.y, a.z, f.a);
     pov_print(t, " // y is the axis\n");
     put_motion(t, o);

@@ -1,5 +1,6 @@
-/* Materials for the POV-Ray writer. A colour that is not constant becomes a pigment in the surface's own (u,w): on a flat surface in its
- * frame, on a round one by a warp of POV-Ray's, about y, whose x is u/2pi in 0..1, and on a mesh that says them by its vertices' (u,w).
+/* Materials for the POV-Ray writer. A colour that is not constant becomes a pigment in the surface's own (u,w): on a
+ * flat surface in its frame, on a round one by a warp of POV-Ray's, about y, whose x is u/2pi in 0..1, and on a mesh
+ * that says them by its vertices' (u,w).
  */
 #include "povray/parts.h"
 
@@ -17,7 +18,8 @@ static bool covers(const object *o)
     double u[2], w[2];
     const map_layout *l = &o->color_layout;
     o->shape->ops->extent(o->shape, 0, u, w);
-    return l->offset[0] <= u[0] && l->offset[0] + l->size[0] >= u[1] && l->offset[1] <= w[0] && l->offset[1] + l->size[1] >= w[1];
+    return l->offset[0] <= u[0] && l->offset[0] + l->size[0] >= u[1] && l->offset[1] <= w[0] &&
+           l->offset[1] + l->size[1] >= w[1];
 }
 
 bool pov_possible(const scene *s, errors *e)
@@ -26,10 +28,13 @@ bool pov_possible(const scene *s, errors *e)
     for (int k = 0; k < s->objects; k++) {
         const object *o = &s->object[k];
         const material *m = &s->material[o->material];
-        if (m->pattern == PATTERN_IMAGE && m->layout.wrap != MAP_REPEAT && !(m->layout.wrap == MAP_CLAMP && m->nearest && covers(o)))
-            good = errors_add(e, "%s: object %s: POV-Ray's images repeat and do nothing else, expected 'wrap: repeat' in material %s%s", s->path,
-                              o->name, m->name,
-                              m->layout.wrap == MAP_CLAMP ? ", or 'interpolation: nearest' on an image as large as the surface" : "");
+        if (m->pattern == PATTERN_IMAGE && m->layout.wrap != MAP_REPEAT &&
+            !(m->layout.wrap == MAP_CLAMP && m->nearest && covers(o)))
+            good = errors_add(
+                e,
+                "%s: object %s: POV-Ray's images repeat and do nothing else, expected 'wrap: repeat' in material %s%s",
+                s->path, o->name, m->name,
+                m->layout.wrap == MAP_CLAMP ? ", or 'interpolation: nearest' on an image as large as the surface" : "");
     }
     return good;
 }
@@ -46,8 +51,9 @@ static void put_color(pov_text *t, const material *m, vec3 color)
 
 static void put_finish(pov_text *t, const material *m, const char *in)
 {
-    pov_print(t, "%sfinish {\n%s  ambient %g\n%s  diffuse %g\n%s  phong %g phong_size %g\n%s  specular %g roughness %g\n", in, in,
-              m->ambient, in, m->diffuse, in, m->phong, m->phong_size, in, m->specular, m->roughness);
+    pov_print(t,
+              "%sfinish {\n%s  ambient %g\n%s  diffuse %g\n%s  phong %g phong_size %g\n%s  specular %g roughness %g\n",
+              in, in, m->ambient, in, m->diffuse, in, m->phong, m->phong_size, in, m->specular, m->roughness);
     if (material_mirrors(m))
         pov_print(t, "%s  reflection { rgb %v }\n", in, m->reflection);
     pov_print(t, "%s}\n", in);
@@ -74,8 +80,10 @@ void pov_materials(pov_text *t, const scene *s)
         pov_print(t, m->pattern ? "\n" : "}\n\n");
     }
     if (checkers)
-        pov_print(t, "// 0 on the even fields, 1/2 on the odd ones\n"
-                     "#declare Checker = function(u, w) { 0.5*(floor(u) + floor(w)) - floor(0.5*(floor(u) + floor(w))) }\n\n");
+        pov_print(
+            t,
+            "// 0 on the even fields, 1/2 on the odd ones\n"
+            "#declare Checker = function(u, w) { 0.5*(floor(u) + floor(w)) - floor(0.5*(floor(u) + floor(w))) }\n\n");
 }
 
 /* ---- (u,w) on round surfaces ---- */
@@ -160,8 +168,9 @@ static void put_wound_image(pov_text *t, const object *o, const material *m, con
     const map_layout *l = &o->color_layout;
     const double around = (pov_mirrored(o) ? -0.5 : 0.5) / PI;
     put_image_map(t, m);
-    pov_print(t, "\n      scale <%g, %g, 1> translate <%g, %g, 0> warp { %s orientation z dist_exp 0 }\n", l->size[0] * around,
-              -l->size[1] * a->rate, l->offset[0] * around + turns, a->low + a->rate * (l->offset[1] + l->size[1]), a->warp);
+    pov_print(t, "\n      scale <%g, %g, 1> translate <%g, %g, 0> warp { %s orientation z dist_exp 0 }\n",
+              l->size[0] * around, -l->size[1] * a->rate, l->offset[0] * around + turns,
+              a->low + a->rate * (l->offset[1] + l->size[1]), a->warp);
 }
 
 /* An image that does not close around the surface has its seam at u = pi, where z changes its sign behind the axis. */
@@ -235,7 +244,8 @@ void pov_texture(pov_text *t, const scene *s, const object *o, int part)
 
 bool pov_by_uv(const scene *s, const object *o)
 {
-    const bool cone = o->shape_spec.kind == SHAPE_CONE && s->displaced && o->bump; /* by no warp: its w is that of the foot */
+    const bool cone =
+        o->shape_spec.kind == SHAPE_CONE && s->displaced && o->bump; /* by no warp: its w is that of the foot */
     return s->material[o->material].pattern && (cone || pov_is_sheet(s, o) || o->shape_spec.kind == SHAPE_MESH);
 }
 

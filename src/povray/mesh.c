@@ -1,5 +1,6 @@
-/* Meshes from files, smooth or displaced, as one mesh2. Its vertices are the triangles' own, those that are the same once. Displaced, each
- * triangle becomes k x k, with the normals of the rough surface at their corners; k is the same for all, so that there are no gaps.
+/* Meshes from files, smooth or displaced, as one mesh2. Its vertices are the triangles' own, those that are the same
+ * once. Displaced, each triangle becomes k x k, with the normals of the rough surface at their corners; k is the same
+ * for all, so that there are no gaps.
  */
 #include "povray/parts.h"
 
@@ -86,7 +87,10 @@ static void add_smooth(pile *p, const mesh *f)
 
 /* ---- displaced ---- */
 
-static vec3 middle(const mesh_triangle *x) { return vec3_scale(vec3_add(x->at[0], vec3_add(x->at[1], x->at[2])), 1.0 / 3); }
+static vec3 middle(const mesh_triangle *x)
+{
+    return vec3_scale(vec3_add(x->at[0], vec3_add(x->at[1], x->at[2])), 1.0 / 3);
+}
 
 /* The longest side of a triangle in pixels; 0 behind the eye. */
 static double pixels_of(const scene *s, const mesh_triangle *x)

@@ -5,8 +5,8 @@
 #include "povray/povray.h"
 #include "povray/text.h"
 
-/* A flat surface in a frame of its own: Q = O + u U + w W; x runs along U, z along W, both in scene units, and y is the height
- * over it, so that U and W need not be at a right angle. */
+/* A flat surface in a frame of its own: Q = O + u U + w W; x runs along U, z along W, both in scene units, and y is the
+ * height over it, so that U and W need not be at a right angle. */
 typedef struct pov_flat {
     vec3 O, U, W;
     vec3 x, y, z; /* unit */
@@ -27,7 +27,8 @@ const char *pov_around(const object *o);
 /* The shape before its transform, but for the size. */
 shape_spec pov_sized(const object *o);
 
-/* The radius of a disc, or of a flat part that is one; in units of u and w; it may be 0, and then there is no such part. Negative: no disc. */
+/* The radius of a disc, or of a flat part that is one; in units of u and w; it may be 0, and then there is no such
+ * part. Negative: no disc. */
 double pov_rim(const shape_spec *f, int part);
 
 /* Of an object's displaced disc, which is made as a square, leave what is on the disc. */
@@ -36,8 +37,8 @@ void pov_clip_rim(pov_text *t, const object *o, int part);
 /* P's range with some air: a container must hold all of the surface. */
 void pov_levels(const object *o, double y[2]);
 
-/* The part of an unbounded plane that matters for the picture, as ranges of u and w: what the camera sees of the rough surface,
- * and what of it can shade that. */
+/* The part of an unbounded plane that matters for the picture, as ranges of u and w: what the camera sees of the rough
+ * surface, and what of it can shade that. */
 void pov_plane_region(const scene *s, const object *o, double u[2], double w[2]);
 
 /* The name of a thing of the scene as an identifier of POV-Ray, which has no '-'; `index` keeps a-b and a_b apart. */
@@ -54,8 +55,8 @@ static inline bool pov_is_sheet(const scene *s, const object *o)
     return kind == SHAPE_PATCH || (s->displaced && o->shape->rough && kind != SHAPE_MESH);
 }
 
-/* All materials; and that of an object, on a part of its surface. pov_by_parts: each part has its own; pov_by_uv: its mesh must say
- * where in (u,w) vertices are. */
+/* All materials; and that of an object, on a part of its surface. pov_by_parts: each part has its own; pov_by_uv: its
+ * mesh must say where in (u,w) vertices are. */
 void pov_materials(pov_text *t, const scene *s);
 void pov_texture(pov_text *t, const scene *s, const object *o, int part);
 bool pov_by_parts(const scene *s, const object *o);
@@ -64,8 +65,8 @@ bool pov_by_uv(const scene *s, const object *o);
 /* P as a POV-Ray function of u and w, named by `name`. False where there is none. */
 bool pov_function(pov_text *t, const object *o, const char *name);
 
-/* The displaced object as isosurfaces that call the function `name`. pov_isosurface_gradient: the bound of its gradient, infinite
- * where none is known or none serves. */
+/* The displaced object as isosurfaces that call the function `name`. pov_isosurface_gradient: the bound of its
+ * gradient, infinite where none is known or none serves. */
 double pov_isosurface_gradient(const object *o, int part);
 void pov_isosurface(pov_text *t, const scene *s, const object *o, const char *name);
 

@@ -1,5 +1,6 @@
-/* Surfaces that POV-Ray has no shape for, smooth or displaced: one mesh2 with a vertex at each line of a grid over (u,w), the same on
- * every part, so that parts that join have the same vertices there. Its normals are the surface's own.
+/* Surfaces that POV-Ray has no shape for, smooth or displaced: one mesh2 with a vertex at each line of a grid over
+ * (u,w), the same on every part, so that parts that join have the same vertices there. Its normals are the surface's
+ * own.
  */
 #include "povray/parts.h"
 
@@ -11,9 +12,10 @@
 
 enum { MOST_TRIANGLES = 1500000, PROBES = 64, LEAST = 8, FINEST = 4096 };
 
-#define PIXELS 3.0  /* a cell's side on the screen: what is bent less than TURN has no corner there */
-#define TURN 0.012  /* between the normals of neighbours, radians: a facet that shades its neighbour does so where light counts for
-                       less than a step of 1/255 */
+#define PIXELS 3.0 /* a cell's side on the screen: what is bent less than TURN has no corner there */
+#define TURN                                                                                                           \
+    0.012 /* between the normals of neighbours, radians: a facet that shades its neighbour does so where light counts  \
+             for less than a step of 1/255 */
 
 typedef struct grid {
     const scene *s;
@@ -22,7 +24,10 @@ typedef struct grid {
     int n[2]; /* cells along u and along w */
 } grid;
 
-static double line(const double range[2], int i, int n) { return i == n ? range[1] : range[0] + (range[1] - range[0]) * i / n; }
+static double line(const double range[2], int i, int n)
+{
+    return i == n ? range[1] : range[0] + (range[1] - range[0]) * i / n;
+}
 
 static void put_lane(float to[3], bs_vec3 x)
 {
@@ -56,7 +61,8 @@ static void evaluate(const grid *g, int part, int row, pov_vertex *out)
             const bs_vec3 Qu = lane_get(&q.Qu, i), Qw = lane_get(&q.Qw, i);
             const offset o = offset_of(Qu, Qw, lane_get(&q.Quu, i), lane_get(&q.Quw, i), lane_get(&q.Qww, i), h.P[i]);
             put_lane(out[first + i].at, offset_mix(lane_get(&q.Q, i), h.P[i], o.n));
-            put_lane(out[first + i].normal, bs_regular(bs_normal(Qu, Qw), Qu, Qw) ? offset_normal(o, h.Pu[i], h.Pw[i]) : o.n);
+            put_lane(out[first + i].normal,
+                     bs_regular(bs_normal(Qu, Qw), Qu, Qw) ? offset_normal(o, h.Pu[i], h.Pw[i]) : o.n);
             out[first + i].uv[0] = (float)u[i];
             out[first + i].uv[1] = (float)w[i];
         }
@@ -144,7 +150,8 @@ static int faces(pov_text *t, const grid *g, const pov_vertex *v)
     for (int part = 0; part < g->o->shape->ops->parts; part++)
         for (int j = 0; j < g->n[1]; j++)
             for (int i = 0; i < g->n[0]; i++) {
-                const int a = part * all + j * row + i, corner[2][3] = {{a, a + 1, a + row + 1}, {a, a + row + 1, a + row}};
+                const int a = part * all + j * row + i,
+                          corner[2][3] = {{a, a + 1, a + row + 1}, {a, a + row + 1, a + row}};
                 for (int k = 0; k < 2; k++) {
                     const int *c = corner[k];
                     if (same(&v[c[0]], &v[c[1]]) || same(&v[c[1]], &v[c[2]]) || same(&v[c[2]], &v[c[0]]))

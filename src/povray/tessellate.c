@@ -1,9 +1,9 @@
 /* Displaced objects as meshes: maps, and functions that POV-Ray cannot evaluate.
  *
- * The lattice has the map's own samples, so that a mesh is the bilinear surface between them and no other. A cell is divided
- * so that its facets are below half a pixel on the screen, into a power of two; beside a coarser cell the finer one's vertices on
- * the common edge are put onto that edge, so that no crack opens. Of an unbounded plane only what the camera sees, and what casts
- * shadows there, is made; far away cells are joined.
+ * The lattice has the map's own samples, so that a mesh is the bilinear surface between them and no other. A cell is
+ * divided so that its facets are below half a pixel on the screen, into a power of two; beside a coarser cell the finer
+ * one's vertices on the common edge are put onto that edge, so that no crack opens. Of an unbounded plane only what the
+ * camera sees, and what casts shadows there, is made; far away cells are joined.
  */
 #include "povray/parts.h"
 
@@ -16,7 +16,7 @@ enum { MOST_TRIANGLES = 4000000, FUNCTION_CELLS = 256 };
 
 #define FINE 1.0   /* a facet's side in pixels: it covers less than half a pixel */
 #define JOIN 0.25  /* cells are joined while the block is smaller, in pixels */
-#define TILT 0.003  /* by how much a facet's normals may be off, against unit length: less than a step of 1/255 */
+#define TILT 0.003 /* by how much a facet's normals may be off, against unit length: less than a step of 1/255 */
 #define LOOSEST 0.02
 #define COARSER 1.4 /* where the triangles are too many: first the normals, then the facets */
 
@@ -47,7 +47,7 @@ static vec3 project(const scene *s, vec3 p)
 }
 
 typedef struct corners {
-    vec3 Q[4], n;    /* around the block; n unit, in the first one */
+    vec3 Q[4], n;       /* around the block; n unit, in the first one */
     double slope[4][2]; /* of P, along u and along w */
 } corners;
 
@@ -66,12 +66,14 @@ static corners block_corners(const tessellation *x, int64_t i, int64_t j, int64_
     x->o->shape->ops->eval(x->o->shape, 4, part, u, w, 1, &q);
     x->o->bump->ops->eval(x->o->bump, 4, u, w, 1, &h);
     for (int k = 0; k < 4; k++) {
-        vec3 U = {(double)q.Qu.x[k], (double)q.Qu.y[k], (double)q.Qu.z[k]}, W = {(double)q.Qw.x[k], (double)q.Qw.y[k], (double)q.Qw.z[k]};
+        vec3 U = {(double)q.Qu.x[k], (double)q.Qu.y[k], (double)q.Qu.z[k]},
+             W = {(double)q.Qw.x[k], (double)q.Qw.y[k], (double)q.Qw.z[k]};
         c.Q[k] = (vec3){(double)q.Q.x[k], (double)q.Q.y[k], (double)q.Q.z[k]};
         c.slope[k][0] = (double)h.Pu[k] / vec3_length(U);
         c.slope[k][1] = (double)h.Pw[k] / vec3_length(W);
     }
-    vec3 Qu = {(double)q.Qu.x[0], (double)q.Qu.y[0], (double)q.Qu.z[0]}, Qw = {(double)q.Qw.x[0], (double)q.Qw.y[0], (double)q.Qw.z[0]};
+    vec3 Qu = {(double)q.Qu.x[0], (double)q.Qu.y[0], (double)q.Qu.z[0]},
+         Qw = {(double)q.Qw.x[0], (double)q.Qw.y[0], (double)q.Qw.z[0]};
     c.n = vec3_unit(vec3_cross(Qu, Qw));
     return c;
 }
@@ -88,13 +90,14 @@ static double block_pixels(const tessellation *x, const corners *c)
     }
     for (int k = 0; k < 4; k++) {
         vec3 a = p[k], b = p[(k + 1) % 4];
-        longest = fmax(longest, hypot((a.x / a.z - b.x / b.z) * x->s->width / 2, (a.y / a.z - b.y / b.z) * x->s->height / 2));
+        longest =
+            fmax(longest, hypot((a.x / a.z - b.x / b.z) * x->s->width / 2, (a.y / a.z - b.y / b.z) * x->s->height / 2));
     }
     return longest;
 }
 
-/* How far the normal in a facet that is the whole block can be from that of the surface: what lies between three normals on unit
- * length is a plane, where the slopes are bilinear and unit length is not linear. */
+/* How far the normal in a facet that is the whole block can be from that of the surface: what lies between three
+ * normals on unit length is a plane, where the slopes are bilinear and unit length is not linear. */
 static double block_tilt(const corners *c)
 {
     double worst = 0;
@@ -139,8 +142,8 @@ static bool in_range(const tessellation *x, int64_t i, int64_t j)
     return i >= x->first[0] && i < x->end[0] && j >= x->first[1] && j < x->end[1];
 }
 
-/* Into how many parts each side of a cell is divided: 0 where there is no cell. Depends on nothing else, so that a neighbour
- * finds the same. */
+/* Into how many parts each side of a cell is divided: 0 where there is no cell. Depends on nothing else, so that a
+ * neighbour finds the same. */
 static int cell_division(const tessellation *x, int64_t i, int64_t j)
 {
     if (!in_range(x, i, j))
@@ -195,8 +198,8 @@ static void stitch(pov_vertices *v, const int32_t *number, const bool *fresh, in
     const int m = k / other;
     for (int s = 0; s <= k; s++)
         if (s % m && fresh[first + s * stride])
-            onto(v, number[first + s * stride], number[first + s / m * m * stride], number[first + (s / m + 1) * m * stride],
-                 (float)(s % m) / (float)m);
+            onto(v, number[first + s * stride], number[first + s / m * m * stride],
+                 number[first + (s / m + 1) * m * stride], (float)(s % m) / (float)m);
 }
 
 /* A grid of k x k quads over the cell, or over a block of cells, k = 1. */
@@ -255,7 +258,8 @@ static void add_block(tessellation *x, int64_t i, int64_t j, int64_t size)
         return;
     if (size == 1)
         add_grid(x, i, j, 1, cell_division(x, i, j));
-    else if (x->flat && i + size <= x->end[0] && j + size <= x->end[1] && block_pixels(x, &c) < JOIN / FINE * x->tolerance)
+    else if (x->flat && i + size <= x->end[0] && j + size <= x->end[1] &&
+             block_pixels(x, &c) < JOIN / FINE * x->tolerance)
         add_grid(x, i, j, size, 1);
     else
         for (int k = 0; k < 4; k++)
@@ -317,7 +321,8 @@ static void put_mesh(pov_text *t, const tessellation *x)
     pov_begin_mesh(t, x->v.vertex, x->v.count, pov_by_uv(x->s, x->o));
     pov_print(t, "  face_indices { %d", (int)x->faces);
     for (long k = 0; k < x->faces; k++)
-        pov_print(t, k % 8 ? ",<%d,%d,%d>" : ",\n<%d,%d,%d>", (int)x->face[k][0], (int)x->face[k][1], (int)x->face[k][2]);
+        pov_print(t, k % 8 ? ",<%d,%d,%d>" : ",\n<%d,%d,%d>", (int)x->face[k][0], (int)x->face[k][1],
+                  (int)x->face[k][2]);
     pov_print(t, " }\n");
 }
 
@@ -350,7 +355,8 @@ static void put_note(pov_text *t, const tessellation *x)
         pov_print(t, "// The plane has no end; here it is cut to what the camera sees and what can shade that.\n");
     pov_print(t, "// a mesh made for %d x %d pixels", x->s->width, x->s->height);
     if (x->tolerance > FINE)
-        pov_print(t, ", with facets up to %s pixels wide: finer ones would be too many", pov_number(x->tolerance, 2).text);
+        pov_print(t, ", with facets up to %s pixels wide: finer ones would be too many",
+                  pov_number(x->tolerance, 2).text);
     pov_print(t, "\n");
 }
 

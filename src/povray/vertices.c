@@ -68,7 +68,8 @@ static void evaluate(pov_vertices *v, int n, const real *u, const real *w, pov_v
                          gh.z - h.Pu[i] * gu.z - h.Pw[i] * gw.z};
             m = lane_unit(g);
         }
-        out[i] = (pov_vertex){{(float)X.x, (float)X.y, (float)X.z}, {(float)m.x, (float)m.y, (float)m.z}, {(float)u[i], (float)w[i]}};
+        out[i] = (pov_vertex){
+            {(float)X.x, (float)X.y, (float)X.z}, {(float)m.x, (float)m.y, (float)m.z}, {(float)u[i], (float)w[i]}};
     }
 }
 
@@ -106,7 +107,8 @@ static bool grow(pov_vertices *v)
     return true;
 }
 
-bool pov_vertices_get(pov_vertices *v, int n, const int64_t (*cell)[2], const int (*place)[2], int32_t *number, bool *fresh)
+bool pov_vertices_get(pov_vertices *v, int n, const int64_t (*cell)[2], const int (*place)[2], int32_t *number,
+                      bool *fresh)
 {
     if (v->count + n > v->room && !grow(v))
         return false;

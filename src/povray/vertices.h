@@ -1,5 +1,5 @@
-/* The vertices of meshes. Those of a displaced one are made each once: places on a lattice of (u,w), with X = Q + P n/|n| and the
- * normal of the rough surface. Private to pov_*.c. */
+/* The vertices of meshes. Those of a displaced one are made each once: places on a lattice of (u,w), with X = Q + P
+ * n/|n| and the normal of the rough surface. Private to pov_*.c. */
 #ifndef KAGE_POVRAY_VERTICES_H
 #define KAGE_POVRAY_VERTICES_H
 
@@ -39,9 +39,10 @@ typedef struct pov_vertices {
     int slots;     /* a power of two, at least twice the count */
 } pov_vertices;
 
-/* The numbers of n <= (LATTICE + 1)^2 places, (cell i, place s) of both axes for each; new ones are evaluated together. `fresh`:
- * which were new. False: out of memory. */
-bool pov_vertices_get(pov_vertices *v, int n, const int64_t (*cell)[2], const int (*place)[2], int32_t *number, bool *fresh);
+/* The numbers of n <= (LATTICE + 1)^2 places, (cell i, place s) of both axes for each; new ones are evaluated together.
+ * `fresh`: which were new. False: out of memory. */
+bool pov_vertices_get(pov_vertices *v, int n, const int64_t (*cell)[2], const int (*place)[2], int32_t *number,
+                      bool *fresh);
 
 /* Begin anew, on another lattice. */
 void pov_vertices_clear(pov_vertices *v);

@@ -1,4 +1,5 @@
-/* The POV-Ray file as a whole: camera, lights, materials, objects. Displaced objects are in pov_isosurface.c and pov_mesh.c. */
+/* The POV-Ray file as a whole: camera, lights, materials, objects. Displaced objects are in pov_isosurface.c and
+ * pov_mesh.c. */
 #include "povray/parts.h"
 
 #include "base/frame.h"
@@ -25,7 +26,8 @@ static void put_head(pov_text *t, const scene *s, const pov_options *o)
     snprintf(name, sizeof name, "%s", slash ? slash + 1 : s->path);
     for (char *c = name; *c; c++)
         *c = (unsigned char)*c < 0x20 ? '?' : *c;
-    pov_print(t, "// %s, %s, for POV-Ray 3.7\n", name, s->displaced ? "with its bumps truly displaced" : "without bumps");
+    pov_print(t, "// %s, %s, for POV-Ray 3.7\n", name,
+              s->displaced ? "with its bumps truly displaced" : "without bumps");
     pov_print(t, "// made by: %s\n", o->command);
     bool images = false;
     for (int k = 0; k < s->materials; k++)
@@ -47,12 +49,15 @@ static void put_camera(pov_text *t, const scene *s)
 {
     const camera_view *v = &s->view;
     if (s->camera.orthographic)
-        pov_print(t, "camera {\n  orthographic\n  location %v\n  sky %v\n  right x*%g\n  up y*%g*image_height/image_width\n"
-                     "  look_at %v\n}\n\n",
-                  s->camera.from, v->up, v->width, v->width, v->at);
+        pov_print(
+            t,
+            "camera {\n  orthographic\n  location %v\n  sky %v\n  right x*%g\n  up y*%g*image_height/image_width\n"
+            "  look_at %v\n}\n\n",
+            s->camera.from, v->up, v->width, v->width, v->at);
     else
-        pov_print(t, "camera {\n  perspective\n  location %v\n  sky %v\n  right x*image_width/image_height\n  up y\n"
-                     "  angle %g // horizontal\n  look_at %v\n}\n\n",
+        pov_print(t,
+                  "camera {\n  perspective\n  location %v\n  sky %v\n  right x*image_width/image_height\n  up y\n"
+                  "  angle %g // horizontal\n  look_at %v\n}\n\n",
                   s->camera.from, v->up, v->fov, v->at);
     pov_print(t, "background { color rgb %v }\n\n", s->background);
 }
@@ -62,7 +67,8 @@ static void put_light(pov_text *t, const light *l)
 {
     pov_print(t, "light_source { %v color rgb %v", l->at, l->color);
     if (l->kind == LIGHT_SPOT)
-        pov_print(t, "\n  spotlight point_at %v radius %g falloff %g tightness %g", l->to, l->radius, l->falloff, l->tightness);
+        pov_print(t, "\n  spotlight point_at %v radius %g falloff %g tightness %g", l->to, l->radius, l->falloff,
+                  l->tightness);
     if (l->kind == LIGHT_PARALLEL)
         pov_print(t, "\n  parallel point_at %v", l->to);
     if (l->fade_distance > 0)
@@ -81,8 +87,8 @@ static void put_lights(pov_text *t, const scene *s)
 
 void pov_matrix(pov_text *t, vec3 x, vec3 y, vec3 z, vec3 origin)
 {
-    pov_print(t, "  matrix <%g, %g, %g,  %g, %g, %g,  %g, %g, %g,  %g, %g, %g>", x.x, x.y, x.z, y.x, y.y, y.z, z.x, z.y, z.z,
-              origin.x, origin.y, origin.z);
+    pov_print(t, "  matrix <%g, %g, %g,  %g, %g, %g,  %g, %g, %g,  %g, %g, %g>", x.x, x.y, x.z, y.x, y.y, y.z, z.x, z.y,
+              z.z, origin.x, origin.y, origin.z);
 }
 
 void pov_object_end(pov_text *t, const scene *s, const pov_options *how, const object *o)
@@ -191,7 +197,7 @@ static void put_smooth(pov_text *t, const scene *s, const object *o)
         break;
     }
     case SHAPE_PATCH: /* pov_patch.c */
-    case SHAPE_MESH:     /* pov_triangle_mesh.c */
+    case SHAPE_MESH:  /* pov_triangle_mesh.c */
         break;
     }
     put_transform(t, o);

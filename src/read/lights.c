@@ -22,12 +22,16 @@ static void read_spot(reader *r, node *at, light *l)
     if (!yaml_map(r->y, at, "spot", "to radius falloff tightness"))
         return;
     read_aim(r, at, "spot", l);
-    bool good = reader_number(r, at, "radius", 0, false, 90, "degrees from the axis to the end of the full light, 0 to 90", &l->radius);
-    good = reader_number(r, at, "falloff", 0, true, 90, "degrees from the axis to the end of all light, above 0 and up to 90", &l->falloff) && good;
+    bool good = reader_number(r, at, "radius", 0, false, 90,
+                              "degrees from the axis to the end of the full light, 0 to 90", &l->radius);
+    good = reader_number(r, at, "falloff", 0, true, 90,
+                         "degrees from the axis to the end of all light, above 0 and up to 90", &l->falloff) &&
+           good;
     reader_number(r, at, "tightness", 0, false, BIG, "an exponent, 0 or more", &l->tightness);
     if (good && l->radius > l->falloff)
         yaml_error(r->y, yaml_get(at, yaml_get(at, "radius") ? "radius" : "falloff"),
-                   "a radius of %g and a falloff of %g degrees, expected a radius no larger than the falloff", l->radius, l->falloff);
+                   "a radius of %g and a falloff of %g degrees, expected a radius no larger than the falloff",
+                   l->radius, l->falloff);
 }
 
 static void read_fade(reader *r, node *at, light *l)
@@ -35,7 +39,8 @@ static void read_fade(reader *r, node *at, light *l)
     l->fade_power = 2;
     if (!yaml_map(r->y, at, "fade", "distance power") || !yaml_need(r->y, at, "distance", "fade"))
         return;
-    reader_number(r, at, "distance", SMALL, false, BIG, "the distance at which the light has its colour, from 1e-6 to 1e6", &l->fade_distance);
+    reader_number(r, at, "distance", SMALL, false, BIG,
+                  "the distance at which the light has its colour, from 1e-6 to 1e6", &l->fade_distance);
     reader_number(r, at, "power", 0, true, 100, "an exponent above 0, at most 100", &l->fade_power);
 }
 
@@ -44,7 +49,8 @@ static void read_area(reader *r, node *at, light *l)
     double n[2] = {1, 1};
     if (!yaml_map(r->y, at, "area", "u w samples"))
         return;
-    bool good = yaml_need(r->y, at, "u", "area") && yaml_need(r->y, at, "w", "area") && yaml_need(r->y, at, "samples", "area");
+    bool good =
+        yaml_need(r->y, at, "u", "area") && yaml_need(r->y, at, "w", "area") && yaml_need(r->y, at, "samples", "area");
     good = reader_vector(r, at, "u", "one side of the area, [x, y, z]", &l->u) && good;
     good = reader_vector(r, at, "w", "the other side of the area, [x, y, z]", &l->w) && good;
     node *k = yaml_get(at, "samples");

@@ -75,7 +75,8 @@ static void read_color(reader *r, node *material_node, material *m)
     checker = yaml_get(at, "checker");
     pixels = yaml_get(at, "image");
     if (!checker == !pixels)
-        yaml_error(r->y, at, "a color with %s, expected either 'checker' or 'image'", pixels ? "both checker and image" : "neither checker nor image");
+        yaml_error(r->y, at, "a color with %s, expected either 'checker' or 'image'",
+                   pixels ? "both checker and image" : "neither checker nor image");
     else if (checker)
         read_checker(r, checker, m);
     else
@@ -93,11 +94,14 @@ static void read_reflection(reader *r, node *at, material *m)
 /* The light from behind, in shares of all light. */
 static void read_clear(reader *r, node *v, material *m)
 {
-    bool good = reader_number(r, v, "filter", 0, false, 1, "the share of light that it lets through in its colour, 0 to 1", &m->filter);
-    good = reader_number(r, v, "transmit", 0, false, 1, "the share of light that it lets through unchanged, 0 to 1", &m->transmit) && good;
+    bool good = reader_number(r, v, "filter", 0, false, 1,
+                              "the share of light that it lets through in its colour, 0 to 1", &m->filter);
+    good = reader_number(r, v, "transmit", 0, false, 1, "the share of light that it lets through unchanged, 0 to 1",
+                         &m->transmit) &&
+           good;
     if (good && m->filter + m->transmit > 1)
-        yaml_error(r->y, yaml_get(v, "transmit"), "a filter of %g and a transmit of %g, expected no more than 1 together", m->filter,
-                   m->transmit);
+        yaml_error(r->y, yaml_get(v, "transmit"),
+                   "a filter of %g and a transmit of %g, expected no more than 1 together", m->filter, m->transmit);
     reader_number(r, v, "ior", 0, true, 100, "an index of refraction above 0, at most 100", &m->ior);
 }
 
@@ -109,9 +113,11 @@ void reader_materials(reader *r)
     for (int i = 0; at && i < s->materials; i++) {
         node *v = yaml_pair(at, i, &key);
         material *m = &s->material[i];
-        *m = (material){.color = {1, 1, 1}, .ambient = 0.1, .diffuse = 0.6, .phong_size = 40, .roughness = 0.05, .ior = 1};
+        *m = (material){
+            .color = {1, 1, 1}, .ambient = 0.1, .diffuse = 0.6, .phong_size = 40, .roughness = 0.05, .ior = 1};
         m->name = reader_name(r, at, key);
-        if (!yaml_map(r->y, v, "a material", "color ambient diffuse phong phong_size specular roughness reflection filter transmit ior"))
+        if (!yaml_map(r->y, v, "a material",
+                      "color ambient diffuse phong phong_size specular roughness reflection filter transmit ior"))
             continue;
         read_color(r, v, m);
         reader_number(r, v, "ambient", 0, false, BIG, "a share of light, 0 or more", &m->ambient);
@@ -136,7 +142,8 @@ static bool lay_image(reader *r, node *at, const material *m, const object *o, m
     node *said = yaml_get(yaml_get(yaml_get(yaml_get(yaml_root(r->y), "materials"), m->name), "color"), "image");
     reader_extent(o->shape, &o->shape_spec, u, w);
     if (!yaml_get(said, "size") && !(u[1] - u[0] < HUGE_VAL && w[1] - w[0] < HUGE_VAL))
-        return yaml_error(r->y, at, "the image of '%s' has no 'size', expected one for a surface without ends", m->name);
+        return yaml_error(r->y, at, "the image of '%s' has no 'size', expected one for a surface without ends",
+                          m->name);
     *l = (map_layout){.size = {1, 1}};
     return reader_layout(r, said, u, w, l);
 }

@@ -58,7 +58,8 @@ surface *reader_mesh(reader *r, node *at, shape_spec *said)
         errors_add(r->e, "out of memory");
         return NULL;
     }
-    *said = (shape_spec){.kind = SHAPE_MESH, .file = reader_copy(r, name), .triangles = ((mesh *)f)->d.n, .found = ((mesh *)f)->d.notes};
+    *said = (shape_spec){
+        .kind = SHAPE_MESH, .file = reader_copy(r, name), .triangles = ((mesh *)f)->d.n, .found = ((mesh *)f)->d.notes};
     return f;
 }
 
@@ -67,8 +68,9 @@ bool reader_textured(reader *r, node *at, const object *o)
     const shape_spec *f = &o->shape_spec;
     if (f->kind != SHAPE_MESH || f->found.bare == 0)
         return true;
-    return yaml_error(r->y, at, "%d of the %d triangles of '%s' have no texture coordinates, expected them for what lies on (u,w)", f->found.bare,
-                      f->triangles, f->file);
+    return yaml_error(
+        r->y, at, "%d of the %d triangles of '%s' have no texture coordinates, expected them for what lies on (u,w)",
+        f->found.bare, f->triangles, f->file);
 }
 
 /* The folds are one range beyond the ends: on both sides, as a transform that mirrors exchanges them. */

@@ -29,7 +29,8 @@ bool reader_layout(reader *r, node *at, const double u[2], const double w[2], ma
     else {
         double n[2] = {1, 1};
         if (repeat)
-            good = yaml_numbers(r->y, repeat, 2, SMALL, BIG, "how often the map goes into the surface [in u, in w], 1e-6 or more", n);
+            good = yaml_numbers(r->y, repeat, 2, SMALL, BIG,
+                                "how often the map goes into the surface [in u, in w], 1e-6 or more", n);
         l->size[0] = extent[0] / n[0];
         l->size[1] = extent[1] / n[1];
     }
@@ -67,7 +68,8 @@ static bool read_samples(reader *r, node *at, image *out, map_note *note)
         yaml_error(r->y, file, "'%s' can't be used: %.*s", name, e.size ? (int)e.size - 1 : 0, e.text ? e.text : "");
     if (good && (out->width < 2 || out->height < 2)) {
         free(out->v);
-        good = yaml_error(r->y, file, "'%s' has %d x %d samples, expected at least 2 x 2", name, out->width, out->height);
+        good =
+            yaml_error(r->y, file, "'%s' has %d x %d samples, expected at least 2 x 2", name, out->width, out->height);
     }
     if (good) {
         *note = (map_note){reader_copy(r, name), out->width, out->height, HUGE_VAL, -HUGE_VAL};
@@ -87,9 +89,11 @@ static bump *read_map(reader *r, node *at, const double u[2], const double w[2],
     image samples;
     map_layout l = {.size = {1, 1}};
     bool good = yaml_map(r->y, at, "a bump with a map", "map scale zero sign size repeat offset wrap samples");
-    node *scale = yaml_need(r->y, at, "scale", "a bump with a map"), *zero = yaml_need(r->y, at, "zero", "a bump with a map");
+    node *scale = yaml_need(r->y, at, "scale", "a bump with a map"),
+         *zero = yaml_need(r->y, at, "zero", "a bump with a map");
     node *sign = yaml_need(r->y, at, "sign", "a bump with a map");
-    good = scale && yaml_number(r->y, scale, 0, false, BIG, "scene units for one unit of the map, 0 or more", &l.scale) && good;
+    good = scale &&
+           yaml_number(r->y, scale, 0, false, BIG, "scene units for one unit of the map, 0 or more", &l.scale) && good;
     good = zero && yaml_number(r->y, zero, -BIG, false, BIG, "the map's value whose height is 0", &l.zero) && good;
     int up = sign ? yaml_word(r->y, sign, "up down", "up (higher values are higher) or down") : -1;
     good = reader_layout(r, at, u, w, &l) && up >= 0 && good;
@@ -99,8 +103,8 @@ static bump *read_map(reader *r, node *at, const double u[2], const double w[2],
     l.scale = up == 1 ? -l.scale : l.scale;
     const double low = l.scale * (note->low - l.zero), high = l.scale * (note->high - l.zero);
     if (good && fmax(fabs(low), fabs(high)) > BIG)
-        good = yaml_error(r->y, scale, "heights from %.4g to %.4g, expected them within 1000000 scene units", fmin(low, high),
-                          fmax(low, high));
+        good = yaml_error(r->y, scale, "heights from %.4g to %.4g, expected them within 1000000 scene units",
+                          fmin(low, high), fmax(low, high));
     said->layout = l;
     bump *p = good ? bump_map_new(&samples, &l) : NULL;
     if (good && !p)
@@ -155,13 +159,15 @@ static bump *read_bump(reader *r, node *at, object *o)
         return NULL;
     node *map = yaml_get(at, "map"), *function = yaml_get(at, "function");
     if (!map == !function) {
-        yaml_error(r->y, at, "a bump with %s, expected either 'map' or 'function'", map ? "both map and function" : "neither map nor function");
+        yaml_error(r->y, at, "a bump with %s, expected either 'map' or 'function'",
+                   map ? "both map and function" : "neither map nor function");
         return NULL;
     }
     if (!reader_textured(r, at, o))
         return NULL;
     reader_extent(f, &o->shape_spec, u, w);
-    return reader_fold_bump(r, o, map ? read_map(r, at, u, w, &o->map, &o->bump_spec) : read_function(r, at, f, &o->bump_spec));
+    return reader_fold_bump(
+        r, o, map ? read_map(r, at, u, w, &o->map, &o->bump_spec) : read_function(r, at, f, &o->bump_spec));
 }
 
 /* ---- objects ---- */
@@ -187,8 +193,9 @@ static int find(reader *r, node *at, const char *what, const char *among, const 
                 strcat(strcat(names, *names ? " " : ""), *its);
         }
     text_nearest(name, names ? names : "", near, sizeof near);
-    yaml_error(r->y, at, "no %s '%.60s'%s%s%s%s", thing, name, *near ? ", did you mean '" : ", expected one of those under '",
-               *near ? near : among, "'", *near ? "?" : "");
+    yaml_error(r->y, at, "no %s '%.60s'%s%s%s%s", thing, name,
+               *near ? ", did you mean '" : ", expected one of those under '", *near ? near : among, "'",
+               *near ? "?" : "");
     free(names);
     return -1;
 }
@@ -197,7 +204,9 @@ static int find_material(reader *r, node *at)
 {
     const scene *s = r->s;
     /* without materials that alone is told */
-    int k = s->material ? find(r, at, "the name of a material", "materials", s->material, sizeof *s->material, s->materials) : 0;
+    int k = s->material
+                ? find(r, at, "the name of a material", "materials", s->material, sizeof *s->material, s->materials)
+                : 0;
     return k < 0 ? 0 : k;
 }
 
@@ -219,7 +228,8 @@ static const object *read_original(reader *r, const queue *q, node *copy, int i)
     if (k == i)
         yaml_error(r->y, copy, "'%s' copies itself, expected another object", s->object[i].name);
     else if (k >= 0 && q->state[k] == BEGUN)
-        yaml_error(r->y, copy, "'%s' is a copy of this one, expected an object that does not lead back here", s->object[k].name);
+        yaml_error(r->y, copy, "'%s' is a copy of this one, expected an object that does not lead back here",
+                   s->object[k].name);
     if (k < 0 || q->state[k] == BEGUN)
         return NULL;
     if (q->state[k] == WAITING)
@@ -251,7 +261,9 @@ static void place(reader *r, node *v, object *o)
     if (!good || !o->moved || !o->own || !reader_place(r, at, o))
         return;
     if (o->bump && !o->shape->ops->foot && !o->shape->rough && scene_wants_truth(r->s))
-        yaml_error(r->y, at, "a %s with caps and a bump is stretched more one way than another, expected the same scale all ways, or 'open: true', for %s",
+        yaml_error(r->y, at,
+                   "a %s with caps and a bump is stretched more one way than another, expected the same scale all "
+                   "ways, or 'open: true', for %s",
                    o->shape->ops->kind, r->s->displaced ? "surface displaced" : "shadow exact");
 }
 
@@ -281,8 +293,9 @@ static void read_object(reader *r, const queue *q, int i)
             o->bump = read_bump(r, at_bump, o);
         }
         if (at_bump && o->bump && scene_wants_truth(s) && !displaced_possible(o->bump))
-            yaml_error(r->y, at_bump, "no bounds of P or of its slope are known, expected them for %s: a function that is bounded, "
-                                   "without jumps, over the whole surface",
+            yaml_error(r->y, at_bump,
+                       "no bounds of P or of its slope are known, expected them for %s: a function that is bounded, "
+                       "without jumps, over the whole surface",
                        s->displaced ? "surface displaced" : "shadow exact");
         place(r, v, o);
         if (o->shape && o->bump && scene_wants_truth(s) && !displaced_prepare(o->shape, o->bump))

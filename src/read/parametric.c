@@ -20,7 +20,8 @@ static expr *read_expr(reader *r, node *at, const char *what)
     return e;
 }
 
-/* An end of a range: a number, or an expression without u and w, such as 2*pi, so that what closes does so to the last digit. */
+/* An end of a range: a number, or an expression without u and w, such as 2*pi, so that what closes does so to the last
+ * digit. */
 static bool read_end(reader *r, node *at, double *x)
 {
     const double u[2] = {0.3, 0.7}, w[2] = {0.6, 0.2};
@@ -84,8 +85,9 @@ surface *reader_parametric(reader *r, node *at, shape_spec *said)
             expr_free(e[k]);
         return NULL;
     }
-    return search(r, at, patch_function_new("parametric", e, u, w),
-                  "a surface without bounds, or all in one place, expected functions that are bounded over the range of u and w");
+    return search(
+        r, at, patch_function_new("parametric", e, u, w),
+        "a surface without bounds, or all in one place, expected functions that are bounded over the range of u and w");
 }
 
 /* ---- patches ---- */
@@ -151,7 +153,8 @@ surface *reader_patches(reader *r, node *at, shape_spec *said)
     node *file = yaml_get(at, "file"), *points = yaml_get(at, "points");
     int n = 0;
     if (!file == !points) {
-        yaml_error(r->y, at, "patches with %s, expected either 'file' or 'points'", file ? "both file and points" : "neither file nor points");
+        yaml_error(r->y, at, "patches with %s, expected either 'file' or 'points'",
+                   file ? "both file and points" : "neither file nor points");
         return NULL;
     }
     *said = (shape_spec){.kind = SHAPE_PATCH};

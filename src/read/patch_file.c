@@ -57,11 +57,13 @@ static bool number(const char *name, const char *text, const char **at, double m
     *x = strtod(*at, &end);
     /* strtod takes hexadecimal, infinity and NaN, too */
     if (strspn(*at, "+-.0123456789eE") < n || end != *at + n) {
-        snprintf(message, sizeof message, "'%.*s' is no number, expected a coordinate of a control point", (int)(n < SHOWN ? n : SHOWN), *at);
+        snprintf(message, sizeof message, "'%.*s' is no number, expected a coordinate of a control point",
+                 (int)(n < SHOWN ? n : SHOWN), *at);
         return wrong(name, text, *at, message, e);
     }
     if (!(fabs(*x) <= most)) {
-        snprintf(message, sizeof message, "%.*s is too far, expected a coordinate from %g to %g", (int)(n < SHOWN ? n : SHOWN), *at, -most, most);
+        snprintf(message, sizeof message, "%.*s is too far, expected a coordinate from %g to %g",
+                 (int)(n < SHOWN ? n : SHOWN), *at, -most, most);
         return wrong(name, text, *at, message, e);
     }
     *at += n;
@@ -84,7 +86,8 @@ static int numbers(const char *name, const char *text, double most, double *v, e
     if (n > 0 && n % 48 == 0)
         return n;
     char message[160];
-    snprintf(message, sizeof message, "the file ends after %d number%s, expected 48 for each patch: 16 control points of x, y and z", n,
+    snprintf(message, sizeof message,
+             "the file ends after %d number%s, expected 48 for each patch: 16 control points of x, y and z", n,
              n == 1 ? "" : "s");
     const size_t end = strlen(text);
     wrong(name, text, text + end, message, e);

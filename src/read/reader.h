@@ -44,7 +44,8 @@ char *reader_beside(reader *r, const char *file);
 /* Where a map lies on a surface with that extent: size or repeat, offset, wrap and samples. (scene_objects.c) */
 bool reader_layout(reader *r, node *at, const double u[2], const double w[2], map_layout *l);
 
-/* (scene_materials.c) The materials; the colour of an object's, where it is not constant. `at`: the object's material, for errors. */
+/* (scene_materials.c) The materials; the colour of an object's, where it is not constant. `at`: the object's material,
+ * for errors. */
 void reader_materials(reader *r);
 void reader_color_texture(reader *r, node *at, object *o);
 
@@ -56,8 +57,8 @@ bool reader_no_shape(reader *r, node *at); /* it has none; otherwise an error is
 /* What `transform` says, after what *m is already. False: an error is told. (scene_transform.c) */
 bool reader_transform(reader *r, node *at, affine *m);
 
-/* A round shape about the origin as a sheet, which bears every transform truly displaced. NULL: it has ends (caps) or is not round, or
- * out of memory. (scene_turned.c) */
+/* A round shape about the origin as a sheet, which bears every transform truly displaced. NULL: it has ends (caps) or
+ * is not round, or out of memory. (scene_turned.c) */
 surface *reader_revolution(const shape_spec *f);
 
 /* Put an object's shape where `placed` says. False: an error is told, at the node. */
@@ -70,7 +71,8 @@ surface *reader_patches(reader *r, node *at, shape_spec *said);
 /* Triangles from a file. (scene_mesh.c) */
 surface *reader_mesh(reader *r, node *at, shape_spec *said);
 
-/* Where a map or an image lies that says no size: the surface's extent, but of a mesh the square that its texture coordinates are meant for. */
+/* Where a map or an image lies that says no size: the surface's extent, but of a mesh the square that its texture
+ * coordinates are meant for. */
 void reader_extent(const surface *f, const shape_spec *said, double u[2], double w[2]);
 
 /* Whether what lies on (u,w), at the node, has (u,w) to lie on. False: an error is told. */

@@ -1,5 +1,5 @@
-/* Round shapes as sheets, for the true displacement of what a transform stretches one way more than another: no foot is known on an
- * ellipsoid, but a sheet needs none. Q = rho(w) (cos u X + sin u Z) + y(w) Y, about the origin.
+/* Round shapes as sheets, for the true displacement of what a transform stretches one way more than another: no foot is
+ * known on an ellipsoid, but a sheet needs none. Q = rho(w) (cos u X + sin u Z) + y(w) Y, about the origin.
  */
 #include "base/frame.h"
 #include "read/reader.h"
@@ -21,7 +21,8 @@ static const double pi = 3.14159265358979323846;
 static bool outline_of(const shape_spec *f, outline *a)
 {
     const vec3 up = {0, 1, 0}, axis = vec3_sub(f->u, f->a);
-    const double length = vec3_length(axis), slope = f->radius[0] - f->radius[1], side = sqrt(length * length + slope * slope);
+    const double length = vec3_length(axis), slope = f->radius[0] - f->radius[1],
+                 side = sqrt(length * length + slope * slope);
     switch (f->kind) {
     case SHAPE_SPHERE:
         *a = (outline){.kind = "sphere", .axes = frame_about(up), .w = {0, pi}};

@@ -135,10 +135,15 @@ static void read_camera(reader *r)
     good = reader_vector(r, at, "from", "the eye's place [x, y, z]", &from) && good;
     good = reader_vector(r, at, "at", "the place looked at [x, y, z]", &to) && good;
     good = reader_vector(r, at, "up", "a direction [x, y, z]", &up) && good;
-    good = reader_number(r, at, "fov", 0, true, 175, "the horizontal angle in degrees, above 0 and up to 175", &fov) && good;
-    good = reader_number(r, at, "width", SMALL, false, BIG, "the width of an orthographic picture in scene units, from 1e-6 to 1e6", &width) && good;
+    good = reader_number(r, at, "fov", 0, true, 175, "the horizontal angle in degrees, above 0 and up to 175", &fov) &&
+           good;
+    good = reader_number(r, at, "width", SMALL, false, BIG,
+                         "the width of an orthographic picture in scene units, from 1e-6 to 1e6", &width) &&
+           good;
     if (across && yaml_get(at, "fov"))
-        good = yaml_error(r->y, across, "both 'width' and 'fov', expected the one for an orthographic camera or the other for a pinhole");
+        good = yaml_error(
+            r->y, across,
+            "both 'width' and 'fov', expected the one for an orthographic camera or the other for a pinhole");
     if (!good)
         return;
     camera *c = &r->s->camera;
@@ -148,9 +153,11 @@ static void read_camera(reader *r)
         yaml_error(r->y, yaml_get(at, "at"), "the camera looks at its own place, expected 'at' apart from 'from'");
     else if (vec3_length(up) < SMALL)
         yaml_error(r->y, yaml_get(at, "up"), "no direction, expected a vector with a length");
-    else if (across ? !camera_orthographic(c, from, to, up, width, columns, rows) : !camera_look(c, from, to, up, fov, columns, rows))
+    else if (across ? !camera_orthographic(c, from, to, up, width, columns, rows)
+                    : !camera_look(c, from, to, up, fov, columns, rows))
         yaml_error(r->y, yaml_get(at, "up") ? yaml_get(at, "up") : at,
-                   "'up' is along the view, expected a direction across it%s", yaml_get(at, "up") ? "" : " (it is [0, 1, 0])");
+                   "'up' is along the view, expected a direction across it%s",
+                   yaml_get(at, "up") ? "" : " (it is [0, 1, 0])");
 }
 
 static void read_render(reader *r)
@@ -174,7 +181,8 @@ static void read_render(reader *r)
         yaml_bool(r->y, k, "true or false", &s->guard);
     if ((k = yaml_get(at, "aa")))
         yaml_whole(r->y, k, 1, SCENE_MAX_AA, "samples along a pixel's side, 1 to 16", &s->aa);
-    reader_number(r, at, "aa_threshold", 0, false, 3, "how much two pixels may differ, red, green and blue together, 0 to 3", &s->aa_threshold);
+    reader_number(r, at, "aa_threshold", 0, false, 3,
+                  "how much two pixels may differ, red, green and blue together, 0 to 3", &s->aa_threshold);
     if ((k = yaml_get(at, "depth")))
         yaml_whole(r->y, k, 1, SCENE_MAX_DEPTH, "how many rays follow one another, 1 to 32", &s->depth);
     if ((k = yaml_get(at, "surface")))

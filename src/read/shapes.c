@@ -15,7 +15,8 @@ static surface *read_flat(reader *r, node *at, const char *kind, bool bounded, s
     if (!good)
         return NULL;
     if (vec3_length(U) < SMALL || vec3_length(W) < SMALL) {
-        yaml_error(r->y, yaml_get(at, vec3_length(U) < SMALL ? "u" : "w"), "no direction, expected an edge with a length");
+        yaml_error(r->y, yaml_get(at, vec3_length(U) < SMALL ? "u" : "w"),
+                   "no direction, expected an edge with a length");
         return NULL;
     }
     *said = (shape_spec){.kind = bounded ? SHAPE_RECTANGLE : SHAPE_PLANE, .a = O, .u = U, .w = W};
@@ -26,13 +27,17 @@ static surface *read_flat(reader *r, node *at, const char *kind, bool bounded, s
 }
 
 static surface *read_plane(reader *r, node *at, shape_spec *said) { return read_flat(r, at, "plane", false, said); }
-static surface *read_rectangle(reader *r, node *at, shape_spec *said) { return read_flat(r, at, "rectangle", true, said); }
+static surface *read_rectangle(reader *r, node *at, shape_spec *said)
+{
+    return read_flat(r, at, "rectangle", true, said);
+}
 
 /* A direction, of any length. */
 static bool read_direction(reader *r, node *at, const char *key, const char *what, vec3 *v)
 {
     return reader_vector(r, at, key, what, v) &&
-           (vec3_length(*v) >= SMALL || yaml_error(r->y, yaml_get(at, key), "no direction, expected a vector with a length"));
+           (vec3_length(*v) >= SMALL ||
+            yaml_error(r->y, yaml_get(at, key), "no direction, expected a vector with a length"));
 }
 
 static surface *read_disc(reader *r, node *at, shape_spec *said)
@@ -41,7 +46,8 @@ static surface *read_disc(reader *r, node *at, shape_spec *said)
     double radius = 1;
     if (!yaml_map(r->y, at, "disc", "center normal radius"))
         return NULL;
-    bool good = yaml_need(r->y, at, "center", "disc") && yaml_need(r->y, at, "normal", "disc") && yaml_need(r->y, at, "radius", "disc");
+    bool good = yaml_need(r->y, at, "center", "disc") && yaml_need(r->y, at, "normal", "disc") &&
+                yaml_need(r->y, at, "radius", "disc");
     good = reader_vector(r, at, "center", "a place [x, y, z]", &c) && good;
     good = read_direction(r, at, "normal", "the direction of n, [x, y, z]", &normal) && good;
     good = reader_number(r, at, "radius", SMALL, false, BIG, LENGTH, &radius) && good;
@@ -60,7 +66,8 @@ static surface *read_box(reader *r, node *at, shape_spec *said)
     *said = (shape_spec){.kind = SHAPE_BOX, .a = from, .u = to};
     surface *f = good ? box_new(from, to) : NULL;
     if (good && !f)
-        yaml_error(r->y, yaml_get(at, "to"), "a box without thickness, expected 'to' apart from 'from' along x, y and z");
+        yaml_error(r->y, yaml_get(at, "to"),
+                   "a box without thickness, expected 'to' apart from 'from' along x, y and z");
     return f;
 }
 
@@ -140,9 +147,10 @@ static const struct {
     const char *kind;
     surface *(*read)(reader *r, node *at, shape_spec *said);
 } shapes[] = {
-    {"plane", read_plane},   {"rectangle", read_rectangle}, {"disc", read_disc}, {"box", read_box},
-    {"sphere", read_sphere}, {"cylinder", read_cylinder},   {"cone", read_cone}, {"torus", read_torus},
-    {"parametric", reader_parametric}, {"patches", reader_patches}, {"mesh", reader_mesh},
+    {"plane", read_plane},       {"rectangle", read_rectangle}, {"disc", read_disc},
+    {"box", read_box},           {"sphere", read_sphere},       {"cylinder", read_cylinder},
+    {"cone", read_cone},         {"torus", read_torus},         {"parametric", reader_parametric},
+    {"patches", reader_patches}, {"mesh", reader_mesh},
 };
 enum { SHAPES = sizeof shapes / sizeof *shapes };
 
@@ -172,6 +180,7 @@ bool reader_no_shape(reader *r, node *at)
 {
     for (int k = 0; k < SHAPES; k++)
         if (yaml_get(at, shapes[k].kind))
-            return yaml_error(r->y, yaml_get(at, shapes[k].kind), "a shape, '%s', beside 'copy', expected one of them", shapes[k].kind);
+            return yaml_error(r->y, yaml_get(at, shapes[k].kind), "a shape, '%s', beside 'copy', expected one of them",
+                              shapes[k].kind);
     return true;
 }

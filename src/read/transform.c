@@ -11,7 +11,8 @@
 /* Cosine and sine of an angle in degrees, exact for right angles. */
 static void circle(double degrees, double *c, double *s)
 {
-    const double quarter = km_floor(degrees / 90 + 0.5), rest = (degrees - 90 * quarter) * (3.14159265358979323846 / 180);
+    const double quarter = km_floor(degrees / 90 + 0.5),
+                 rest = (degrees - 90 * quarter) * (3.14159265358979323846 / 180);
     const int k = (int)(quarter - 4 * km_floor(quarter / 4));
     const double x = km_cos(rest), y = km_sin(rest);
     *c = k == 0 ? x : k == 1 ? -y : k == 2 ? -x : y;
@@ -53,7 +54,8 @@ static bool scale(reader *r, node *at, affine *m)
         return false;
     for (int k = 0; k < (three ? 3 : 1); k++)
         if (fabs(v[k]) < SMALL)
-            return yaml_error(r->y, three ? yaml_item(at, k) : at, "a scale of %g leaves nothing, expected " SCALE, v[k]);
+            return yaml_error(r->y, three ? yaml_item(at, k) : at, "a scale of %g leaves nothing, expected " SCALE,
+                              v[k]);
     if (!three)
         v[1] = v[2] = v[0];
     *m = (affine){{v[0], 0, 0}, {0, v[1], 0}, {0, 0, v[2]}, {0, 0, 0}};
@@ -129,7 +131,8 @@ static bool is_sized(const surface *f, double *wrong)
         f->ops->extent(f, part, U, W);
         if (!(U[0] < U[1])) /* a cap of a cone that ends in a point */
             continue;
-        const real u = U[1] < HUGE_VAL ? (real)(0.5 * (U[0] + U[1])) : 0, w = W[1] < HUGE_VAL ? (real)(0.5 * (W[0] + W[1])) : 0;
+        const real u = U[1] < HUGE_VAL ? (real)(0.5 * (U[0] + U[1])) : 0,
+                   w = W[1] < HUGE_VAL ? (real)(0.5 * (W[0] + W[1])) : 0;
         f->ops->eval(f, 1, &part, &u, &w, 1, &q);
         const double l[2] = {length(&q.Qu), length(&q.Qw)};
         for (int k = 0; k < 2; k++)
@@ -141,8 +144,8 @@ static bool is_sized(const surface *f, double *wrong)
     return true;
 }
 
-/* The shape about the origin, and where its middle is said to be. So its own space is never far from where it is, which float would
- * not bear, however far the transform brings it. NULL: out of memory. */
+/* The shape about the origin, and where its middle is said to be. So its own space is never far from where it is, which
+ * float would not bear, however far the transform brings it. NULL: out of memory. */
 static surface *centred(const shape_spec *f, vec3 *middle)
 {
     const bool two = f->kind == SHAPE_BOX || f->kind == SHAPE_CYLINDER || f->kind == SHAPE_CONE;
@@ -181,7 +184,8 @@ static surface *image_of(const reader *r, object *o, const surface *from, const 
         return mesh_moved(from, m);
     if (truth && o->shape_spec.kind == SHAPE_PATCH)
         return patch_surface_affine(from, m);
-    surface *f = surface_transformed(from, m), *turned = f && truth && !f->ops->foot ? reader_revolution(&o->shape_spec) : NULL;
+    surface *f = surface_transformed(from, m),
+            *turned = f && truth && !f->ops->foot ? reader_revolution(&o->shape_spec) : NULL;
     if (!turned)
         return f;
     surface_free(f);
@@ -214,7 +218,8 @@ bool reader_place(reader *r, node *at, object *o)
     if (!(far <= BIG))
         return yaml_error(r->y, at, "it goes %.4g scene units away, expected 1000000 at most", far);
     if (!(there * here <= STRETCH * STRETCH))
-        return yaml_error(r->y, at, "one way is stretched more than %g times as much as another, expected less", STRETCH);
+        return yaml_error(r->y, at, "one way is stretched more than %g times as much as another, expected less",
+                          STRETCH);
     whole = affine_then(&whole, m);
     surface *f = from ? image_of(r, o, from, &whole) : NULL;
     if (!f)

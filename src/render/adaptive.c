@@ -19,8 +19,9 @@ typedef struct display {
 static uint16_t *row(const display *d, int plane, int y) { return d->code[plane] + (size_t)y * (size_t)d->width; }
 
 /* Mark the n pixels of a row that differ from those of another. */
-STAGE static void mark(int n, int limit, const uint16_t *restrict r, const uint16_t *restrict g, const uint16_t *restrict b,
-                       const uint16_t *restrict r2, const uint16_t *restrict g2, const uint16_t *restrict b2, unsigned char *restrict out)
+STAGE static void mark(int n, int limit, const uint16_t *restrict r, const uint16_t *restrict g,
+                       const uint16_t *restrict b, const uint16_t *restrict r2, const uint16_t *restrict g2,
+                       const uint16_t *restrict b2, unsigned char *restrict out)
 {
     for (int x = 0; x < n; x++) {
         int dr = r[x] - r2[x], dg = g[x] - g2[x], db = b[x] - b2[x];
@@ -33,7 +34,8 @@ STAGE static void mark(int n, int limit, const uint16_t *restrict r, const uint1
 static void compare(const display *d, int n, int limit, int x, int y, int x2, int y2, unsigned char *out)
 {
     if (n > 0 && y2 >= 0 && y2 < d->height)
-        mark(n, limit, row(d, 0, y) + x, row(d, 1, y) + x, row(d, 2, y) + x, row(d, 0, y2) + x2, row(d, 1, y2) + x2, row(d, 2, y2) + x2, out);
+        mark(n, limit, row(d, 0, y) + x, row(d, 1, y) + x, row(d, 2, y) + x, row(d, 0, y2) + x2, row(d, 1, y2) + x2,
+             row(d, 2, y2) + x2, out);
 }
 
 /* A row of `part` against its neighbours; left, right: whether the film goes on there. */
@@ -69,7 +71,8 @@ unsigned char *adaptive_find(const film *f, window part, double threshold, int t
                 srgb_encode(curve, d.width, f->plane[FILM_R + k] + (size_t)y * (size_t)d.width, row(&d, k, y));
 #pragma omp parallel for num_threads(threads) schedule(static)
         for (int y = 0; y < height; y++)
-            mark_row(&d, part.x0 - f->part.x0, y + part.y0 - f->part.y0, width, limit, found + (size_t)y * (size_t)width);
+            mark_row(&d, part.x0 - f->part.x0, y + part.y0 - f->part.y0, width, limit,
+                     found + (size_t)y * (size_t)width);
     } else {
         free(found);
         found = NULL;

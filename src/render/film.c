@@ -58,7 +58,8 @@ void film_copy(film *f, const film *from)
     for (int k = 0; k < f->planes; k++)
         for (int y = w.y0; y < w.y1; y++)
             memcpy(f->plane[k] + (size_t)(y - w.y0) * width,
-                   from->plane[k] + (size_t)(y - from->part.y0) * stride + (size_t)(w.x0 - from->part.x0), width * sizeof **f->plane);
+                   from->plane[k] + (size_t)(y - from->part.y0) * stride + (size_t)(w.x0 - from->part.x0),
+                   width * sizeof **f->plane);
 }
 
 void film_free(film *f)

@@ -17,8 +17,8 @@ STAGE static void aim_at_place(hit_group *restrict g, const light *l, int shifte
     }
 }
 
-/* Up to the light's plane. Beyond it there is light and no shadow, as in POV-Ray: a segment too short to meet a thing, which still
- * has its direction. */
+/* Up to the light's plane. Beyond it there is light and no shadow, as in POV-Ray: a segment too short to meet a thing,
+ * which still has its direction. */
 STAGE static void aim_along(hit_group *restrict g, const light *l, int shifted)
 {
     const real lx = (real)l->at.x, ly = (real)l->at.y, lz = (real)l->at.z;
@@ -39,8 +39,8 @@ void light_aim(const light *l, hit_group *g, bool shifted)
 
 /* ---- areas ---- */
 
-/* The share of sample i of those from `first` to `last`, as POV-Ray halves a row of them again and again, where a sample in the
- * middle belongs to both halves. 2, 4, 8 ... samples are equal. */
+/* The share of sample i of those from `first` to `last`, as POV-Ray halves a row of them again and again, where a
+ * sample in the middle belongs to both halves. 2, 4, 8 ... samples are equal. */
 static double share_of(int i, int first, int last)
 {
     if (i < first || i > last)
@@ -58,7 +58,8 @@ light light_sample(const light *l, int k, real *share)
 {
     const int i = k % l->samples[0], j = k / l->samples[0];
     light one = *l;
-    one.at = vec3_add(one.at, vec3_add(vec3_scale(l->u, along_side(i, l->samples[0])), vec3_scale(l->w, along_side(j, l->samples[1]))));
+    one.at = vec3_add(one.at, vec3_add(vec3_scale(l->u, along_side(i, l->samples[0])),
+                                       vec3_scale(l->w, along_side(j, l->samples[1]))));
     *share = (real)(share_of(i, 0, l->samples[0] - 1) * share_of(j, 0, l->samples[1] - 1));
     return one;
 }
@@ -111,7 +112,8 @@ STAGE static void place(const hit_group *restrict g, const light *l, double *res
 }
 
 /* cos^tightness, and a cubic from `falloff` (0) to `radius` (1). */
-STAGE static void spot(int n, double outer, double inner, double tightness, const double *restrict cosine, double *restrict share)
+STAGE static void spot(int n, double outer, double inner, double tightness, const double *restrict cosine,
+                       double *restrict share)
 {
     const double width = inner > outer ? inner - outer : 1e-300;
     for (int i = 0; i < n; i++) {

@@ -62,7 +62,8 @@ typedef struct tile {
 } tile;
 
 /* base + x right + y up, x and y in -1..1 from the left and from the bottom. */
-STAGE static void over_image(const camera *c, vec3 base, int n, const real *restrict x, const real *restrict y, vec3s *restrict v)
+STAGE static void over_image(const camera *c, vec3 base, int n, const real *restrict x, const real *restrict y,
+                             vec3s *restrict v)
 {
     const real fx = (real)base.x, fy = (real)base.y, fz = (real)base.z;
     const real rx = (real)c->right.x, ry = (real)c->right.y, rz = (real)c->right.z;
@@ -117,8 +118,8 @@ static void tile_rays(const scene *s, const tile *b, int aa, int i, int j, works
 
 /* Put the values of a tile's lanes on a plane, or add them to what is there. With a constant width the rows are a few
  * vectors; most tiles have it. */
-static inline void lay_rows(float *restrict to, size_t stride, int width, int height, const real *restrict v, float weight,
-                            bool add)
+static inline void lay_rows(float *restrict to, size_t stride, int width, int height, const real *restrict v,
+                            float weight, bool add)
 {
     for (int k = 0; k < height; k++)
         for (int c = 0; c < width; c++) {
@@ -127,7 +128,8 @@ static inline void lay_rows(float *restrict to, size_t stride, int width, int he
         }
 }
 
-STAGE static void lay_first(float *restrict to, size_t stride, int width, int height, const real *restrict v, float weight)
+STAGE static void lay_first(float *restrict to, size_t stride, int width, int height, const real *restrict v,
+                            float weight)
 {
     if (width == TILE)
         lay_rows(to, stride, TILE, height, v, weight, false);
@@ -135,7 +137,8 @@ STAGE static void lay_first(float *restrict to, size_t stride, int width, int he
         lay_rows(to, stride, width, height, v, weight, false);
 }
 
-STAGE static void lay_more(float *restrict to, size_t stride, int width, int height, const real *restrict v, float weight)
+STAGE static void lay_more(float *restrict to, size_t stride, int width, int height, const real *restrict v,
+                           float weight)
 {
     lay_rows(to, stride, width, height, v, weight, true);
 }
@@ -150,8 +153,8 @@ static void lay(film *f, int plane, const tile *b, const real *v, float weight, 
 static void lay_layers(film *f, const tile *b, const workspace *v)
 {
     const samples *o = &v->out;
-    const real *const plane[] = {o->depth, o->position.x, o->position.y, o->position.z, o->normal.x, o->normal.y,
-                                 o->normal.z, o->u, o->w, o->height, o->tau};
+    const real *const plane[] = {o->depth,    o->position.x, o->position.y, o->position.z, o->normal.x, o->normal.y,
+                                 o->normal.z, o->u,          o->w,          o->height,     o->tau};
     for (int k = FILM_Z; k <= FILM_TAU; k++)
         lay(f, k, b, plane[k - FILM_Z], 1, false);
     real order[LANES];
@@ -160,7 +163,8 @@ static void lay_layers(film *f, const tile *b, const workspace *v)
     lay(f, FILM_ORDER, b, order, 1, false);
 }
 
-/* The lines of the picture that a tile will write are far apart and in no cache; ask for them before they are needed. */
+/* The lines of the picture that a tile will write are far apart and in no cache; ask for them before they are needed.
+ */
 static void fetch(const film *f, const tile *b)
 {
 #if defined(__GNUC__)
@@ -227,8 +231,8 @@ static void add_samples(film *f, const selection *p, int each, int first, int n,
     }
 }
 
-/* The marked pixels anew with aa x aa samples each: side by side in waves, pixel by pixel, so that each sums up its samples in the same
- * order as in render_tile, to the same bytes. */
+/* The marked pixels anew with aa x aa samples each: side by side in waves, pixel by pixel, so that each sums up its
+ * samples in the same order as in render_tile, to the same bytes. */
 static void refine_tile(const tracer *k, int aa, const tile *b, const unsigned char *marked, film *f, workspace *v)
 {
     const scene *s = k->scene;
@@ -316,12 +320,12 @@ static bool run(const tracer *k, const render_options *o, pass *p, film *f, stat
     return good || errors_add(e, "out of memory for the threads' waves");
 }
 
-/* One sample a pixel, then more where neighbours differ. Those of the pixels at a crop's edge are beyond it, so the first pass goes a
- * pixel farther: what is in a picture does not depend on the crop. */
+/* One sample a pixel, then more where neighbours differ. Those of the pixels at a crop's edge are beyond it, so the
+ * first pass goes a pixel farther: what is in a picture does not depend on the crop. */
 static bool render_adaptive(const tracer *k, const render_options *o, film *f, stats *sum, errors *e)
 {
-    const window part = f->part, wide = {part.x0 - (part.x0 > 0), part.y0 - (part.y0 > 0), part.x1 + (part.x1 < k->scene->width),
-                                         part.y1 + (part.y1 < k->scene->height)};
+    const window part = f->part, wide = {part.x0 - (part.x0 > 0), part.y0 - (part.y0 > 0),
+                                         part.x1 + (part.x1 < k->scene->width), part.y1 + (part.y1 < k->scene->height)};
     pass first = {1, NULL, 0, tiles(wide) + tiles(part)}, second = {o->aa, NULL, tiles(wide), first.all};
     film *margin = memcmp(&wide, &part, sizeof wide) ? film_new(k->scene, wide, k->layers, e) : f;
     bool good = margin && run(k, o, &first, margin, sum, e);

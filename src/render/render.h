@@ -7,10 +7,11 @@
 #include "render/trace.h"
 
 typedef struct render_options {
-    int aa;      /* aa x aa samples a pixel, */
-    double threshold; /* of those that differ from a neighbour by more than this (contrast.h), and one of the others; < 0: of all */
-    int threads; /* 0: as many as there are processors */
-    bool timing; /* time the stages, in one tile of TIMED_TILES */
+    int aa;           /* aa x aa samples a pixel, */
+    double threshold; /* of those that differ from a neighbour by more than this (contrast.h), and one of the others; <
+                         0: of all */
+    int threads;      /* 0: as many as there are processors */
+    bool timing;      /* time the stages, in one tile of TIMED_TILES */
     /* Called now and then, by one thread at a time, with the tiles that are done. May be NULL. */
     void (*progress)(void *user, long done, long all);
     void *user;

@@ -11,9 +11,9 @@ void secondary_begin(workspace *v) { v->reflected.n = v->refracted.n = v->straig
 
 /* Where a group's rays go on to, and with which share of the light there. */
 typedef struct ways {
-    vec3s mirrored, bent;  /* with the length of s; unit */
-    real ratio[LANES];     /* of the iors before and behind the surface; 1: straight on */
-    int32_t total[LANES];  /* nothing gets through: all is mirrored */
+    vec3s mirrored, bent; /* with the length of s; unit */
+    real ratio[LANES];    /* of the iors before and behind the surface; 1: straight on */
+    int32_t total[LANES]; /* nothing gets through: all is mirrored */
     vec3s through;
 } ways;
 
@@ -25,8 +25,8 @@ static inline bs_vec3 turned_over(bs_vec3 d, bs_vec3 n)
     return x;
 }
 
-/* s mirrored at n'. What goes below the smooth surface then is turned over at it; where n' itself is turned away from the viewer, s is
- * mirrored at the smooth surface. Both as in POV-Ray. */
+/* s mirrored at n'. What goes below the smooth surface then is turned over at it; where n' itself is turned away from
+ * the viewer, s is mirrored at the smooth surface. Both as in POV-Ray. */
 static inline bs_vec3 mirrored(bs_vec3 s, bs_vec3 smooth, bs_vec3 bumped)
 {
     bs_vec3 d = turned_over(s, bumped), again, plain = turned_over(s, smooth);
@@ -47,14 +47,17 @@ STAGE static void mirror(const hit_group *restrict g, ways *restrict y)
         lane_set(&y->mirrored, i, mirrored(lane_get(&g->x.s, i), lane_get(&g->n_smooth, i), lane_get(&g->n_bump, i)));
 }
 
-/* Snell's law with n' on the viewer's side, whichever that is. What stays on the viewer's side of the smooth surface is turned over. */
+/* Snell's law with n' on the viewer's side, whichever that is. What stays on the viewer's side of the smooth surface is
+ * turned over. */
 STAGE static void bend(const hit_group *restrict g, ways *restrict y)
 {
     for (int i = 0; i < g->n; i++) {
         bs_vec3 s = lane_unit(lane_get(&g->x.s, i)), n = lane_get(&g->n_bump, i), smooth = lane_get(&g->n_smooth, i);
-        real ratio = y->ratio[i], c = -bs_dot(s, n), k = 1 + ratio * ratio * (c * c - 1), root = real_sqrt(real_max(k, 0));
+        real ratio = y->ratio[i], c = -bs_dot(s, n), k = 1 + ratio * ratio * (c * c - 1),
+             root = real_sqrt(real_max(k, 0));
         real by = ratio * c - (c < 0 ? -root : root);
-        bs_vec3 d = {ratio * s.x + by * n.x, ratio * s.y + by * n.y, ratio * s.z + by * n.z}, over = turned_over(d, smooth);
+        bs_vec3 d = {ratio * s.x + by * n.x, ratio * s.y + by * n.y, ratio * s.z + by * n.z},
+                over = turned_over(d, smooth);
         int back = bs_dot(s, smooth) * bs_dot(d, smooth) < 0;
         y->bent.x[i] = back ? over.x : d.x;
         y->bent.y[i] = back ? over.y : d.y;
@@ -65,8 +68,9 @@ STAGE static void bend(const hit_group *restrict g, ways *restrict y)
 
 /* ---- what a ray is in ---- */
 
-/* Lane i goes through the surface of object `id`, into it or out of it. Returns the ratio of the iors before and behind. Where things
- * overlap, without the one being in the other, they have the ior of what was entered last, as in POV-Ray. */
+/* Lane i goes through the surface of object `id`, into it or out of it. Returns the ratio of the iors before and
+ * behind. Where things overlap, without the one being in the other, they have the ior of what was entered last, as in
+ * POV-Ray. */
 static double cross(const scene *sc, int id, bool out, media *in, int i)
 {
     const double own = sc->material[sc->object[id].material].ior;
@@ -117,9 +121,10 @@ static bs_vec3 weight_of(vec3 w)
 
 static bool is_zero(bs_vec3 w) { return !(w.x > 0 || w.y > 0 || w.z > 0); }
 
-/* Lane i of the group goes on in direction s. For other things it starts at r + s t0, the shifted place; for its own smooth surface, where it
- * has met that. */
-static void send(const hit_group *g, int i, int id, real t0, bs_vec3 s, bs_vec3 weight, const media *in, int j, ray_queue *b)
+/* Lane i of the group goes on in direction s. For other things it starts at r + s t0, the shifted place; for its own
+ * smooth surface, where it has met that. */
+static void send(const hit_group *g, int i, int id, real t0, bs_vec3 s, bs_vec3 weight, const media *in, int j,
+                 ray_queue *b)
 {
     const int to = b->n++;
     b->lane[to] = hit_group_place(g, i);
@@ -160,7 +165,8 @@ static void send_clear(const tracer *k, int id, workspace *v, ways *y)
     media in;
     for (int i = 0; i < g->n; i++) {
         copy_media(before, hit_group_place(g, i), &in, i);
-        /* what has been entered is left, as in POV-Ray, also through a gap between rough parts; the eye may be in what it has not entered */
+        /* what has been entered is left, as in POV-Ray, also through a gap between rough parts; the eye may be in what
+         * it has not entered */
         bool out = is_in(&in, i, id) || bs_dot(lane_get(&g->x.s, i), lane_get(&g->n_smooth, i)) > 0;
         y->ratio[i] = (real)cross(sc, id, out, &in, i);
     }
@@ -174,7 +180,8 @@ static void send_clear(const tracer *k, int id, workspace *v, ways *y)
         bs_vec3 through = lane_get(&y->through, i);
         const bool total = y->ratio[i] != 1 && y->total[i] && !is_zero(through);
         if (total)
-            send(g, i, id, g->t[i] + g->tau[i], lane_get(&y->mirrored, i), one, before, hit_group_place(g, i), &v->refracted);
+            send(g, i, id, g->t[i] + g->tau[i], lane_get(&y->mirrored, i), one, before, hit_group_place(g, i),
+                 &v->refracted);
         else if (is_zero(through))
             ;
         else if (y->ratio[i] == 1) /* the same ray: what is before the surface it has passed already */
@@ -182,7 +189,8 @@ static void send_clear(const tracer *k, int id, workspace *v, ways *y)
         else
             send(g, i, id, g->t[i] + g->tau[i], lane_get(&y->bent, i), through, &in, i, &v->refracted);
         if (!total && !is_zero(mirror_weight))
-            send(g, i, id, g->t[i] + g->tau[i], lane_get(&y->mirrored, i), mirror_weight, before, hit_group_place(g, i), &v->reflected);
+            send(g, i, id, g->t[i] + g->tau[i], lane_get(&y->mirrored, i), mirror_weight, before, hit_group_place(g, i),
+                 &v->reflected);
     }
 }
 
@@ -199,7 +207,8 @@ void secondary_send(const tracer *k, int id, workspace *v)
         return;
     }
     for (int i = 0; i < g->n; i++)
-        send(g, i, id, g->t[i] + g->tau[i], lane_get(&y.mirrored, i), weight_of(m->reflection), v->of ? &v->of->in : NULL, hit_group_place(g, i), &v->reflected);
+        send(g, i, id, g->t[i] + g->tau[i], lane_get(&y.mirrored, i), weight_of(m->reflection),
+             v->of ? &v->of->in : NULL, hit_group_place(g, i), &v->reflected);
 }
 
 /* ---- following ---- */
@@ -230,8 +239,8 @@ static void go_on(const ray_queue *on, ray_queue *b)
     memcpy(&b->weight, &weight, sizeof weight);
 }
 
-/* Trace a wave that `left` more may follow. A ray that goes straight on through a surface is none more, as in POV-Ray; so it is
- * traced in the same workspace, in a loop. */
+/* Trace a wave that `left` more may follow. A ray that goes straight on through a surface is none more, as in POV-Ray;
+ * so it is traced in the same workspace, in a loop. */
 static void follow(const tracer *k, ray_queue *b, int left, workspace *v)
 {
     workspace *d = v->deeper;

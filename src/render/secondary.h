@@ -1,6 +1,7 @@
-/* Secondary rays: mirrored, refracted, and straight on through what does not refract. Those of a wave's lanes are gathered, side by side,
- * in waves of their own, that are traced as the camera's are, in the next workspace; so waves are full where their
- * parents' groups are not. How far this goes is bounded, and so is the memory, which each thread has from the start.
+/* Secondary rays: mirrored, refracted, and straight on through what does not refract. Those of a wave's lanes are
+ * gathered, side by side, in waves of their own, that are traced as the camera's are, in the next workspace; so waves
+ * are full where their parents' groups are not. How far this goes is bounded, and so is the memory, which each thread
+ * has from the start.
  */
 #ifndef KAGE_RENDER_SECONDARY_H
 #define KAGE_RENDER_SECONDARY_H

@@ -22,7 +22,8 @@ void shade_ambient(hit_group *g, const material *m)
     vec3s_fill(&g->rgb, g->n, (real)(share * m->color.x), (real)(share * m->color.y), (real)(share * m->color.z));
 }
 
-/* The way from p to a light: at - near p. A parallel light has it without p. Constant in each stage, so that it costs nothing. */
+/* The way from p to a light: at - near p. A parallel light has it without p. Constant in each stage, so that it costs
+ * nothing. */
 typedef struct way {
     bs_vec3 at;
     real near;
@@ -40,8 +41,8 @@ static inline way way_against(const light *l)
     return x;
 }
 
-/* The place of a light against a lane: L, the unit vector to it, and n' on the viewer's side. Returns g->lit, or 0 where
- * the smooth surface lies between the light and the viewer. */
+/* The place of a light against a lane: L, the unit vector to it, and n' on the viewer's side. Returns g->lit, or 0
+ * where the smooth surface lies between the light and the viewer. */
 static inline real facing(const hit_group *g, int i, way to, bs_vec3 *L, bs_vec3 *n)
 {
     bs_vec3 p = lane_at(&g->x, i, g->t[i]);
@@ -56,9 +57,10 @@ static inline real facing(const hit_group *g, int i, way to, bs_vec3 *L, bs_vec3
     return side * bs_dot(smooth, d) > 0 ? lit : 0;
 }
 
-/* Call it with constants: a choice in the loop would keep it from being vectorised. `own`: times a colour for each lane, which with a
- * pattern is all, as the material's own is 1 then. */
-static inline void diffuse(hit_group *restrict g, const material *m, const light *l, const way to, bool own, const vec3s *color)
+/* Call it with constants: a choice in the loop would keep it from being vectorised. `own`: times a colour for each
+ * lane, which with a pattern is all, as the material's own is 1 then. */
+static inline void diffuse(hit_group *restrict g, const material *m, const light *l, const way to, bool own,
+                           const vec3s *color)
 {
     const double share = m->diffuse * material_opacity(m);
     const real kr = (real)(share * m->color.x * l->color.x), kg = (real)(share * m->color.y * l->color.y),
@@ -73,9 +75,18 @@ static inline void diffuse(hit_group *restrict g, const material *m, const light
     }
 }
 
-STAGE static void diffuse_to(hit_group *g, const material *m, const light *l) { diffuse(g, m, l, way_to(l), false, NULL); }
-STAGE static void diffuse_against(hit_group *g, const material *m, const light *l) { diffuse(g, m, l, way_against(l), false, NULL); }
-STAGE static void diffuse_color_to(hit_group *g, const material *m, const light *l, const vec3s *c) { diffuse(g, m, l, way_to(l), true, c); }
+STAGE static void diffuse_to(hit_group *g, const material *m, const light *l)
+{
+    diffuse(g, m, l, way_to(l), false, NULL);
+}
+STAGE static void diffuse_against(hit_group *g, const material *m, const light *l)
+{
+    diffuse(g, m, l, way_against(l), false, NULL);
+}
+STAGE static void diffuse_color_to(hit_group *g, const material *m, const light *l, const vec3s *c)
+{
+    diffuse(g, m, l, way_to(l), true, c);
+}
 STAGE static void diffuse_color_against(hit_group *g, const material *m, const light *l, const vec3s *c)
 {
     diffuse(g, m, l, way_against(l), true, c);
@@ -116,11 +127,14 @@ static inline void phong(const hit_group *restrict g, const way to, double *rest
 }
 
 STAGE static void phong_to(const hit_group *g, const light *l, double *c, real *lit) { phong(g, way_to(l), c, lit); }
-STAGE static void phong_against(const hit_group *g, const light *l, double *c, real *lit) { phong(g, way_against(l), c, lit); }
+STAGE static void phong_against(const hit_group *g, const light *l, double *c, real *lit)
+{
+    phong(g, way_against(l), c, lit);
+}
 
 /* Blinn's: the half-way vector between light and viewer, h = L - s, against the normal. |h|^2 = 2 - 2 s.L and
- * n.h = n.L - n.s have no digits left where L is near s: the light is behind the surface. There they come from h itself,
- * so that c is a cosine, no more than 1, and its power stays finite. */
+ * n.h = n.L - n.s have no digits left where L is near s: the light is behind the surface. There they come from h
+ * itself, so that c is a cosine, no more than 1, and its power stays finite. */
 static inline void blinn(const hit_group *restrict g, const way to, double *restrict c, real *restrict lit)
 {
     for (int i = 0; i < g->n; i++) {
@@ -137,7 +151,10 @@ static inline void blinn(const hit_group *restrict g, const way to, double *rest
 }
 
 STAGE static void blinn_to(const hit_group *g, const light *l, double *c, real *lit) { blinn(g, way_to(l), c, lit); }
-STAGE static void blinn_against(const hit_group *g, const light *l, double *c, real *lit) { blinn(g, way_against(l), c, lit); }
+STAGE static void blinn_against(const hit_group *g, const light *l, double *c, real *lit)
+{
+    blinn(g, way_against(l), c, lit);
+}
 
 /* c to a power, in a loop of its own: mixed with float it would not be vectorised. log 0 is -inf, and its exp 0. */
 STAGE static void raise(int n, double *c, double power)
@@ -146,7 +163,8 @@ STAGE static void raise(int n, double *c, double power)
         c[i] = km_exp(power * km_log(c[i]));
 }
 
-STAGE static void highlight_plain(hit_group *restrict g, real kr, real kg, real kb, const double *restrict c, const real *restrict lit)
+STAGE static void highlight_plain(hit_group *restrict g, real kr, real kg, real kb, const double *restrict c,
+                                  const real *restrict lit)
 {
     for (int i = 0; i < g->n; i++) {
         real x = lit[i] * (real)c[i];
@@ -156,7 +174,8 @@ STAGE static void highlight_plain(hit_group *restrict g, real kr, real kg, real 
     }
 }
 
-STAGE static void highlight_tinted(hit_group *restrict g, real kr, real kg, real kb, const double *restrict c, const real *restrict lit)
+STAGE static void highlight_tinted(hit_group *restrict g, real kr, real kg, real kb, const double *restrict c,
+                                   const real *restrict lit)
 {
     for (int i = 0; i < g->n; i++) {
         real x = lit[i] * (real)c[i];
@@ -168,8 +187,8 @@ STAGE static void highlight_tinted(hit_group *restrict g, real kr, real kg, real
 
 static void add_highlight(hit_group *g, const light *l, bool tinted, double share, const double *c, const real *lit)
 {
-    (tinted ? highlight_tinted : highlight_plain)(g, (real)(share * l->color.x), (real)(share * l->color.y), (real)(share * l->color.z),
-                                                  c, lit);
+    (tinted ? highlight_tinted : highlight_plain)(g, (real)(share * l->color.x), (real)(share * l->color.y),
+                                                  (real)(share * l->color.z), c, lit);
 }
 
 void shade_light(hit_group *g, const material *m, const light *l, bool tinted)

@@ -23,17 +23,16 @@ enum stage {
 };
 extern const char *const stage_names[STAGES];
 
-
 /* The parts of one thread are added up in the end. */
 typedef struct stats {
-    long rays, shadow_rays, evaluations;       /* camera rays, shadow rays, looks at a P but for those in searches */
-    long secondary_rays;                   /* reflected, refracted, straight through */
-    long orders[ORDER_CODES];              /* bumped samples by the order really used, from none on */
-    displaced_counts displaced;             /* searches of true hits */
-    long bumped, fell_back;                /* bumped samples, and those among them with another order than asked for */
-    double seconds[STAGES];                /* in the tiles that were timed */
-    bool timing;                           /* this tile is */
-    double clock;                          /* when the last stage ended */
+    long rays, shadow_rays, evaluations; /* camera rays, shadow rays, looks at a P but for those in searches */
+    long secondary_rays;                 /* reflected, refracted, straight through */
+    long orders[ORDER_CODES];            /* bumped samples by the order really used, from none on */
+    displaced_counts displaced;          /* searches of true hits */
+    long bumped, fell_back;              /* bumped samples, and those among them with another order than asked for */
+    double seconds[STAGES];              /* in the tiles that were timed */
+    bool timing;                         /* this tile is */
+    double clock;                        /* when the last stage ended */
 } stats;
 
 /* A stage has ended: what has passed since the last call is its time. */

@@ -4,7 +4,8 @@
  *     Q and its partials -> P and its partials -> n' -> the shift tau (none, 0, 1, 2 ...)
  *     -> shadow rays from r + s t0 -> light at Q with n'
  *
- * Where the surface mirrors or lets light through, further waves go on from r + s t0 by n' (secondary.h), and come the same way.
+ * Where the surface mirrors or lets light through, further waves go on from r + s t0 by n' (secondary.h), and come the
+ * same way.
  *
  * For comparison, rough surfaces can be met where they really are (displace.h) in place of the smooth ones.
  */
@@ -24,7 +25,8 @@
 /* Whether an object is taken for its displaced surface. */
 static bool is_rough(const tracer *k, const object *o) { return k->displaced && o->bump; }
 
-/* A rough surface that is turned away from the light is dark; from where it is not, the way to the light is searched. */
+/* A rough surface that is turned away from the light is dark; from where it is not, the way to the light is searched.
+ */
 static void shadow_turned(const light *l, hit_group *g)
 {
     light_aim(l, g, false);
@@ -98,8 +100,8 @@ static int32_t next_object(const scene *s, const candidates *m, int32_t after)
 }
 
 /* Which lanes of object `id` a light of one place shines on. The segments to it are r + s t, 0 < t < 1, from
- *     the smooth hit p1                 for the receiver's own smooth surface, which is left out at t = 0 by its own methods, and
- *     the shifted hit r + s (t_hit+tau) for every other object. */
+ *     the smooth hit p1                 for the receiver's own smooth surface, which is left out at t = 0 by its own
+ * methods, and the shifted hit r + s (t_hit+tau) for every other object. */
 static void shadow_one(const tracer *k, int id, const light *l, hit_group *g, candidates *m, stats *st)
 {
     const scene *sc = k->scene;
@@ -219,7 +221,8 @@ void trace_hit(const tracer *k, int32_t id, int n, const rays *x, const ray_orig
 }
 
 /* The same for some of the rays. */
-static void hit_some(const tracer *k, int32_t id, int n, const int32_t *lane, const rays *x, const ray_origins *from, hits *h, stats *st)
+static void hit_some(const tracer *k, int32_t id, int n, const int32_t *lane, const rays *x, const ray_origins *from,
+                     hits *h, stats *st)
 {
     rays y;
     ray_origins begin;

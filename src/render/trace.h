@@ -34,11 +34,12 @@ typedef struct workspace {
     samples out;
     real (*visibility)[LANES]; /* for each light of the scene */
     stats stats;
-    struct candidates *candidates; /* of a scene with many objects (crowd.h); else NULL; shared by the chain of workspaces */
+    struct candidates
+        *candidates; /* of a scene with many objects (crowd.h); else NULL; shared by the chain of workspaces */
 
     /* secondary rays (secondary.h) */
     const ray_queue *of; /* what the rays x are; NULL: the camera's */
-    int left;         /* how many rays may still follow these */
+    int left;            /* how many rays may still follow these */
     ray_queue reflected, refracted, straight;
     struct workspace *deeper; /* for the waves that follow this one; NULL: none does */
 } workspace;
@@ -55,7 +56,8 @@ int32_t trace_nearest(const tracer *k, int n, workspace *v);
  * for those who look at the steps (kage pixel, kage check). */
 void trace_group(const tracer *k, int id, workspace *v);
 
-/* The nearest hits with object `id`, smooth or rough as it is taken, into h. from: of rays that have left a surface, or NULL. */
+/* The nearest hits with object `id`, smooth or rough as it is taken, into h. from: of rays that have left a surface, or
+ * NULL. */
 void trace_hit(const tracer *k, int32_t id, int n, const rays *x, const ray_origins *from, hits *h, stats *st);
 
 #endif

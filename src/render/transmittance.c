@@ -44,7 +44,8 @@ static void cross(int id, bool rough, segments *a)
         if (a->h.id[i] < 0)
             continue;
         const real t = a->h.t[i];
-        bs_vec3 at = lane_at(&a->x, i, t), s = lane_get(&a->x.s, i), rest = {s.x * (1 - t), s.y * (1 - t), s.z * (1 - t)};
+        bs_vec3 at = lane_at(&a->x, i, t), s = lane_get(&a->x.s, i),
+                rest = {s.x * (1 - t), s.y * (1 - t), s.z * (1 - t)};
         a->lane[n] = a->lane[i];
         lane_set(&a->x.r, n, at);
         lane_set(&a->x.s, n, rest);

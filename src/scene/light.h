@@ -17,10 +17,11 @@ typedef struct light {
     vec3 color; /* linear */
     vec3 to;    /* spot and parallel: what it points at, */
     vec3 axis;  /* and the unit vector there */
-    double radius, falloff, tightness; /* spot: full light up to `radius` degrees from the axis, none from `falloff` on */
-    double fade_distance, fade_power;  /* fade_distance 0: its light does not fade */
-    vec3 u, w;                         /* the sides of its area, whose middle is `at`; without one: 0 */
-    int samples[2];                    /* along them; 1 x 1 without an area */
+    double radius, falloff,
+        tightness; /* spot: full light up to `radius` degrees from the axis, none from `falloff` on */
+    double fade_distance, fade_power; /* fade_distance 0: its light does not fade */
+    vec3 u, w;                        /* the sides of its area, whose middle is `at`; without one: 0 */
+    int samples[2];                   /* along them; 1 x 1 without an area */
 } light;
 
 /* The light as its sample k < samples[0] samples[1] has it, at a place of its own, and the share of the sample. */
@@ -30,7 +31,8 @@ light light_sample(const light *l, int k, real *share);
 void light_gather(const hit_group *g, real share, real *sum);
 void light_gather_tint(const hit_group *g, real share, vec3s *sum); /* in its tint */
 
-/* The segments r + s t, 0 < t < 1, from the lanes' smooth hits (or from the shifted ones, r + s (t_hit + tau)) to the light. */
+/* The segments r + s t, 0 < t < 1, from the lanes' smooth hits (or from the shifted ones, r + s (t_hit + tau)) to the
+ * light. */
 void light_aim(const light *l, hit_group *g, bool shifted);
 
 /* g->lit = the share of the light's colour that gets to p1, by direction and distance, of what was lit. */

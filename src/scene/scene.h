@@ -42,12 +42,12 @@ typedef enum pattern { PATTERN_NONE, PATTERN_CHECKER, PATTERN_IMAGE } pattern;
 /* POV-Ray's finish: ambient and diffuse light on the colour, and two kinds of highlight in the light's colour. */
 typedef struct material {
     char *name;
-    vec3 color; /* linear */
-    pattern pattern;      /* none: the colour is the same everywhere; otherwise it is the object's */
-    vec3 field[2];        /* of a checker */
-    map_layout layout;    /* of the checker's fields; of an image the wrap alone, as the rest depends on the surface */
-    texels *texels;       /* of an image, shared by the objects */
-    char *file;           /* the image as the file said it, */
+    vec3 color;        /* linear */
+    pattern pattern;   /* none: the colour is the same everywhere; otherwise it is the object's */
+    vec3 field[2];     /* of a checker */
+    map_layout layout; /* of the checker's fields; of an image the wrap alone, as the rest depends on the surface */
+    texels *texels;    /* of an image, shared by the objects */
+    char *file;        /* the image as the file said it, */
     bool exr, linear, nearest; /* its kind; a PNG taken for linear; without interpolation */
     double ambient, diffuse;
     double phong, phong_size;
@@ -57,10 +57,14 @@ typedef struct material {
     double ior;
 } material;
 
-/* Whether light comes from behind; the share of ambient and diffuse light that is left; whether rays go on from here. */
+/* Whether light comes from behind; the share of ambient and diffuse light that is left; whether rays go on from here.
+ */
 static inline bool material_clear(const material *m) { return m->filter + m->transmit > 0; }
 static inline double material_opacity(const material *m) { return 1 - m->filter - m->transmit; }
-static inline bool material_mirrors(const material *m) { return m->reflection.x + m->reflection.y + m->reflection.z > 0; }
+static inline bool material_mirrors(const material *m)
+{
+    return m->reflection.x + m->reflection.y + m->reflection.z > 0;
+}
 static inline bool material_sends(const material *m) { return material_clear(m) || material_mirrors(m); }
 
 /* What `kage check` says of a map; width 0: none. */
@@ -86,11 +90,11 @@ typedef enum shape_kind {
 
 typedef struct shape_spec {
     shape_kind kind;
-    vec3 a, u, w; /* plane, rectangle: origin, u, w; box: a and u are opposite corners; sphere, disc, torus: a is the centre, u
-                     the normal or axis; cylinder, cone: a and u are the ends */
+    vec3 a, u, w; /* plane, rectangle: origin, u, w; box: a and u are opposite corners; sphere, disc, torus: a is the
+                     centre, u the normal or axis; cylinder, cone: a and u are the ends */
     double radius[2]; /* cylinder, cone: at a, at u; torus: major, minor */
     bool open;
-    char *file; /* mesh: as the file said it, */
+    char *file;    /* mesh: as the file said it, */
     int triangles; /* and what is in it */
     mesh_notes found;
 } shape_spec;
@@ -98,7 +102,8 @@ typedef struct shape_spec {
 /* Whether light that goes through it goes into it. An endless plane has an inside, the side away from n. */
 static inline bool shape_has_inside(const shape_spec *f)
 {
-    return f->kind != SHAPE_RECTANGLE && f->kind != SHAPE_DISC && f->kind != SHAPE_PATCH && f->kind != SHAPE_MESH && !f->open;
+    return f->kind != SHAPE_RECTANGLE && f->kind != SHAPE_DISC && f->kind != SHAPE_PATCH && f->kind != SHAPE_MESH &&
+           !f->open;
 }
 
 /* A bump likewise: a function's text and scale, or where a map's samples lie (how many: map_note). */
@@ -111,24 +116,24 @@ typedef struct bump_spec {
 typedef struct object {
     char *name;
     surface *shape;
-    surface *own;         /* the shape before its transform: the same where it has none */
-    surface *centred;     /* what a moved shape is the image of: the same about the origin */
-    const char *copy_of;  /* the object whose `own` it is; NULL: its own */
-    bool moved;           /* it has a transform, or what it copies has: `placed` */
-    bool shares_bump;     /* bump, the texts of bump_spec and map are another's */
+    surface *own;        /* the shape before its transform: the same where it has none */
+    surface *centred;    /* what a moved shape is the image of: the same about the origin */
+    const char *copy_of; /* the object whose `own` it is; NULL: its own */
+    bool moved;          /* it has a transform, or what it copies has: `placed` */
+    bool shares_bump;    /* bump, the texts of bump_spec and map are another's */
     affine placed;
     shape_spec shape_spec; /* before the transform */
     bump_spec bump_spec;
-    bump *bump; /* NULL: smooth */
-    color_texture *color;          /* NULL: the material's */
+    bump *bump;              /* NULL: smooth */
+    color_texture *color;    /* NULL: the material's */
     map_layout color_layout; /* how its image, or its fields, lie on (u,w) */
     int material;
     map_note map;
 } object;
 
 typedef struct scene {
-    char *path;   /* of the file */
-    char *source; /* its text; with the maps and the --set changes all that the picture is made from */
+    char *path;      /* of the file */
+    char *source;    /* its text; with the maps and the --set changes all that the picture is made from */
     files made_from; /* with the scene's own file */
     int width, height;
     vec3 background;
@@ -158,7 +163,8 @@ static inline bool scene_wants_truth(const scene *s) { return s->displaced || s-
 enum { SCENE_MAX_SIDE = 32768, SCENE_MAX_ITEMS = 4096, SCENE_MAX_AA = 16, SCENE_MAX_DEPTH = 32 };
 
 /* Read the scene in the file at `path`, with `sets` changes of the form PATH=VALUE made to it first. NULL, and every
- * error that can be told at once in *e, as `file:line:col: ...`, the line and a caret. w: sees how large files come in; may be NULL. */
+ * error that can be told at once in *e, as `file:line:col: ...`, the line and a caret. w: sees how large files come in;
+ * may be NULL. */
 scene *scene_read(const char *path, int sets, char *const *set, const progress *w, errors *e);
 
 void scene_free(scene *s);

@@ -15,11 +15,12 @@ typedef struct bump bump;
 typedef struct bump_ops {
     const char *kind; /* as in the scene file: "map" or "function" */
 
-    /* P at (u,w); order 1: also Pu and Pw; order 2: also Puu, Puw and Pww. A stage: n lanes, no allocation, reentrant. */
+    /* P at (u,w); order 1: also Pu and Pw; order 2: also Puu, Puw and Pww. A stage: n lanes, no allocation, reentrant.
+     */
     void (*eval)(const bump *p, int n, const real *u, const real *w, int order, bump_values *h);
 
-    /* P, Pu and Pw at up to EXPR_BATCH places, in double: the rough surface as it is between any two places, so that a map's slopes are
-     * those of its bilinear cells. */
+    /* P, Pu and Pw at up to EXPR_BATCH places, in double: the rough surface as it is between any two places, so that a
+     * map's slopes are those of its bilinear cells. */
     void (*jets)(const bump *p, int n, const double *u, const double *w, expr_jets *out);
 
     /* What these can be over a box of (u,w): Lipschitz bounds, as expr_bound_gradient's. */
@@ -34,16 +35,16 @@ struct bump {
 
     /* Lipschitz constants of P as it is looked up: for any two places on the surface
      *     |P(u,w) - P(u',w')| <= Pu_max |u - u'| + Pw_max |w - w'|
-     * but for the rounding of the two P, and with a map that of the places among its samples. Rounded up; 0 where P does
-     * not depend on the coordinate; infinite where none is known, as with a function that jumps. |Pu| and |Pw| are
+     * but for the rounding of the two P, and with a map that of the places among its samples. Rounded up; 0 where P
+     * does not depend on the coordinate; infinite where none is known, as with a function that jumps. |Pu| and |Pw| are
      * within them, too; a map's are central differences, and can stay far below. */
     real Pu_max, Pw_max;
 };
 
 /* P from samples as the paper has it (section 4.1): partials by central differences at the samples; height and
- * partials interpolated bilinearly. Beyond the outermost samples of a clamped map P is level, and its partials that way are 0.
- * u goes along the rows from left to right, w down the columns. `samples` is only read here. NULL: out of memory, fewer than
- * 2 x 2 samples, or more than 2^29 (a mirrored map counts four times). */
+ * partials interpolated bilinearly. Beyond the outermost samples of a clamped map P is level, and its partials that way
+ * are 0. u goes along the rows from left to right, w down the columns. `samples` is only read here. NULL: out of
+ * memory, fewer than 2 x 2 samples, or more than 2^29 (a mirrored map counts four times). */
 bump *bump_map_new(const image *samples, const map_layout *layout);
 
 /* P = scale f(u,w), with exact partials. Owns f, also on failure. The bounds (Pmin to Pw_max) hold for u and w in

@@ -79,7 +79,10 @@ static void function_free(bump *base)
 
 static const bump_ops function_methods = {"function", function_eval, function_jets, function_bound, function_free};
 
-static double widest(const double range[2], double so_far) { return greater(so_far, greater(fabs(range[0]), fabs(range[1]))); }
+static double widest(const double range[2], double so_far)
+{
+    return greater(so_far, greater(fabs(range[0]), fabs(range[1])));
+}
 
 /* Where part i of n of an extent begins, which is where part i - 1 ends. */
 static double part(const double extent[2], int i, int n)

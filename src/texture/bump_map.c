@@ -1,11 +1,12 @@
 /* P from discrete data, section 4.1 of the paper: "the data of the points next to the intersection ... their
- * differences as approximate derivatives ... where the coordinates are real numbers, the derivatives at the neighbouring
- * points are interpolated bilinearly".
+ * differences as approximate derivatives ... where the coordinates are real numbers, the derivatives at the
+ * neighbouring points are interpolated bilinearly".
  *
- * The central differences are made once, at the samples, and already carry scale and chain rule. Interpolated, they are those of P
- * as it is looked up, a sample's distance to either side: (P(u + du, w) - P(u - du, w))/(2 du). But where a clamped map is level,
- * beyond its outermost samples (with `cells` that is half a cell before its edge), the derivatives that way are 0: a difference
- * would reach back to where it is not. On the outermost sample itself they are the mean of both sides.
+ * The central differences are made once, at the samples, and already carry scale and chain rule. Interpolated, they are
+ * those of P as it is looked up, a sample's distance to either side: (P(u + du, w) - P(u - du, w))/(2 du). But where a
+ * clamped map is level, beyond its outermost samples (with `cells` that is half a cell before its edge), the
+ * derivatives that way are 0: a difference would reach back to where it is not. On the outermost sample itself they are
+ * the mean of both sides.
  */
 #include "texture/bump.h"
 
@@ -82,8 +83,8 @@ static void map_jets(const bump *base, int n, const double *u, const double *w, 
     }
 }
 
-/* The cells that a range of (u,w) comes to along one axis: `first` and how many, wrapped as they are looked up; all of them where they
- * are many, 0 where it may lie beyond an end and P be level there. */
+/* The cells that a range of (u,w) comes to along one axis: `first` and how many, wrapped as they are looked up; all of
+ * them where they are many, 0 where it may lie beyond an end and P be level there. */
 typedef struct cells {
     int first, n;
     bool beyond;
@@ -91,7 +92,8 @@ typedef struct cells {
 
 static cells cells_over(const double x[2], double k, double o, int n, int repeat)
 {
-    const double a = fmin(x[0] * k, x[1] * k) + o, b = fmax(x[0] * k, x[1] * k) + o, air = 1e-12 * (fabs(a) + fabs(b) + fabs(o));
+    const double a = fmin(x[0] * k, x[1] * k) + o, b = fmax(x[0] * k, x[1] * k) + o,
+                 air = 1e-12 * (fabs(a) + fabs(b) + fabs(o));
     double lo = floor(a - air), hi = floor(b + air);
     cells c = {0, n, !repeat && (a - air < 0 || b + air > n)};
     if (!(hi - lo < n) || !(fabs(lo) < 1e9))
@@ -118,7 +120,8 @@ static void map_bound(const bump *base, const double u[2], const double w[2], ex
     const map *m = (const map *)base;
     const table_grid *g = &m->grid;
     const double ku = (double)g->ku, kw = (double)g->kw, Pu = (double)base->Pu_max, Pw = (double)base->Pw_max;
-    const cells c = cells_over(u, ku, (double)g->ou, g->columns, g->repeat), r = cells_over(w, kw, (double)g->ow, g->rows, g->repeat);
+    const cells c = cells_over(u, ku, (double)g->ou, g->columns, g->repeat),
+                r = cells_over(w, kw, (double)g->ow, g->rows, g->repeat);
     *out = (expr_bounds){{(double)base->Pmin, (double)base->Pmax}, {-Pu, Pu}, {-Pw, Pw}};
     if ((double)c.n * r.n > FEW)
         return;
@@ -128,7 +131,8 @@ static void map_bound(const bump *base, const double u[2], const double w[2], ex
             const size_t row = (size_t)((r.first + j) % g->rows), column = (size_t)((c.first + i) % g->columns);
             const real *p = m->table[P_PU_PW] + (row * (size_t)(g->columns + 1) + column) * TABLE_VALUES;
             const real *q = p + (size_t)(g->columns + 1) * TABLE_VALUES;
-            const double p0 = (double)p[0], p1 = (double)p[TABLE_VALUES], q0 = (double)q[0], q1 = (double)q[TABLE_VALUES];
+            const double p0 = (double)p[0], p1 = (double)p[TABLE_VALUES], q0 = (double)q[0],
+                         q1 = (double)q[TABLE_VALUES];
             widen(out->v, fmin(fmin(p0, p1), fmin(q0, q1)));
             widen(out->v, fmax(fmax(p0, p1), fmax(q0, q1)));
             widen(out->u, (p1 - p0) * ku);
@@ -173,7 +177,8 @@ static void map_differences(map *m, const image *s, const map_layout *l, double 
             };
             for (int t = 0; t < TABLES; t++)
                 for (int k = 0; k < TABLE_VALUES; k++)
-                    m->table[t][((size_t)j * (size_t)(m->grid.columns + 1) + (size_t)i) * TABLE_VALUES + (size_t)k] = (real)d[t][k];
+                    m->table[t][((size_t)j * (size_t)(m->grid.columns + 1) + (size_t)i) * TABLE_VALUES + (size_t)k] =
+                        (real)d[t][k];
             m->base.Pmin = real_min((real)z[1][1], m->base.Pmin);
             m->base.Pmax = real_max((real)z[1][1], m->base.Pmax);
         }

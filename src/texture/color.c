@@ -10,7 +10,8 @@ typedef struct checker {
     real ku, kw, ou, ow; /* fields per (u,w), and the place of (u,w) = 0 in them */
 } checker;
 
-STAGE static void checker_eval(const color_texture *base, int n, const real *restrict u, const real *restrict w, vec3s *restrict color)
+STAGE static void checker_eval(const color_texture *base, int n, const real *restrict u, const real *restrict w,
+                               vec3s *restrict color)
 {
     const checker c = *(const checker *)base;
     for (int i = 0; i < n; i++) {
@@ -91,8 +92,8 @@ static void bilinear_eval(const color_texture *base, int n, const real *u, const
     table_three(&p->grid, p->texels->v, n, at, a, b, color->x, color->y, color->z);
 }
 
-/* Each pixel is a cell here, and its colour that of the sample at its upper left corner. Where the table ends, place 1 in the last
- * cell is the last sample. */
+/* Each pixel is a cell here, and its colour that of the sample at its upper left corner. Where the table ends, place 1
+ * in the last cell is the last sample. */
 STAGE static void to_corner(int n, real *restrict a)
 {
     for (int i = 0; i < n; i++)
@@ -110,7 +111,8 @@ static void nearest_eval(const color_texture *base, int n, const real *u, const 
     table_three(&p->grid, p->texels->v, n, at, a, b, color->x, color->y, color->z);
 }
 
-static const color_texture_ops bilinear_methods = {"image", bilinear_eval, NULL}, nearest_methods = {"image", nearest_eval, NULL};
+static const color_texture_ops bilinear_methods = {"image", bilinear_eval, NULL},
+                               nearest_methods = {"image", nearest_eval, NULL};
 
 color_texture *color_image_new(const texels *t, const map_layout *l, bool nearest)
 {

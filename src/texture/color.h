@@ -1,4 +1,5 @@
-/* The colour of a surface where it is not the same everywhere: a function of (u,w). It knows nothing of surfaces or light. */
+/* The colour of a surface where it is not the same everywhere: a function of (u,w). It knows nothing of surfaces or
+ * light. */
 #ifndef KAGE_TEXTURE_COLOR_H
 #define KAGE_TEXTURE_COLOR_H
 
@@ -24,14 +25,16 @@ struct color_texture {
 /* The pixels of an image, ready to be looked up; several pigments can share them. */
 typedef struct texels texels;
 
-/* From an image of four values a pixel; the wrap is the layout's. NULL: out of memory, fewer than 2 x 2 pixels, or more than 2^29. */
+/* From an image of four values a pixel; the wrap is the layout's. NULL: out of memory, fewer than 2 x 2 pixels, or more
+ * than 2^29. */
 texels *texels_new(const image *rgba, const map_layout *l);
 void texels_free(texels *t);
 
 /* Fields of the two colours in turn, of that size, one beginning at `offset`. NULL: out of memory. */
 color_texture *color_checker_new(const vec3 color[2], const double size[2], const double offset[2]);
 
-/* The image on (u,w) by a layout of the same wrap; the nearest pixel, or bilinear between their middles. The texels must outlive it. */
+/* The image on (u,w) by a layout of the same wrap; the nearest pixel, or bilinear between their middles. The texels
+ * must outlive it. */
 color_texture *color_image_new(const texels *t, const map_layout *l, bool nearest);
 
 void color_texture_free(color_texture *p);

@@ -55,7 +55,8 @@ bump *bump_mirrored_uv(bump *p, double lo, double hi)
         bump_free(p);
         return NULL;
     }
-    *f = (folded_perturb){*p, {.kind = p->ops->kind, .eval = perturb_eval, .free = perturb_end}, p, {(real)lo, (real)hi}};
+    *f = (folded_perturb){
+        *p, {.kind = p->ops->kind, .eval = perturb_eval, .free = perturb_end}, p, {(real)lo, (real)hi}};
     f->base.ops = &f->methods;
     return &f->base;
 }

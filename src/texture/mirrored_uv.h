@@ -1,5 +1,5 @@
-/* P and colours on (u,w) of which one part lies mirrored beyond the ends of u, as mesh.h lays what is mirrored: beyond `hi` and below `lo` u goes
- * back again. Their partials by u turn their sign there.
+/* P and colours on (u,w) of which one part lies mirrored beyond the ends of u, as mesh.h lays what is mirrored: beyond
+ * `hi` and below `lo` u goes back again. Their partials by u turn their sign there.
  */
 #ifndef KAGE_TEXTURE_MIRRORED_UV_H
 #define KAGE_TEXTURE_MIRRORED_UV_H

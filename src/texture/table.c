@@ -38,8 +38,8 @@ STAGE static void cells_clamp(const table_grid *t, int n, const real *u, const r
 }
 
 /* One value alone: a gather. */
-STAGE static void map_one(const table_grid *t, const real *restrict v, int n, const int32_t *restrict at, const real *restrict a,
-                          const real *restrict b, real *restrict out)
+STAGE static void map_one(const table_grid *t, const real *restrict v, int n, const int32_t *restrict at,
+                          const real *restrict a, const real *restrict b, real *restrict out)
 {
     const int row = (t->columns + 1) * TABLE_VALUES;
 #pragma omp simd
@@ -68,7 +68,8 @@ STAGE static void map_interpolate(const table_grid *t, const real *restrict v, i
     }
 }
 
-STAGE static void map_turn(int n, const real (*restrict from)[TABLE_VALUES], real *restrict x, real *restrict y, real *restrict z)
+STAGE static void map_turn(int n, const real (*restrict from)[TABLE_VALUES], real *restrict x, real *restrict y,
+                           real *restrict z)
 {
     for (int i = 0; i < n; i++) {
         x[i] = from[i][0];
@@ -87,11 +88,12 @@ void table_one(const table_grid *t, const real *v, int n, const int32_t *at, con
     map_one(t, v, n, at, a, b, x);
 }
 
-void table_three(const table_grid *t, const real *v, int n, const int32_t *at, const real *a, const real *b, real *x, real *y, real *z)
+void table_three(const table_grid *t, const real *v, int n, const int32_t *at, const real *a, const real *b, real *x,
+                 real *y, real *z)
 {
     real out[LANES][TABLE_VALUES];
     map_interpolate(t, v, n, at, a, b, out);
-    map_turn(n, (const real (*)[TABLE_VALUES])out, x, y, z);
+    map_turn(n, (const real(*)[TABLE_VALUES])out, x, y, z);
 }
 
 /* ---- layout ---- */
@@ -137,5 +139,6 @@ bool table_lay(table_grid *t, int width, int height, const map_layout *l)
                       .kw = (real)kw,
                       .ou = (real)(-l->offset[0] * ku - half),
                       .ow = (real)(-l->offset[1] * kw - half)};
-    return width > 1 && height > 1 && (t->columns + 1L) * (t->rows + 1L) <= INT32_MAX / TABLE_VALUES; /* places are counted in 32 bits */
+    return width > 1 && height > 1 &&
+           (t->columns + 1L) * (t->rows + 1L) <= INT32_MAX / TABLE_VALUES; /* places are counted in 32 bits */
 }

@@ -15,7 +15,7 @@ typedef struct hit_group {
 
     /* the smooth hit */
     rays x;
-    real t[LANES]; /* t_hit */
+    real t[LANES];       /* t_hit */
     int32_t part[LANES]; /* of the surface; u and w are its own */
     real u[LANES], w[LANES];
     partials q;

@@ -37,8 +37,8 @@ typedef struct hits {
     int32_t part[LANES]; /* of its surface; told by displaced surfaces and meshes, others find it in `locate` */
 } hits;
 
-/* The starts of rays that leave a surface: the object, the part of its surface, and the place on its smooth shape. There the ray
- * begins for the surface itself, while r is where it begins for all others. */
+/* The starts of rays that leave a surface: the object, the part of its surface, and the place on its smooth shape.
+ * There the ray begins for the surface itself, while r is where it begins for all others. */
 typedef struct ray_origins {
     int32_t id[LANES], part[LANES];
     vec3s at;

@@ -28,10 +28,10 @@ static bool is_text(const char *path, const char *text, size_t n, errors *e)
     for (size_t k = 0; k < n; k++)
         anchors += text[k] == '&';
     if (anchors > MAX_ANCHORS)
-        return errors_add(e, "%s: %d times '&', expected at most %d: kage takes no anchors", path, anchors, MAX_ANCHORS);
+        return errors_add(e, "%s: %d times '&', expected at most %d: kage takes no anchors", path, anchors,
+                          MAX_ANCHORS);
     if (!zero && bad == n)
-        return text[strspn(text, " \t\r\n")] ||
-               errors_add(e, "%s:1:1: an empty file, %s", path, scene_expected);
+        return text[strspn(text, " \t\r\n")] || errors_add(e, "%s:1:1: an empty file, %s", path, scene_expected);
     bad = zero ? (size_t)(zero - text) : bad;
     text_place(text, bad, &line, &column);
     snprintf(message, sizeof message, "the byte 0x%02X, expected a text in UTF-8", (unsigned)(unsigned char)text[bad]);

@@ -12,7 +12,8 @@ struct fy_document;
 typedef struct origin {
     const char *set; /* NULL: the file */
     int start;       /* the column at which the text that libfyaml saw begins in it */
-    bool placed;     /* the node's own place in that text is known: libfyaml can't say it once something in it has changed */
+    bool
+        placed; /* the node's own place in that text is known: libfyaml can't say it once something in it has changed */
     int line, column;
 } origin;
 
@@ -45,8 +46,8 @@ bool yaml_tell(yaml *y, const origin *o, int line, int column, const char *messa
  * Always false. */
 bool yaml_syntax_errors(yaml *y, const origin *o);
 
-/* Make the changes to the document, once it is loaded. What is wrong with one is told, and the next is made. False: out of
- * memory. */
+/* Make the changes to the document, once it is loaded. What is wrong with one is told, and the next is made. False: out
+ * of memory. */
 bool yaml_change(yaml *y, int sets, char *const *set, const char *optional);
 
 #endif

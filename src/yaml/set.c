@@ -1,4 +1,5 @@
-/* --set: changes of the document. What they put in remembers where it came from, so that an error in it shows the setting. */
+/* --set: changes of the document. What they put in remembers where it came from, so that an error in it shows the
+ * setting. */
 #include "yaml/document.h"
 
 #include <libfyaml.h>
@@ -70,7 +71,8 @@ static node *made(yaml *y, const char *set, const char *at, size_t n, bool key)
     *o = (origin){set, key ? 1 : column, key, line, column};
     if (key)
         snprintf(quoted, n + 3, "\"%.*s\"", (int)n, at);
-    node *new = key ? fy_node_build_from_malloc_string(y->doc, quoted, FY_NT) : fy_node_build_from_string(y->doc, at, FY_NT);
+    node *new =
+        key ? fy_node_build_from_malloc_string(y->doc, quoted, FY_NT) : fy_node_build_from_string(y->doc, at, FY_NT);
     if (!new) {
         yaml_syntax_errors(y, o);
         return NULL;
@@ -89,7 +91,8 @@ static bool append(yaml *y, const char *set, const char *at, size_t n, node *map
 
 /* The node that the first n letters of k lead to from a node; NULL where there is none, with an error where it can't be
  * added either. *index: its place in a list, else -1. */
-static bool step(yaml *y, const char *set, const char *k, size_t n, node *at, const char *optional, node **next, int *index)
+static bool step(yaml *y, const char *set, const char *k, size_t n, node *at, const char *optional, node **next,
+                 int *index)
 {
     char key[64], near[64], keys[2048];
     const bool last = k[n] == '=', root = at == fy_document_root(y->doc);
@@ -107,7 +110,8 @@ static bool step(yaml *y, const char *set, const char *k, size_t n, node *at, co
         return true;
     }
     if (!fy_node_is_mapping(at))
-        return set_error(y, set, k, "no '%s' here: what stands before it is a single value, expected a map or a list", key);
+        return set_error(y, set, k, "no '%s' here: what stands before it is a single value, expected a map or a list",
+                         key);
     *next = fy_node_mapping_lookup_by_string(at, key, n);
     if (*next || last)
         return true;
@@ -144,7 +148,8 @@ static bool apply(yaml *y, const char *set, const char *optional)
     for (;; at = next, k += n + 1) {
         n = strcspn(k, ".=");
         if (n == 0 || n >= 60 || strspn(k, NAME_LETTERS) < n)
-            return set_error(y, set, k, "no name here, expected names of letters, digits, _ and - with dots between them");
+            return set_error(y, set, k,
+                             "no name here, expected names of letters, digits, _ and - with dots between them");
         if (!step(y, set, k, n, at, optional, &next, &index))
             return false;
         if (k[n] == '=')

@@ -120,11 +120,17 @@ static size_t escape(const char *s, size_t *made)
     for (size_t k = 0; k < n && s[2 + k]; k++)
         digits[k] = s[2 + k];
     unsigned long code = strtoul(digits, NULL, 16);
-    *made = c == 'N' || c == '_' ? 2 : c == 'L' || c == 'P' ? 3 : code < 0x80 ? 1 : code < 0x800 ? 2 : code < 0x10000 ? 3 : 4;
+    *made = c == 'N' || c == '_'   ? 2
+            : c == 'L' || c == 'P' ? 3
+            : code < 0x80          ? 1
+            : code < 0x800         ? 2
+            : code < 0x10000       ? 3
+                                   : 4;
     return c ? 2 + strlen(digits) : 1;
 }
 
-/* Bytes of a run of blanks and line ends: where it holds a line end it is folded to one blank, or to the empty lines. */
+/* Bytes of a run of blanks and line ends: where it holds a line end it is folded to one blank, or to the empty lines.
+ */
 static size_t fold(const char *s, size_t *made)
 {
     size_t n = strspn(s, " \t"), lines = 0;
@@ -196,7 +202,8 @@ size_t text_offset(const char *text, size_t start, scalar_style style, size_t of
 
 /* ---- words ---- */
 
-/* How many letters must be inserted, left out, replaced or swapped with the next to make a of b; up to 31 letters each. */
+/* How many letters must be inserted, left out, replaced or swapped with the next to make a of b; up to 31 letters each.
+ */
 static int distance(const char *a, size_t n, const char *b, size_t m)
 {
     int row[3][32];

@@ -1,5 +1,5 @@
-/* Places in a text: lines, columns and what an error shows of them; and the word that was meant. Nothing here knows YAML's
- * library. */
+/* Places in a text: lines, columns and what an error shows of them; and the word that was meant. Nothing here knows
+ * YAML's library. */
 #ifndef KAGE_YAML_TEXT_H
 #define KAGE_YAML_TEXT_H
 
@@ -10,15 +10,16 @@
 /* How a scalar is written. */
 typedef enum scalar_style { SCALAR_PLAIN, SCALAR_SINGLE, SCALAR_DOUBLE, SCALAR_LITERAL, SCALAR_FOLDED } scalar_style;
 
-/* Where in the text the byte `offset` of a scalar's value is written. `start`: where the scalar's own text begins, behind
- * an opening quote, at the first line of a block. Undoes escapes, doubled quotes, folded lines and indentation. */
+/* Where in the text the byte `offset` of a scalar's value is written. `start`: where the scalar's own text begins,
+ * behind an opening quote, at the first line of a block. Undoes escapes, doubled quotes, folded lines and indentation.
+ */
 size_t text_offset(const char *text, size_t start, scalar_style style, size_t offset);
 
 /* Line and column, from 1, of a byte of the text. A column is a character (UTF-8); \n, \r\n and \r end a line. */
 void text_place(const char *text, size_t at, int *line, int *column);
 
-/* Add the message with its place, the line (of a very long one the part around the column) and a caret. Control characters
- * become '?': a scene must not steer the terminal. Always false. */
+/* Add the message with its place, the line (of a very long one the part around the column) and a caret. Control
+ * characters become '?': a scene must not steer the terminal. Always false. */
 bool text_error(errors *e, const char *name, const char *text, int line, int column, const char *message);
 
 /* The first byte that is no UTF-8, or `size`. */

@@ -46,7 +46,8 @@ bool yaml_map(yaml *y, node *at, const char *what, const char *keys)
         if (k >= 0)
             good = yaml_error(y, key, "a second '%s' in %s, expected one", text, what);
         else if (!text)
-            good = yaml_error(y, key ? key : at, "%s as a key, expected one of: %s", key ? kind_of(key) : "nothing", keys);
+            good =
+                yaml_error(y, key ? key : at, "%s as a key, expected one of: %s", key ? kind_of(key) : "nothing", keys);
         else if (*near)
             good = yaml_error(y, key, "%s has no '%.60s', did you mean '%s'?", what, text, near);
         else
@@ -129,7 +130,8 @@ bool yaml_number(yaml *y, node *at, double lo, bool open, double hi, const char 
         return yaml_error(y, at, "%s%.60s%s, expected %s", text && *text ? "'" : "", text && *text ? text : "nothing",
                           text && *text ? "' is no number" : " here", what);
     if (v < lo || v > hi)
-        return yaml_error(y, at, "%.60s is %s than %.7g, expected %s", text, v < lo ? "less" : "more", v < lo ? lo : hi, what);
+        return yaml_error(y, at, "%.60s is %s than %.7g, expected %s", text, v < lo ? "less" : "more", v < lo ? lo : hi,
+                          what);
     if (open && v <= lo)
         return yaml_error(y, at, "%.60s is too small, expected %s", text, what);
     *x = v;
@@ -189,6 +191,7 @@ int yaml_word(yaml *y, node *at, const char *words, const char *what)
     if (i >= 0)
         return i;
     text_nearest(text, words, near, sizeof near);
-    yaml_error(y, at, "'%.60s' is unknown, expected %s%s%s%s", text, what, *near ? "; did you mean '" : "", near, *near ? "'?" : "");
+    yaml_error(y, at, "'%.60s' is unknown, expected %s%s%s%s", text, what, *near ? "; did you mean '" : "", near,
+               *near ? "'?" : "");
     return -1;
 }

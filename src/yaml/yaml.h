@@ -1,5 +1,5 @@
-/* A YAML file as the scene reader sees it: nodes, and errors that point at them. Only yaml.c, yaml_error.c, yaml_set.c and
- * yaml_value.c include libfyaml.
+/* A YAML file as the scene reader sees it: nodes, and errors that point at them. Only yaml.c, yaml_error.c, yaml_set.c
+ * and yaml_value.c include libfyaml.
  *
  * All getters take the place of an error as a node: a wrong value adds one message to the list given to yaml_open,
  *
@@ -23,8 +23,8 @@ typedef struct yaml yaml;
 enum { YAML_MAX_BYTES = 1 << 22 };
 
 /* Read the file at `path` and make the changes PATH=VALUE (PATH: keys and indices with dots between them; VALUE: YAML).
- * A change may go into the maps at the top named in `optional` also where the file has none. Errors go to e, from now on.
- * NULL where there is no document to go on with. */
+ * A change may go into the maps at the top named in `optional` also where the file has none. Errors go to e, from now
+ * on. NULL where there is no document to go on with. */
 yaml *yaml_open(const char *path, int sets, char *const *set, const char *optional, errors *e);
 void yaml_close(yaml *y);
 
@@ -38,7 +38,7 @@ bool yaml_error_in(yaml *y, node *at, size_t offset, const char *fmt, ...) KAGE_
 /* Maps. `yaml_map` checks that the node is one with no other keys than `keys` (separated by spaces, any where NULL). */
 bool yaml_map(yaml *y, node *at, const char *what, const char *keys);
 bool yaml_is_map(node *at);
-node *yaml_get(node *map, const char *key); /* NULL: not there */
+node *yaml_get(node *map, const char *key);   /* NULL: not there */
 node *yaml_first(node *map, const char *key); /* the key itself; of several of that name the first */
 node *yaml_need(yaml *y, node *map, const char *key, const char *what); /* NULL: an error is told */
 int yaml_size(node *map);

@@ -11,9 +11,11 @@
 static inline void random_ray(rays *x, int i, double wide)
 {
     double a = random_in(0, 6.283), z = random_in(-1, 1), l = 4 * sqrt(1 - z * z), k = random_in(0.2, 3);
-    double r[3] = {l * cos(a), 4 * z, l * sin(a)}, to[3] = {random_in(-wide, wide), random_in(-1, 1), random_in(-wide, wide)};
+    double r[3] = {l * cos(a), 4 * z, l * sin(a)},
+           to[3] = {random_in(-wide, wide), random_in(-1, 1), random_in(-wide, wide)};
     x->r.x[i] = (real)r[0], x->r.y[i] = (real)r[1], x->r.z[i] = (real)r[2];
-    x->s.x[i] = (real)(k * (to[0] - r[0])), x->s.y[i] = (real)(k * (to[1] - r[1])), x->s.z[i] = (real)(k * (to[2] - r[2]));
+    x->s.x[i] = (real)(k * (to[0] - r[0])), x->s.y[i] = (real)(k * (to[1] - r[1])),
+    x->s.z[i] = (real)(k * (to[2] - r[2]));
 }
 
 static inline void no_hits(hits *h, int n)

@@ -1,5 +1,5 @@
-/* True displacement: the first hits against bisection in long double, on every surface, for functions and maps; normals against
- * differences; shadows of a rough surface on itself.
+/* True displacement: the first hits against bisection in long double, on every surface, for functions and maps; normals
+ * against differences; shadows of a rough surface on itself.
  */
 #include <math.h>
 #include <setjmp.h>
@@ -28,7 +28,8 @@ typedef long double wide;
 /* ---- an independent reading of the surfaces and bumps, in long double ---- */
 
 enum { PLANE, RECTANGLE, BOX, SPHERE, DISC, DRUM, TUBE, BELL, CUP, TORUS, SURFACES };
-static const char *const names[] = {"plane", "rectangle", "box", "sphere", "disc", "cylinder", "open cylinder", "cone", "open cone", "torus"};
+static const char *const names[] = {"plane",    "rectangle",     "box",  "sphere",    "disc",
+                                    "cylinder", "open cylinder", "cone", "open cone", "torus"};
 static const int parts[] = {1, 1, 6, 1, 1, 3, 1, 3, 1, 1};
 enum { SMOOTH_BUMP, MAP_BUMP, BUMPS };
 enum { MAP = 16 };
@@ -38,15 +39,16 @@ static const double plane_O[3] = {-2, 0.1, -2}, plane_U[3] = {0.3, 0.1, 4}, plan
 static const double box_lo[3] = {-1.2, -0.9, -1}, box_hi[3] = {1.1, 1, 1.2};
 static const double sphere_C[3] = {0.1, -0.2, 0.3}, sphere_R = 1.6;
 
-/* The ends of the axes and their radii (a torus: centre and axis, major and minor; a disc: centre and normal, radius), from DISC on. */
+/* The ends of the axes and their radii (a torus: centre and axis, major and minor; a disc: centre and normal, radius),
+ * from DISC on. */
 typedef struct turned {
     vec3 a, b;
     double r[2];
 } turned;
 static const turned turns[] = {
-    {{0.1, -0.1, 0.2}, {0.3, 1, -0.2}, {1.7, 0}},       {{0.2, -1.1, 0.1}, {-0.1, 1, 0.2}, {1.2, 1.2}},
-    {{-1.2, -0.1, 0.1}, {1.1, 0.3, 0.2}, {1.1, 1.1}},   {{0.2, -1, 0.1}, {-0.1, 0.9, 0.2}, {1.5, 0.8}},
-    {{0.1, -0.9, 0.1}, {-0.1, 0.9, 0.2}, {0.7, 1.6}},   {{0.1, 0.1, -0.1}, {0.3, 1, 0.2}, {1.3, 0.5}},
+    {{0.1, -0.1, 0.2}, {0.3, 1, -0.2}, {1.7, 0}},     {{0.2, -1.1, 0.1}, {-0.1, 1, 0.2}, {1.2, 1.2}},
+    {{-1.2, -0.1, 0.1}, {1.1, 0.3, 0.2}, {1.1, 1.1}}, {{0.2, -1, 0.1}, {-0.1, 0.9, 0.2}, {1.5, 0.8}},
+    {{0.1, -0.9, 0.1}, {-0.1, 0.9, 0.2}, {0.7, 1.6}}, {{0.1, 0.1, -0.1}, {0.3, 1, 0.2}, {1.3, 0.5}},
 };
 
 /* P, (u,w) scaled so that each kind of surface has some bumps. */
@@ -57,10 +59,15 @@ static wide bump_at(int kind, int bumped, wide u, wide w)
         return 0.06L * (sinl(2 * k * u) * cosl(k * w) + 0.5L * sinl(k * w + 1));
     /* the bilinear surface through the samples, repeated 2 x 1 over the extent */
     const wide pi = 3.14159265358979323846L;
-    wide eu = kind >= SPHERE ? pi : 0.5L, ew = kind == SPHERE ? pi : kind >= DISC ? pi / 2 : 1, u0 = kind >= SPHERE ? -pi : 0;
+    wide eu = kind >= SPHERE ? pi : 0.5L,
+         ew = kind == SPHERE ? pi
+              : kind >= DISC ? pi / 2
+                             : 1,
+         u0 = kind >= SPHERE ? -pi : 0;
     wide x = (u - u0) / eu * MAP - 0.5L, y = w / ew * MAP - 0.5L;
     wide fx = floorl(x), fy = floorl(y), a = x - fx, b = y - fy;
-    int i = (int)(((long)fx % MAP + MAP) % MAP), j = (int)(((long)fy % MAP + MAP) % MAP), i1 = (i + 1) % MAP, j1 = (j + 1) % MAP;
+    int i = (int)(((long)fx % MAP + MAP) % MAP), j = (int)(((long)fy % MAP + MAP) % MAP), i1 = (i + 1) % MAP,
+        j1 = (j + 1) % MAP;
     wide top = (wide)samples[j * MAP + i] * (1 - a) + (wide)samples[j * MAP + i1] * a;
     wide low = (wide)samples[j1 * MAP + i] * (1 - a) + (wide)samples[j1 * MAP + i1] * a;
     return 0.15L * (top * (1 - b) + low * b - 0.5L);
@@ -76,7 +83,8 @@ static wide turned_foot(int kind, int part, const wide X[3], wide *u, wide *w, i
     const wide R0 = (wide)f->r[0], R1 = (wide)f->r[1];
     wide p[3], l = sqrtl((wide)axis.x * (wide)axis.x + (wide)axis.y * (wide)axis.y + (wide)axis.z * (wide)axis.z);
     for (int k = 0; k < 3; k++)
-        p[k] = (X[0] - (wide)f->a.x) * (wide)unit[k].x + (X[1] - (wide)f->a.y) * (wide)unit[k].y + (X[2] - (wide)f->a.z) * (wide)unit[k].z;
+        p[k] = (X[0] - (wide)f->a.x) * (wide)unit[k].x + (X[1] - (wide)f->a.y) * (wide)unit[k].y +
+               (X[2] - (wide)f->a.z) * (wide)unit[k].z;
     const wide d = hypotl(p[0], p[2]);
     if (kind == TORUS) {
         *u = atan2l(p[2], p[0]);
@@ -144,8 +152,8 @@ static wide gap_on_ray(int kind, int bumped, int part, const wide r[3], const wi
     return gap_at(kind, bumped, part, X, inside);
 }
 
-/* The first crossing in 0..end by many small steps and bisection; -1: none. *doubt: the gap is nearly 0 somewhere without
- * crossing before, or crosses twice within a few steps, so that rounding may decide otherwise. */
+/* The first crossing in 0..end by many small steps and bisection; -1: none. *doubt: the gap is nearly 0 somewhere
+ * without crossing before, or crosses twice within a few steps, so that rounding may decide otherwise. */
 static wide first_crossing(int kind, int bumped, const wide r[3], const wide s[3], wide end, int *doubt)
 {
     enum { FINE = 3000 };
@@ -214,10 +222,10 @@ static bump *make_bump(int surface_kind, int bumped, const surface *f)
     if (bumped == SMOOTH_BUMP) {
         expr_error e;
         return bump_function_new(expr_parse(surface_kind == SPHERE ? "0.06*(sin(2*u)*cos(w) + 0.5*sin(w+1))"
-                                           : surface_kind >= DISC ? "0.06*(sin(4*u)*cos(2*w) + 0.5*sin(2*w+1))"
-                                                                  : "0.06*(sin(12*u)*cos(6*w) + 0.5*sin(6*w+1))",
-                                           &e),
-                                1, u, w);
+                                            : surface_kind >= DISC ? "0.06*(sin(4*u)*cos(2*w) + 0.5*sin(2*w+1))"
+                                                                   : "0.06*(sin(12*u)*cos(6*w) + 0.5*sin(6*w+1))",
+                                            &e),
+                                 1, u, w);
     }
     uint32_t state = 4711;
     for (int i = 0; i < MAP * MAP; i++) {
@@ -226,7 +234,9 @@ static bump *make_bump(int surface_kind, int bumped, const surface *f)
     }
     image m = {MAP, MAP, samples};
     const double pi = 3.14159265358979323846;
-    map_layout l = {.size = {surface_kind >= SPHERE ? pi : 0.5, surface_kind == SPHERE ? pi : surface_kind >= DISC ? pi / 2 : 1},
+    map_layout l = {.size = {surface_kind >= SPHERE ? pi : 0.5, surface_kind == SPHERE ? pi
+                                                                : surface_kind >= DISC ? pi / 2
+                                                                                       : 1},
                     .scale = 0.15,
                     .zero = 0.5};
     l.offset[0] = surface_kind >= SPHERE ? -pi : 0;
@@ -271,7 +281,8 @@ static void hits_agree_with_bisection(void **state)
                     int doubt;
                     wide t = first_crossing(kind, bumped, r[i], s[i], 3, &doubt);
                     double length = sqrt((double)(s[i][0] * s[i][0] + s[i][1] * s[i][1] + s[i][2] * s[i][2]));
-                    double off = h.id[i] < 0 || t < 0 ? ((h.id[i] < 0) == (t < 0) ? 0 : 1) : fabs((double)((wide)h.t[i] - t)) * length;
+                    double off = h.id[i] < 0 || t < 0 ? ((h.id[i] < 0) == (t < 0) ? 0 : 1)
+                                                      : fabs((double)((wide)h.t[i] - t)) * length;
                     if (doubt) {
                         doubts++;
                         continue;
@@ -280,10 +291,13 @@ static void hits_agree_with_bisection(void **state)
                     int x1, x2;
                     int part = h.id[i] < 0 ? 0 : h.part[i];
                     wide rate = fabsl(gap_on_ray(kind, bumped, part, r[i], s[i], t + 1e-6L, &x1) -
-                                      gap_on_ray(kind, bumped, part, r[i], s[i], t - 1e-6L, &x2)) / 2e-6L / (wide)length;
+                                      gap_on_ray(kind, bumped, part, r[i], s[i], t - 1e-6L, &x2)) /
+                                2e-6L / (wide)length;
                     if (!(off * fmin(1, (double)rate * 4) <= AGREE)) {
-                        print_error("%s, %s: ray %d of round %d is %g off (t %.9g, bisection %.9g, gap per length %g)\n", names[kind],
-                                    bumped ? "map" : "function", i, round, off, (double)h.t[i], (double)t, (double)rate);
+                        print_error(
+                            "%s, %s: ray %d of round %d is %g off (t %.9g, bisection %.9g, gap per length %g)\n",
+                            names[kind], bumped ? "map" : "function", i, round, off, (double)h.t[i], (double)t,
+                            (double)rate);
                         fail();
                     }
                     if (off < 1)
@@ -292,8 +306,9 @@ static void hits_agree_with_bisection(void **state)
                     passed += t < 0;
                 }
             }
-            print_message("%s, %s: %d hits, %d misses, farthest %.2g, %d left out near edges and tangents, %ld uncertain\n",
-                          names[kind], bumped ? "map" : "function", met, passed, worst, doubts, counts.uncertain);
+            print_message(
+                "%s, %s: %d hits, %d misses, farthest %.2g, %d left out near edges and tangents, %ld uncertain\n",
+                names[kind], bumped ? "map" : "function", met, passed, worst, doubts, counts.uncertain);
             assert_true(met > 150);
             assert_true(doubts < 4 * LANES / 8);
             assert_int_equal(counts.uncertain, 0);
@@ -339,7 +354,8 @@ static void normals_are_gradients(void **state)
                 l += d[k] * d[k];
             }
             l = sqrtl(l);
-            double off = fabs((double)(d[0] / l - (wide)n.x)) + fabs((double)(d[1] / l - (wide)n.y)) + fabs((double)(d[2] / l - (wide)n.z));
+            double off = fabs((double)(d[0] / l - (wide)n.x)) + fabs((double)(d[1] / l - (wide)n.y)) +
+                         fabs((double)(d[2] / l - (wide)n.z));
             assert_true(off < 2e-5);
             assert_true(g.order[i] == ORDER_EXACT && g.tau[i] == 0);
         }
@@ -375,7 +391,8 @@ static void own_shadows(void **state)
                 bs_vec3 X = lane_at(&x, i, h.t[i]), d = {R(-5) - X.x, R(1.2) - X.y, R(-3) - X.z};
                 lane_set(&up.r, n, X);
                 lane_set(&up.s, n, d);
-                wide near_by[3] = {(wide)X.x + (wide)d.x * 1e-4L, (wide)X.y + (wide)d.y * 1e-4L, (wide)X.z + (wide)d.z * 1e-4L};
+                wide near_by[3] = {(wide)X.x + (wide)d.x * 1e-4L, (wide)X.y + (wide)d.y * 1e-4L,
+                                   (wide)X.z + (wide)d.z * 1e-4L};
                 int in;
                 on[n] = from.part[n] = h.part[i];
                 from.id[n] = 5;
@@ -414,12 +431,12 @@ static void own_shadows(void **state)
 
 /* ---- rays that leave a rough surface ---- */
 
-/* Where a ray is clearly off the surface that it has left, and the gap's least change from there back to it, in scene units: float's
- * hit is within 5e-6 of the surface. */
+/* Where a ray is clearly off the surface that it has left, and the gap's least change from there back to it, in scene
+ * units: float's hit is within 5e-6 of the surface. */
 #define CLEAR 2e-4L
 
-/* As first_crossing, for a ray that starts on `own`'s rough surface: from where it has clearly left that. *doubt, too: it turns back or
- * goes through to the other side before, or begins near an edge. */
+/* As first_crossing, for a ray that starts on `own`'s rough surface: from where it has clearly left that. *doubt, too:
+ * it turns back or goes through to the other side before, or begins near an edge. */
 static wide next_crossing(int kind, int bumped, int own, const wide r[3], const wide s[3], wide end, int *doubt)
 {
     enum { FINE = 1500 };
@@ -428,11 +445,13 @@ static wide next_crossing(int kind, int bumped, int own, const wide r[3], const 
     for (int part = 0; part < parts[kind]; part++) {
         int in, was_in = 0, left = part != own;
         wide before = 0, last = 0;
-        const wide way_off = gap_on_ray(kind, bumped, part, r, s, 1e-6L, &in) - gap_on_ray(kind, bumped, part, r, s, -1e-6L, &in);
+        const wide way_off =
+            gap_on_ray(kind, bumped, part, r, s, 1e-6L, &in) - gap_on_ray(kind, bumped, part, r, s, -1e-6L, &in);
         if (!left && !in)
             touch = 0;
         for (int k = 0; k <= FINE; k++) {
-            wide t = end * k / FINE * k / FINE, a = end * (k - 1) / FINE * (k - 1) / FINE, g = gap_on_ray(kind, bumped, part, r, s, t, &in);
+            wide t = end * k / FINE * k / FINE, a = end * (k - 1) / FINE * (k - 1) / FINE,
+                 g = gap_on_ray(kind, bumped, part, r, s, t, &in);
             if (!left) {
                 left = fabsl(g) > CLEAR;
                 if (left && (!in || (g > 0) != (way_off > 0)))
@@ -464,8 +483,8 @@ static wide next_crossing(int kind, int bumped, int own, const wide r[3], const 
     return best;
 }
 
-/* From hits to all sides: away from what was met, as mirrored rays go, and into it, as refracted ones do. Each meets what bisection
- * does, and not the place that it has left. */
+/* From hits to all sides: away from what was met, as mirrored rays go, and into it, as refracted ones do. Each meets
+ * what bisection does, and not the place that it has left. */
 static void leaving(void **state)
 {
     (void)state;
@@ -490,7 +509,8 @@ static void leaving(void **state)
             for (int i = 0; i < LANES; i++)
                 if (h.id[i] == 5) {
                     double c = random_in(-1, 1), a = random_in(0, 6.283), l = sqrt(1 - c * c);
-                    bs_vec3 X = lane_at(&x, i, h.t[i]), d = {(real)(4 * l * cos(a)), (real)(4 * c), (real)(4 * l * sin(a))};
+                    bs_vec3 X = lane_at(&x, i, h.t[i]),
+                            d = {(real)(4 * l * cos(a)), (real)(4 * c), (real)(4 * l * sin(a))};
                     lane_set(&y.r, n, X);
                     lane_set(&y.s, n, d);
                     lane_set(&from.at, n, X);
@@ -514,17 +534,20 @@ static void leaving(void **state)
                 met += t >= 0;
                 passed += t < 0;
                 const int part = again.id[i] < 0 ? 0 : again.part[i];
-                double off = again.id[i] < 0 || t < 0 ? ((again.id[i] < 0) == (t < 0) ? 0 : 1) : 4 * fabs((double)((wide)again.t[i] - t));
+                double off = again.id[i] < 0 || t < 0 ? ((again.id[i] < 0) == (t < 0) ? 0 : 1)
+                                                      : 4 * fabs((double)((wide)again.t[i] - t));
                 wide rate = fabsl(gap_on_ray(kind, bumped, part, o, d, t + 1e-6L, &x1) -
-                                  gap_on_ray(kind, bumped, part, o, d, t - 1e-6L, &x1)) / 8e-6L;
+                                  gap_on_ray(kind, bumped, part, o, d, t - 1e-6L, &x1)) /
+                            8e-6L;
                 if (!(off * fmin(1, (double)rate * 4) <= AGREE) || (lit[i] > 0) != (t < 0)) {
                     wrong++;
-                    print_message("%s, %s: ray %d from part %d: t %.9g, bisection %.9g\n", names[kind], bumped ? "map" : "function", i,
-                                from.part[i], again.id[i] < 0 ? -1. : (double)again.t[i], (double)t);
+                    print_message("%s, %s: ray %d from part %d: t %.9g, bisection %.9g\n", names[kind],
+                                  bumped ? "map" : "function", i, from.part[i],
+                                  again.id[i] < 0 ? -1. : (double)again.t[i], (double)t);
                 }
             }
-            print_message("%s, %s: %d hits, %d misses, %d left out, %d wrong, %ld uncertain\n", names[kind], bumped ? "map" : "function", met,
-                          passed, doubts, wrong, counts.uncertain);
+            print_message("%s, %s: %d hits, %d misses, %d left out, %d wrong, %ld uncertain\n", names[kind],
+                          bumped ? "map" : "function", met, passed, doubts, wrong, counts.uncertain);
             assert_true(met + passed > 50 && doubts <= LANES / 8);
             faults += wrong;
             bump_free(P);
@@ -533,8 +556,8 @@ static void leaving(void **state)
     assert_int_equal(faults, 0);
 }
 
-/* Rays that begin anywhere in and about a surface, as where the eye or another thing is in it: in the shell between the lowest and the
- * highest P, too, on either side of the rough surface, and in what that encloses. */
+/* Rays that begin anywhere in and about a surface, as where the eye or another thing is in it: in the shell between the
+ * lowest and the highest P, too, on either side of the rough surface, and in what that encloses. */
 static void from_within(void **state)
 {
     (void)state;
@@ -568,9 +591,11 @@ static void from_within(void **state)
                 continue;
             }
             met += t >= 0;
-            if ((h.id[i] == 5) != (t >= 0) || (lit[i] > 0) != (t < 0) || (t >= 0 && !(fabs((double)((wide)h.t[i] - t)) < 1e-4))) {
+            if ((h.id[i] == 5) != (t >= 0) || (lit[i] > 0) != (t < 0) ||
+                (t >= 0 && !(fabs((double)((wide)h.t[i] - t)) < 1e-4))) {
                 wrong++;
-                print_message("%s: ray %d: t %.9g, bisection %.9g\n", names[kind], i, h.id[i] < 0 ? -1. : (double)h.t[i], (double)t);
+                print_message("%s: ray %d: t %.9g, bisection %.9g\n", names[kind], i,
+                              h.id[i] < 0 ? -1. : (double)h.t[i], (double)t);
             }
         }
         print_message("%s: %d hits, %d left out, %d wrong\n", names[kind], met, doubts, wrong);
@@ -626,10 +651,12 @@ static surface *widened(int kind, double h)
     const turned *t = &turns[kind < DISC ? 0 : kind - DISC];
     if (kind == SPHERE)
         return sphere_new((vec3){sphere_C[0], sphere_C[1], sphere_C[2]}, sphere_R + h);
-    return kind == TORUS ? torus_new(t->a, t->b, t->r[0], t->r[1] + h) : cone_new(t->a, t->r[0] + h, t->b, t->r[1] + h, true);
+    return kind == TORUS ? torus_new(t->a, t->b, t->r[0], t->r[1] + h)
+                         : cone_new(t->a, t->r[0] + h, t->b, t->r[1] + h, true);
 }
 
-/* The shorter the way of a ray that has left it is, the flatter it is to the surface: rounding is divided by that angle. */
+/* The shorter the way of a ray that has left it is, the flatter it is to the surface: rounding is divided by that
+ * angle. */
 static int differ(int n, const hits *rough, const hits *smooth, int *met)
 {
     int other = 0;
@@ -689,8 +716,8 @@ static void constant_bumps(void **state)
                 other_again += differ(n, &rough, &smooth, &met_again);
                 assert_int_equal(counts.uncertain, 0);
             }
-            print_message("%s, P = %g: %d hits, %d otherwise; %d more from there, %d otherwise\n", names[kind], levels[k], met, other,
-                          met_again, other_again);
+            print_message("%s, P = %g: %d hits, %d otherwise; %d more from there, %d otherwise\n", names[kind],
+                          levels[k], met, other, met_again, other_again);
             assert_true(met > 300 && other <= 2); /* at a rim or tangent */
             assert_true(met_again > 100 && other_again <= 2);
             bump_free(P);

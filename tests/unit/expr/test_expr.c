@@ -110,15 +110,52 @@ static double draw_in(double lo, double hi) { return lo + (hi - lo) * draw(1u <<
 /* Append a random expression to `text`; smooth ones leave out what has edges. */
 static void random_expr(char *text, size_t size, int depth, bool smooth)
 {
-    static const char *const forms[] = {
-        "(%+%)",          "(%-%)",       "%*%",            "%/(2+%^2)",    "sin(%)",          "cos(%)",
-        "-(%)",           "(%)^2",       "(%)^3",          "exp(sin(%))",  "tanh(%)",         "atan(%)",
-        "sqrt(1+(%)^2)",  "log(2+sin(%))", "sinh(sin(%))", "cosh(cos(%))", "noise(%,%)",      "atan2(%,3+sin(%))",
-        "asin(0.9*sin(%))", "acos(0.9*cos(%))", "tan(cos(%))", "(1.5+cos(%))^sin(%)", "(2+sin(%))^-1.5", "(1+(%)^2)^-2",
-        "abs(%)",         "floor(%)",    "min(%,%,%)",     "max(%,%)",     "mod(%,2+sin(%))", "clamp(%,-1,sin(%))",
-        "select(%,%,%)",  "select(%,%,%,%)", "sqrt(%)",    "log(%)",       "%/%",             "(%)^(%)",
-        "asin(%)",        "acos(%)",     "tan(%)",         "exp(%)",       "(%)^-3",          "(%)^0.7",
-        "atan2(%,%)",     "mod(%,%)",    "cosh(%)",        "sinh(%)"};
+    static const char *const forms[] = {"(%+%)",
+                                        "(%-%)",
+                                        "%*%",
+                                        "%/(2+%^2)",
+                                        "sin(%)",
+                                        "cos(%)",
+                                        "-(%)",
+                                        "(%)^2",
+                                        "(%)^3",
+                                        "exp(sin(%))",
+                                        "tanh(%)",
+                                        "atan(%)",
+                                        "sqrt(1+(%)^2)",
+                                        "log(2+sin(%))",
+                                        "sinh(sin(%))",
+                                        "cosh(cos(%))",
+                                        "noise(%,%)",
+                                        "atan2(%,3+sin(%))",
+                                        "asin(0.9*sin(%))",
+                                        "acos(0.9*cos(%))",
+                                        "tan(cos(%))",
+                                        "(1.5+cos(%))^sin(%)",
+                                        "(2+sin(%))^-1.5",
+                                        "(1+(%)^2)^-2",
+                                        "abs(%)",
+                                        "floor(%)",
+                                        "min(%,%,%)",
+                                        "max(%,%)",
+                                        "mod(%,2+sin(%))",
+                                        "clamp(%,-1,sin(%))",
+                                        "select(%,%,%)",
+                                        "select(%,%,%,%)",
+                                        "sqrt(%)",
+                                        "log(%)",
+                                        "%/%",
+                                        "(%)^(%)",
+                                        "asin(%)",
+                                        "acos(%)",
+                                        "tan(%)",
+                                        "exp(%)",
+                                        "(%)^-3",
+                                        "(%)^0.7",
+                                        "atan2(%,%)",
+                                        "mod(%,%)",
+                                        "cosh(%)",
+                                        "sinh(%)"};
     size_t n = strlen(text);
     if (depth == 0 || n > 1500) {
         static const char *const pieces[] = {"u", "w", "u", "w", "(u-w)"};
@@ -388,19 +425,20 @@ static void check_gradient_in(const char *text, const expr *e, const double u[2]
         if (!isfinite(jet[0]))
             continue;
         if (!inside(b.u, jet[1]) || !inside(b.w, jet[2]))
-            fail_msg("%s at %.17g %.17g: partials %.17g %.17g, outside %.17g .. %.17g, %.17g .. %.17g", text, x, y, jet[1],
-                     jet[2], b.u[0], b.u[1], b.w[0], b.w[1]);
+            fail_msg("%s at %.17g %.17g: partials %.17g %.17g, outside %.17g .. %.17g, %.17g .. %.17g", text, x, y,
+                     jet[1], jet[2], b.u[0], b.u[1], b.w[0], b.w[1]);
         if (!inside(bend.uu, jet[3]) || !inside(bend.uw, jet[4]) || !inside(bend.ww, jet[5]))
-            fail_msg("%s at %.17g %.17g: %.17g %.17g %.17g, outside %.17g .. %.17g, %.17g .. %.17g, %.17g .. %.17g", text, x, y, jet[3],
-                     jet[4], jet[5], bend.uu[0], bend.uu[1], bend.uw[0], bend.uw[1], bend.ww[0], bend.ww[1]);
+            fail_msg("%s at %.17g %.17g: %.17g %.17g %.17g, outside %.17g .. %.17g, %.17g .. %.17g, %.17g .. %.17g",
+                     text, x, y, jet[3], jet[4], jet[5], bend.uu[0], bend.uu[1], bend.uw[0], bend.uw[1], bend.ww[0],
+                     bend.ww[1]);
         double bound = rise(steepest(b.u), X - x) + rise(steepest(b.w), Y - y);
         if (!isfinite(far) || !isfinite(bound))
             continue;
         ++*pairs;
         if (fabs(far - jet[0]) > bound * (1 + 1e-12) + 1e-14 &&
             fabs(far - jet[0]) > bound + noise_of_evaluation(e, x, y) + noise_of_evaluation(e, X, Y))
-            fail_msg("%s in %.17g .. %.17g, %.17g .. %.17g rises by %.17g from %.17g %.17g to %.17g %.17g, bound %.17g", text,
-                     u[0], u[1], w[0], w[1], fabs(far - jet[0]), x, y, X, Y, bound);
+            fail_msg("%s in %.17g .. %.17g, %.17g .. %.17g rises by %.17g from %.17g %.17g to %.17g %.17g, bound %.17g",
+                     text, u[0], u[1], w[0], w[1], fabs(far - jet[0]), x, y, X, Y, bound);
     }
 }
 
@@ -438,8 +476,8 @@ static void check_gradient(const char *text, double u0, double u1, double w0, do
     for (int k = 0; k < 4; k++) {
         double beyond = k & 1 ? got[k] - want[k] : want[k] - got[k];
         if (got[k] != want[k] && !(beyond >= 0 && beyond <= 1e-13 * (1 + fabs(want[k]))))
-            fail_msg("%s: u %.17g .. %.17g, w %.17g .. %.17g, expected %.17g .. %.17g, %.17g .. %.17g", text, got[0], got[1],
-                     got[2], got[3], fu0, fu1, fw0, fw1);
+            fail_msg("%s: u %.17g .. %.17g, w %.17g .. %.17g, expected %.17g .. %.17g, %.17g .. %.17g", text, got[0],
+                     got[1], got[2], got[3], fu0, fu1, fw0, fw1);
     }
     expr_free(e);
 }
@@ -647,8 +685,8 @@ static void check_error(const char *text, size_t offset, const char *message)
     expr_error error = {0};
     expr *e = expr_parse(text, &error);
     if (e || error.offset != offset || strcmp(error.message, message) != 0)
-        fail_msg("%.40s: %s %zu: %s\nexpected %zu: %s", text, e ? "accepted" : "", error.offset, error.message,
-                 offset, message);
+        fail_msg("%.40s: %s %zu: %s\nexpected %zu: %s", text, e ? "accepted" : "", error.offset, error.message, offset,
+                 message);
 }
 
 static void test_errors(void **state)
@@ -753,11 +791,19 @@ static void test_limits(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_golden),       cmocka_unit_test(test_differences), cmocka_unit_test(test_same_bytes),
-        cmocka_unit_test(test_range_holds),  cmocka_unit_test(test_range_tight), cmocka_unit_test(test_edges),
-        cmocka_unit_test(test_gradient_holds), cmocka_unit_test(test_gradient_tight),
-        cmocka_unit_test(test_gradient_infinite), cmocka_unit_test(test_gradient_of_noise),
-        cmocka_unit_test(test_noise_is_bounded), cmocka_unit_test(test_large_angles), cmocka_unit_test(test_errors),
+        cmocka_unit_test(test_golden),
+        cmocka_unit_test(test_differences),
+        cmocka_unit_test(test_same_bytes),
+        cmocka_unit_test(test_range_holds),
+        cmocka_unit_test(test_range_tight),
+        cmocka_unit_test(test_edges),
+        cmocka_unit_test(test_gradient_holds),
+        cmocka_unit_test(test_gradient_tight),
+        cmocka_unit_test(test_gradient_infinite),
+        cmocka_unit_test(test_gradient_of_noise),
+        cmocka_unit_test(test_noise_is_bounded),
+        cmocka_unit_test(test_large_angles),
+        cmocka_unit_test(test_errors),
         cmocka_unit_test(test_limits),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,5 +1,5 @@
-/* Surfaces: hits lie on Q(u,w), partials are the derivatives of Q, n points outward, shadows agree with hits, and rays without
- * sense do no harm.
+/* Surfaces: hits lie on Q(u,w), partials are the derivatives of Q, n points outward, shadows agree with hits, and rays
+ * without sense do no harm.
  */
 #include <math.h>
 #include <setjmp.h>
@@ -25,8 +25,12 @@
 
 enum { PLANE, RECTANGLE, BOX, SPHERE, DISC, DRUM, TUBE, BELL, CUP, HAT, TORUS, THIN, KINDS };
 
-/* The surfaces with an inside that no ray from outside sees, and those of them that never shade themselves from outside. */
-static bool is_closed(int kind) { return kind != PLANE && kind != RECTANGLE && kind != DISC && kind != TUBE && kind != CUP; }
+/* The surfaces with an inside that no ray from outside sees, and those of them that never shade themselves from
+ * outside. */
+static bool is_closed(int kind)
+{
+    return kind != PLANE && kind != RECTANGLE && kind != DISC && kind != TUBE && kind != CUP;
+}
 static bool is_convex(int kind) { return is_closed(kind) && kind != TORUS && kind != THIN; }
 
 static surface *make(int kind)
@@ -116,7 +120,8 @@ static void partials_are_derivatives(void **state)
             static partials q[5];
             real u[1], w[1];
             int32_t part[1] = {round % f->ops->parts};
-            double u0 = random_in(0.3, 0.7), w0 = random_in(0.4, 0.6), du[5] = {0, h, -h, 0, 0}, dw[5] = {0, 0, 0, h, -h};
+            double u0 = random_in(0.3, 0.7), w0 = random_in(0.4, 0.6), du[5] = {0, h, -h, 0, 0},
+                   dw[5] = {0, 0, 0, h, -h};
             double du_[5], dw_[5];
             if (kind != PLANE) {
                 double U[2], W[2];
@@ -212,8 +217,8 @@ static void shadows_agree_with_hits(void **state)
     }
 }
 
-/* From the surface itself: rays outward are free, rays inward are blocked by the far side, however slanted, unless they end
- * before it; with no epsilon that a grazing ray could fall under. */
+/* From the surface itself: rays outward are free, rays inward are blocked by the far side, however slanted, unless they
+ * end before it; with no epsilon that a grazing ray could fall under. */
 static void own_shadow(void **state)
 {
     (void)state;
@@ -271,8 +276,8 @@ static void own_shadow(void **state)
     }
 }
 
-/* hit_own leaves the own start out: what is met again is met at a place of the surface and not at the start; from a convex one inward
- * the far side is, outward nothing. Other surfaces' rays it treats as hit does. */
+/* hit_own leaves the own start out: what is met again is met at a place of the surface and not at the start; from a
+ * convex one inward the far side is, outward nothing. Other surfaces' rays it treats as hit does. */
 static void own_hits(void **state)
 {
     (void)state;
@@ -328,7 +333,8 @@ static void own_hits(void **state)
             f->ops->eval(f, n, there, u, w, 1, &q);
             for (int i = 0; i < n; i++)
                 if (again.id[i] == 7) {
-                    assert_true(distance(lane_get(&q.Q, i), lane_at(&out, i, again.t[i])) < (kind == HAT ? 300 : 60) * EPS); /* a tip */
+                    assert_true(distance(lane_get(&q.Q, i), lane_at(&out, i, again.t[i])) <
+                                (kind == HAT ? 300 : 60) * EPS); /* a tip */
                     const real pieces = bs_dot(lane_get(&out.s, i), bs_normal(lane_get(&q.Qu, i), lane_get(&q.Qw, i)));
                     assert_true(!is_closed(kind) || (pieces > 0) == (cosine[i] < 0));
                     assert_true(kind != BOX || there[i] != part[i]);
@@ -368,21 +374,39 @@ static void from_inside(void **state)
     }
 }
 
-/* Rays along faces and edges, through corners and poles, of length 0, NaN or infinite: a hit or none, but never a t that is
- * not finite and positive, nor a lane beside it that is touched. */
+/* Rays along faces and edges, through corners and poles, of length 0, NaN or infinite: a hit or none, but never a t
+ * that is not finite and positive, nor a lane beside it that is touched. */
 static void odd_rays(void **state)
 {
     (void)state;
     const double nan = (double)NAN, inf = (double)INFINITY;
     const double odd[][6] = {
-        {0, 0, 0, 0, 0, 0},         {nan, 0, 0, 1, 0, 0},        {0, 0, 0, nan, nan, nan},  {0, 5, 0, 0, -inf, 0},
-        {inf, 0, 0, -1, 0, 0},      {0.7, -0.8, -3, 0, 0, 1},    {0.7, 5, 1.1, 0, -1, 0},   {-0.9, -0.8, -0.6, 1, 1, 1},
-        {-3, 0.5, 0, 1, 0, 0},      {0.7, 0.5, 5, 0, 0, -1},     {0.3, 5, 0.1, 0, -1, 0},   {0.3, -5, 0.1, 0, 1, 0},
-        {1.5, -5, 0.1, 0, 1, 0},    {1.5, 0, 0.1, 0, 0, 1},      {0.1, -0.3, 0.2, 1, 0, 0}, {1e30, 1e30, 1e30, -1, -1, -1},
-        {0, 0, 0, 1e30, 1e30, 1e30}, {0, 0, 0, 1e-30, 1e-30, 0}, {0.1, 5, 0.2, 0, -1e-20, 0},
+        {0, 0, 0, 0, 0, 0},
+        {nan, 0, 0, 1, 0, 0},
+        {0, 0, 0, nan, nan, nan},
+        {0, 5, 0, 0, -inf, 0},
+        {inf, 0, 0, -1, 0, 0},
+        {0.7, -0.8, -3, 0, 0, 1},
+        {0.7, 5, 1.1, 0, -1, 0},
+        {-0.9, -0.8, -0.6, 1, 1, 1},
+        {-3, 0.5, 0, 1, 0, 0},
+        {0.7, 0.5, 5, 0, 0, -1},
+        {0.3, 5, 0.1, 0, -1, 0},
+        {0.3, -5, 0.1, 0, 1, 0},
+        {1.5, -5, 0.1, 0, 1, 0},
+        {1.5, 0, 0.1, 0, 0, 1},
+        {0.1, -0.3, 0.2, 1, 0, 0},
+        {1e30, 1e30, 1e30, -1, -1, -1},
+        {0, 0, 0, 1e30, 1e30, 1e30},
+        {0, 0, 0, 1e-30, 1e-30, 0},
+        {0.1, 5, 0.2, 0, -1e-20, 0},
         /* along axes of cylinders, cones and tori, and along their sides */
-        {-0.3, -1.75, 0.35, 0.4, 1.7, -0.3}, {-0.1, -0.9, 0.2, 0.4, 1.7, -0.3}, {0.1, -0.1, 0.2, 0.3, 1, 0.5},
-        {-0.5, -2.1, -0.8, 0.3, 1, 0.5},     {0.2, -0.9, 0.2, -0.3, 1.5, -0.1}, {-2.4, 0.3, 0.5, 1.6, -0.2, -0.3},
+        {-0.3, -1.75, 0.35, 0.4, 1.7, -0.3},
+        {-0.1, -0.9, 0.2, 0.4, 1.7, -0.3},
+        {0.1, -0.1, 0.2, 0.3, 1, 0.5},
+        {-0.5, -2.1, -0.8, 0.3, 1, 0.5},
+        {0.2, -0.9, 0.2, -0.3, 1.5, -0.1},
+        {-2.4, 0.3, 0.5, 1.6, -0.2, -0.3},
     };
     enum { ODD = sizeof odd / sizeof *odd };
     for (int kind = 0; kind < KINDS; kind++) {
@@ -424,15 +448,22 @@ static void odd_rays(void **state)
 static void ways_around(void **state)
 {
     (void)state;
-    surface *const f[] = {cone_new((vec3){1, 0, 0}, 2, (vec3){1, 3, 0}, 1, false), torus_new((vec3){0, 1, 0}, (vec3){0, 2, 0}, 2, 0.5),
+    surface *const f[] = {cone_new((vec3){1, 0, 0}, 2, (vec3){1, 3, 0}, 1, false),
+                          torus_new((vec3){0, 1, 0}, (vec3){0, 2, 0}, 2, 0.5),
                           disc_new((vec3){0, 1, 0}, (vec3){0, 3, 0}, 2)};
     const struct {
         int f, part;
         double u, w, Q[3];
     } want[] = {
-        {0, 0, 0, 0, {2, 3, 0}},        {0, 0, 1.5707963, 0, {1, 3, 1}},         {0, 0, 0, 3.1622777, {3, 0, 0}},
-        {0, 0, 3.1415927, 3.1622777, {-1, 0, 0}}, {0, 1, 0.5, 0.25, {1.5, 3, -0.25}}, {0, 2, 0.5, 0.25, {1.5, 0, 0.25}},
-        {1, 0, 0, 0, {2.5, 1, 0}},      {1, 0, 0, -1.5707963, {2, 1.5, 0}},      {1, 0, 1.5707963, 3.1415927, {0, 1, 1.5}},
+        {0, 0, 0, 0, {2, 3, 0}},
+        {0, 0, 1.5707963, 0, {1, 3, 1}},
+        {0, 0, 0, 3.1622777, {3, 0, 0}},
+        {0, 0, 3.1415927, 3.1622777, {-1, 0, 0}},
+        {0, 1, 0.5, 0.25, {1.5, 3, -0.25}},
+        {0, 2, 0.5, 0.25, {1.5, 0, 0.25}},
+        {1, 0, 0, 0, {2.5, 1, 0}},
+        {1, 0, 0, -1.5707963, {2, 1.5, 0}},
+        {1, 0, 1.5707963, 3.1415927, {0, 1, 1.5}},
         {2, 0, 0.5, 0.25, {0.5, 1, -0.25}},
     };
     for (int k = 0; k < (int)(sizeof want / sizeof *want); k++) {
@@ -451,7 +482,8 @@ static void ways_around(void **state)
 static void frames(void **state)
 {
     (void)state;
-    const vec3 axes[] = {{0, 1, 0}, {1, 0, 0}, {0, 0, 1}, {0, -2, 0}, {-1, 0, 0}, {0.9, 0.1, 0.3}, {1e-6, 0, 0}, {3e5, 2e5, 1e5}};
+    const vec3 axes[] = {{0, 1, 0},  {1, 0, 0},       {0, 0, 1},    {0, -2, 0},
+                         {-1, 0, 0}, {0.9, 0.1, 0.3}, {1e-6, 0, 0}, {3e5, 2e5, 1e5}};
     for (int k = 0; k < (int)(sizeof axes / sizeof *axes); k++) {
         frame a = frame_about(axes[k]);
         assert_true(vec3_length(vec3_sub(vec3_cross(a.x, a.y), a.z)) < 1e-15);

@@ -1,5 +1,6 @@
-/* Surfaces under affine maps: all that they tell is what the surface itself tells of the rays taken back, and then mapped; n points
- * outward also where the map mirrors; rough ones are met where heights divided by the scale are met in the surface's own space.
+/* Surfaces under affine maps: all that they tell is what the surface itself tells of the rays taken back, and then
+ * mapped; n points outward also where the map mirrors; rough ones are met where heights divided by the scale are met in
+ * the surface's own space.
  */
 #include <math.h>
 #include <setjmp.h>
@@ -51,13 +52,17 @@ static surface *make(int kind)
 }
 
 static bool is_flat(int kind) { return kind <= BOX; }
-static bool is_closed(int kind) { return kind == BOX || kind == SPHERE || kind == DRUM || kind == HAT || kind == TORUS; }
+static bool is_closed(int kind)
+{
+    return kind == BOX || kind == SPHERE || kind == DRUM || kind == HAT || kind == TORUS;
+}
 
 /* A turn by 0.7 about an axis, then scales, then a turn about another (or none), then a way. */
 static affine make_map(int kind)
 {
     const double c = cos(0.7), s = sin(0.7);
-    const affine turn = {{c, s, 0}, {-s, c, 0}, {0, 0, 1}, {0, 0, 0}}, other = {{c, 0, -s}, {0, 1, 0}, {s, 0, c}, {0.3, -0.2, 0.4}};
+    const affine turn = {{c, s, 0}, {-s, c, 0}, {0, 0, 1}, {0, 0, 0}},
+                 other = {{c, 0, -s}, {0, 1, 0}, {s, 0, c}, {0.3, -0.2, 0.4}};
     const affine scales[MAPS] = {{{1.4, 0, 0}, {0, 1.4, 0}, {0, 0, 1.4}, {0, 0, 0}},
                                  {{0.7, 0, 0}, {0, 0.7, 0}, {0, 0, -0.7}, {0, 0, 0}},
                                  {{1.5, 0, 0}, {0, 0.6, 0}, {0, 0, 0.9}, {0, 0, 0}},
@@ -130,7 +135,8 @@ static void rays_meet_alike(int kind, int map, const surface *own, const surface
     own->ops->eval(own, LANES, other, v, z, 2, &p);
     for (int i = 0; i < LANES; i++) {
         const double s = (double)real_sqrt(bs_dot(lane_get(&y.s, i), lane_get(&y.s, i)));
-        const double size = 1 + (h.id[i] >= 0 ? s * (double)h.t[i] : 0); /* planes have hits far away, and flat to them */
+        const double size =
+            1 + (h.id[i] >= 0 ? s * (double)h.t[i] : 0); /* planes have hits far away, and flat to them */
         differ += lit[i] != dark[i];
         if (h.id[i] != g.id[i] || (h.id[i] >= 0 && fabs((double)(h.t[i] - g.t[i])) * s > 100 * EPS * size * size)) {
             differ++;
@@ -144,8 +150,8 @@ static void rays_meet_alike(int kind, int map, const surface *own, const surface
         const double off_ray = apart(lane_at(&x, i, h.t[i]), widen(lane_get(&q.Q, i)));
         const double off_image = apart(lane_get(&q.Q, i), affine_point(m, widen(lane_get(&p.Q, i))));
         if (!(off_ray < far && off_image < far)) {
-            print_error("%s, %s: Q is %g off the ray, %g off the image, expected %g\n", own->ops->kind, map_names[map], off_ray,
-                        off_image, far);
+            print_error("%s, %s: Q is %g off the ray, %g off the image, expected %g\n", own->ops->kind, map_names[map],
+                        off_ray, off_image, far);
             fail();
         }
         if (part[i] != other[i]) { /* an edge */
@@ -184,17 +190,20 @@ static void vectors_are_images(int kind, int map, const surface *own, const surf
         f->ops->extent(f, part, A, B);
         assert_true(A[0] == U[0] && A[1] == U[1] && B[0] == W[0] && B[1] == W[1]);
         const bool end = U[1] < HUGE_VAL;
-        const real u = (real)random_in(end ? U[0] : -2, end ? U[1] : 2), w = (real)random_in(end ? W[0] : -2, end ? W[1] : 2);
+        const real u = (real)random_in(end ? U[0] : -2, end ? U[1] : 2),
+                   w = (real)random_in(end ? W[0] : -2, end ? W[1] : 2);
         const real v = (real)turned(own, part, m, (double)u);
         f->ops->eval(f, 1, &part, &u, &w, 2, &q);
         own->ops->eval(own, 1, &part, &v, &w, 2, &p);
         const struct {
             const vec3s *is, *of;
             double sign;
-        } d[] = {{&q.Qu, &p.Qu, turn}, {&q.Qw, &p.Qw, 1}, {&q.Quu, &p.Quu, 1}, {&q.Quw, &p.Quw, turn}, {&q.Qww, &p.Qww, 1}};
+        } d[] = {
+            {&q.Qu, &p.Qu, turn}, {&q.Qw, &p.Qw, 1}, {&q.Quu, &p.Quu, 1}, {&q.Quw, &p.Quw, turn}, {&q.Qww, &p.Qww, 1}};
         assert_true(apart(lane_get(&q.Q, 0), affine_point(m, widen(lane_get(&p.Q, 0)))) < 30 * EPS);
         for (int k = 0; k < 5; k++)
-            assert_true(apart(lane_get(d[k].is, 0), vec3_scale(affine_vector(m, widen(lane_get(d[k].of, 0))), d[k].sign)) < 30 * EPS);
+            assert_true(apart(lane_get(d[k].is, 0),
+                              vec3_scale(affine_vector(m, widen(lane_get(d[k].of, 0))), d[k].sign)) < 30 * EPS);
         /* the normal goes by the transpose of the way back, to the same side */
         const affine back = affine_back(m);
         const vec3 n = widen(bs_normal(lane_get(&q.Qu, 0), lane_get(&q.Qw, 0)));
@@ -262,7 +271,8 @@ static void own_shadow_alike(int kind, int map, const surface *own, const surfac
     own->ops->hit_own(own, n, &y, &there, 7, &want);
     for (int i = 0; i < n; i++) {
         const double s = (double)real_sqrt(bs_dot(lane_get(&y.s, i), lane_get(&y.s, i)));
-        differ += again.id[i] != want.id[i] || (want.id[i] == 7 && fabs((double)(again.t[i] - want.t[i])) * s > 1e4 * EPS);
+        differ +=
+            again.id[i] != want.id[i] || (want.id[i] == 7 && fabs((double)(again.t[i] - want.t[i])) * s > 1e4 * EPS);
     }
     assert_true(differ <= (kind == TORUS ? 4 : 2));
 }
@@ -347,9 +357,11 @@ static void rough_alike(int kind, int map, const surface *own, const surface *f,
     own->ops->extent(own, 0, U, W);
     const bool turns = map == MIRRORED, one = kind == RECTANGLE || kind == BOX; /* u in 0..1 */
     bump *P = bump_function_new(expr_parse("0.06*sin(4*u+1)*cos(3*w)", &wrong), 1, all, all);
-    bump *S = bump_function_new(expr_parse(!turns ? "0.06*sin(4*u+1)*cos(3*w)" : one ? "0.06*sin(4*(1-u)+1)*cos(3*w)"
-                                                                                      : "0.06*sin(1-4*u)*cos(3*w)", &wrong),
-                                  1 / k, all, all);
+    bump *S = bump_function_new(expr_parse(!turns ? "0.06*sin(4*u+1)*cos(3*w)"
+                                           : one  ? "0.06*sin(4*(1-u)+1)*cos(3*w)"
+                                                  : "0.06*sin(1-4*u)*cos(3*w)",
+                                           &wrong),
+                                1 / k, all, all);
     for (int i = 0; i < LANES; i++) {
         random_ray(&y, i, 1);
         map_ray(m, &y, &x, i);
@@ -364,7 +376,8 @@ static void rough_alike(int kind, int map, const surface *own, const surface *f,
         differ += h.id[i] != g.id[i] || (h.id[i] == 0 && fabs((double)(h.t[i] - g.t[i])) * s > 1000 * EPS);
     }
     if (!(met > 20 && differ <= 3 && counts.uncertain <= 1)) {
-        print_error("%s, %s: %d of %d differ, %ld uncertain\n", own->ops->kind, map_names[map], differ, met, counts.uncertain);
+        print_error("%s, %s: %d of %d differ, %ld uncertain\n", own->ops->kind, map_names[map], differ, met,
+                    counts.uncertain);
         fail();
     }
     bump_free(P);
@@ -424,7 +437,8 @@ static void rough_box(void **state)
 
 static void none(void **state)
 {
-    const affine flat = {{1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {0, 0, 0}}, nan = {{(double)NAN, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, 0}};
+    const affine flat = {{1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {0, 0, 0}},
+                 nan = {{(double)NAN, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, 0}};
     (void)state;
     for (int kind = 0; kind < KINDS; kind++) {
         surface *own = make(kind);
@@ -437,8 +451,8 @@ static void none(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(rays_alike),        cmocka_unit_test(partials_and_normals), cmocka_unit_test(own_shadows),
-        cmocka_unit_test(feet_of_images), cmocka_unit_test(rough_hits),        cmocka_unit_test(rough_box),
+        cmocka_unit_test(rays_alike),     cmocka_unit_test(partials_and_normals), cmocka_unit_test(own_shadows),
+        cmocka_unit_test(feet_of_images), cmocka_unit_test(rough_hits),           cmocka_unit_test(rough_box),
         cmocka_unit_test(none),
     };
     return cmocka_run_group_tests_name("transformed surfaces", tests, NULL, NULL);

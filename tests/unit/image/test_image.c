@@ -247,10 +247,7 @@ static void make_png(const char *path, int bits, int colour, int interlace, cons
     fclose(f);
 }
 
-static unsigned grey_of(int x, int y, unsigned max)
-{
-    return (unsigned)(x * 1009 + y * 499) % (max + 1);
-}
+static unsigned grey_of(int x, int y, unsigned max) { return (unsigned)(x * 1009 + y * 499) % (max + 1); }
 
 static void png_grey_of_every_kind_reads_exactly(void **state)
 {
@@ -398,10 +395,7 @@ static void huge_png_is_refused(void **state)
 
 /* ----------------------------------------------------------------------------------------------------- EXR */
 
-static float number_of(int x, int y)
-{
-    return (float)((7 * x + 13 * y) % 64);
-}
+static float number_of(int x, int y) { return (float)((7 * x + 13 * y) % 64); }
 
 static void assert_numbers(const char *name, const char *channel, float scale, float offset, float tolerance)
 {
@@ -420,9 +414,9 @@ static void assert_numbers(const char *name, const char *channel, float scale, f
 static void exr_of_every_kind_is_read(void **state)
 {
     (void)state;
-    static const char *const exact[] = {"half-no.exr",   "half-rle.exr",  "half-zips.exr", "half-piz.exr",
+    static const char *const exact[] = {"half-no.exr",    "half-rle.exr",  "half-zips.exr", "half-piz.exr",
                                         "half-pxr24.exr", "float-piz.exr", "window.exr",    "window-tiled.exr",
-                                        "upwards.exr",   "tiled.exr",     "mixed.exr"};
+                                        "upwards.exr",    "tiled.exr",     "mixed.exr"};
     for (size_t i = 0; i < sizeof exact / sizeof *exact; i++)
         assert_numbers(exact[i], NULL, 1 / 64.0f, 0, 0);
     static const char *const lossy[] = {"half-b44.exr", "half-b44a.exr"};

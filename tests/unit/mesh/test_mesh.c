@@ -1,5 +1,6 @@
-/* Triangle meshes: hits against brute force, edges and corners that no ray passes between, places and partials, shadows on the mesh itself, images
- * by maps, true displacement against closed forms, and what becomes of the data that a file may hold.
+/* Triangle meshes: hits against brute force, edges and corners that no ray passes between, places and partials, shadows
+ * on the mesh itself, images by maps, true displacement against closed forms, and what becomes of the data that a file
+ * may hold.
  */
 #include <math.h>
 #include <setjmp.h>
@@ -57,14 +58,16 @@ static void floor_of(double a, double b, float at[3], float uv[2])
 /* n x m cells of two triangles; normals as `mesh_clean` finds them. */
 static mesh_data grid(model *of, int n, int m)
 {
-    mesh_data d = {2 * n * m, malloc(sizeof *d.at * 2 * (size_t)(n * m)), malloc(sizeof *d.skin * 2 * (size_t)(n * m)), {0}};
+    mesh_data d = {
+        2 * n * m, malloc(sizeof *d.at * 2 * (size_t)(n * m)), malloc(sizeof *d.skin * 2 * (size_t)(n * m)), {0}};
     assert_true(d.at && d.skin);
     memset(d.skin, 0, sizeof *d.skin * 2 * (size_t)(n * m));
     for (int k = 0; k < d.n; k++) {
         static const int corner[2][3][2] = {{{0, 0}, {1, 0}, {1, 1}}, {{0, 0}, {1, 1}, {0, 1}}};
         const int i = k / 2 % n, j = k / 2 / n;
         for (int c = 0; c < 3; c++)
-            of((double)(i + corner[k % 2][c][0]) / n, (double)(j + corner[k % 2][c][1]) / m, d.at[k][c], d.skin[k].uv[c]);
+            of((double)(i + corner[k % 2][c][0]) / n, (double)(j + corner[k % 2][c][1]) / m, d.at[k][c],
+               d.skin[k].uv[c]);
     }
     return d;
 }
@@ -88,7 +91,8 @@ static mesh *object_bvh(int n)
     memset(d.skin, 0, sizeof *d.skin * (size_t)n);
     for (int k = 0; k < n; k++)
         for (int i = 0; i < 9; i++)
-            d.at[k][i / 3][i % 3] = (float)(random_in(-0.3, 0.3) + (i < 3 ? random_in(-1, 1) : (double)d.at[k][0][i % 3]));
+            d.at[k][i / 3][i % 3] =
+                (float)(random_in(-0.3, 0.3) + (i < 3 ? random_in(-1, 1) : (double)d.at[k][0][i % 3]));
     for (int k = 0; k < 6 * n; k++)
         d.skin[k / 6].uv[k % 6 / 2][k % 2] = (float)random_in(0, 1);
     return mesh_from(d, MESH_NORMALS_SMOOTH, 40);
@@ -101,7 +105,8 @@ static void random_ray(rays *x, int i)
     double a = random_in(0, 6.283), z = random_in(-1, 1), l = 4 * sqrt(1 - z * z), k = random_in(0.2, 3);
     double r[3] = {l * cos(a), 4 * z, l * sin(a)}, to[3] = {random_in(-1, 1), random_in(-1, 1), random_in(-1, 1)};
     x->r.x[i] = (real)r[0], x->r.y[i] = (real)r[1], x->r.z[i] = (real)r[2];
-    x->s.x[i] = (real)(k * (to[0] - r[0])), x->s.y[i] = (real)(k * (to[1] - r[1])), x->s.z[i] = (real)(k * (to[2] - r[2]));
+    x->s.x[i] = (real)(k * (to[0] - r[0])), x->s.y[i] = (real)(k * (to[1] - r[1])),
+    x->s.z[i] = (real)(k * (to[2] - r[2]));
 }
 
 static void no_hits(hits *h, int n)
@@ -126,7 +131,8 @@ static bool brute(const mesh *f, int k, vec3 r, vec3 s, long double *t)
             p[i][a] = (long double)f->d.at[k][i][a] - R[a];
     for (int i = 0; i < 3; i++) {
         const long double *b = p[i], *c = p[(i + 1) % 3];
-        v[i] = S[0] * (b[1] * c[2] - b[2] * c[1]) + S[1] * (b[2] * c[0] - b[0] * c[2]) + S[2] * (b[0] * c[1] - b[1] * c[0]);
+        v[i] = S[0] * (b[1] * c[2] - b[2] * c[1]) + S[1] * (b[2] * c[0] - b[0] * c[2]) +
+               S[2] * (b[0] * c[1] - b[1] * c[0]);
     }
     if (!((v[0] >= 0 && v[1] >= 0 && v[2] >= 0) || (v[0] <= 0 && v[1] <= 0 && v[2] <= 0)))
         return false;
@@ -183,7 +189,8 @@ static void hits_as_by_brute_force(void **state)
             assert_int_equal(h.part[i], at);
             /* rounded to a real, from double's digits on thin triangles and flat rays */
             assert_true(fabs((double)h.t[i] - (double)best) <= (EPS + 1e-12) * (double)best);
-            /* float's (u,w) tell the place to a share of the triangle's size; the thinnest of these have little of it */
+            /* float's (u,w) tell the place to a share of the triangle's size; the thinnest of these have little of it
+             */
             assert_true(apart(lane_get(&q.Q, i), lane_at(&x, i, h.t[i])) < 1e4 * EPS * 4);
         }
     }
@@ -192,7 +199,8 @@ static void hits_as_by_brute_force(void **state)
     surface_free(&f->base);
 }
 
-/* Rays at vertices and at places on edges, as exactly as the number type lets them, and from far away: the ball is closed. */
+/* Rays at vertices and at places on edges, as exactly as the number type lets them, and from far away: the ball is
+ * closed. */
 static void no_ray_passes_between(void **state)
 {
     (void)state;
@@ -206,8 +214,9 @@ static void no_ray_passes_between(void **state)
             const double b = i % 4 == 0 ? 0 : random_in(0, 1), far = i % 3 == 0 ? 1 : i % 3 == 1 ? 30 : 1000;
             const vec3 to = vec3_add(vec3_scale(a.at[i % 3], 1 - b), vec3_scale(a.at[(i + 1) % 3], b));
             /* from within and from outside, where a place that is met means that the ball is */
-            const vec3 r = i % 2 ? (vec3){random_in(-0.1, 0.1), random_in(-0.1, 0.1), random_in(-0.1, 0.1)} :
-                                   vec3_add(vec3_scale(to, far), (vec3){random_in(-0.2, 0.2), random_in(-0.2, 0.2), random_in(-0.2, 0.2)});
+            const vec3 r = i % 2 ? (vec3){random_in(-0.1, 0.1), random_in(-0.1, 0.1), random_in(-0.1, 0.1)}
+                                 : vec3_add(vec3_scale(to, far),
+                                            (vec3){random_in(-0.2, 0.2), random_in(-0.2, 0.2), random_in(-0.2, 0.2)});
             const vec3 s = vec3_sub(i % 2 ? to : (vec3){0.1, 0.1, 0.1}, r);
             lane_set(&x.r, i, (bs_vec3){(real)r.x, (real)r.y, (real)r.z});
             lane_set(&x.s, i, (bs_vec3){(real)s.x, (real)s.y, (real)s.z});
@@ -223,7 +232,8 @@ static void no_ray_passes_between(void **state)
     surface_free(&f->base);
 }
 
-/* n is along the mean of the corners' normals, and the partials are what changes: Q by differences, N by the second ones. */
+/* n is along the mean of the corners' normals, and the partials are what changes: Q by differences, N by the second
+ * ones. */
 static void partials_are_those_of_the_triangle(void **state)
 {
     (void)state;
@@ -233,7 +243,8 @@ static void partials_are_those_of_the_triangle(void **state)
         const int32_t part = (int32_t)random_in(0, f->d.n - 1e-3), parts[3] = {part, part, part};
         const mesh_triangle a = mesh_triangle_of(f, part);
         const double b = random_in(0.1, 0.5), c = random_in(0.1, 0.4), d = 1e-3;
-        const double u0 = a.u[0] + b * (a.u[1] - a.u[0]) + c * (a.u[2] - a.u[0]), w0 = a.w[0] + b * (a.w[1] - a.w[0]) + c * (a.w[2] - a.w[0]);
+        const double u0 = a.u[0] + b * (a.u[1] - a.u[0]) + c * (a.u[2] - a.u[0]),
+                     w0 = a.w[0] + b * (a.w[1] - a.w[0]) + c * (a.w[2] - a.w[0]);
         const real u[3] = {(real)u0, (real)(u0 + d), (real)u0}, w[3] = {(real)w0, (real)w0, (real)(w0 + d)};
         static partials q;
         f->base.ops->eval(&f->base, 3, parts, u, w, 2, &q);
@@ -247,19 +258,22 @@ static void partials_are_those_of_the_triangle(void **state)
         const vec3 Qu = vec3_scale(vec3_sub(Q[1], Q[0]), 1 / du), Qw = vec3_scale(vec3_sub(Q[2], Q[0]), 1 / dw);
         const vec3 nu = vec3_scale(vec3_sub(N[1], N[0]), 1 / du), nw = vec3_scale(vec3_sub(N[2], N[0]), 1 / dw);
         /* without their parts along N */
-        const vec3 flat_u = vec3_sub(Qu, vec3_scale(N[0], vec3_dot(Qu, N[0]))), flat_w = vec3_sub(Qw, vec3_scale(N[0], vec3_dot(Qw, N[0])));
+        const vec3 flat_u = vec3_sub(Qu, vec3_scale(N[0], vec3_dot(Qu, N[0]))),
+                   flat_w = vec3_sub(Qw, vec3_scale(N[0], vec3_dot(Qw, N[0])));
         worst = fmax(worst, vec3_length(vec3_sub(flat_u, wide(lane_get(&q.Qu, 0)))));
         assert_true(vec3_length(vec3_sub(flat_u, wide(lane_get(&q.Qu, 0)))) < digits + d);
         assert_true(vec3_length(vec3_sub(flat_w, wide(lane_get(&q.Qw, 0)))) < digits + d);
         assert_true(fabs(vec3_dot(wide(lane_get(&q.Quu, 0)), N[0]) + vec3_dot(nu, flat_u)) < digits + 4 * d);
         assert_true(fabs(vec3_dot(wide(lane_get(&q.Qww, 0)), N[0]) + vec3_dot(nw, flat_w)) < digits + 4 * d);
-        assert_true(fabs(vec3_dot(wide(lane_get(&q.Quw, 0)), N[0]) + 0.5 * (vec3_dot(nu, flat_w) + vec3_dot(nw, flat_u))) < digits + 4 * d);
+        assert_true(fabs(vec3_dot(wide(lane_get(&q.Quw, 0)), N[0]) +
+                         0.5 * (vec3_dot(nu, flat_w) + vec3_dot(nw, flat_u))) < digits + 4 * d);
     }
     print_message("Qu at most %.2g off\n", worst);
     surface_free(&f->base);
 }
 
-/* Of places Q + h N, (u,w) change along a ray by the method's a and b exactly; on a flat mesh the partials are the plane's. */
+/* Of places Q + h N, (u,w) change along a ray by the method's a and b exactly; on a flat mesh the partials are the
+ * plane's. */
 static void the_way_past(void **state)
 {
     (void)state;
@@ -279,19 +293,23 @@ static void the_way_past(void **state)
             const bs_view v = bs_view_of(s, bs_normal(Qu, Qw), Qu, Qw);
             const mesh_prism p = mesh_prism_at(&x, b, c, 0);
             mesh_gradients(&x, &p, vec3_dot(vec3_cross(p.Xb, p.Xc), p.N), &gu, &gw);
-            /* (u,w), which are reals here, tell b and c to 1e3 roundings on these triangles, of 1/24 and more of 2 pi */
+            /* (u,w), which are reals here, tell b and c to 1e3 roundings on these triangles, of 1/24 and more of 2 pi
+             */
             assert_true(fabs((double)v.a - vec3_dot(gu, wide(s))) <= 1e3 * EPS * (1 + vec3_length(gu)));
             assert_true(fabs((double)v.b - vec3_dot(gw, wide(s))) <= 1e3 * EPS * (1 + vec3_length(gw)));
             if (flat) {
                 assert_true(apart(Qu, (bs_vec3){0, 0, 1}) < 4 * EPS && apart(Qw, (bs_vec3){1, 0, 0}) < 4 * EPS);
-                assert_true(vec3_length(wide(lane_get(&q.Quu, 0))) + vec3_length(wide(lane_get(&q.Quw, 0))) + vec3_length(wide(lane_get(&q.Qww, 0))) == 0);
+                assert_true(vec3_length(wide(lane_get(&q.Quu, 0))) + vec3_length(wide(lane_get(&q.Quw, 0))) +
+                                vec3_length(wide(lane_get(&q.Qww, 0))) ==
+                            0);
             }
         }
         surface_free(&f->base);
     }
 }
 
-/* A ball's mesh from its own surface: outward all is light, inward all is dark, from every place on it, edges and vertices with them. */
+/* A ball's mesh from its own surface: outward all is light, inward all is dark, from every place on it, edges and
+ * vertices with them. */
 static void own_shadows(void **state)
 {
     (void)state;
@@ -307,7 +325,8 @@ static void own_shadows(void **state)
             const double b = i % 4 ? random_in(0, 1) : 0, c = i % 3 ? random_in(0, 1 - b) : 0;
             const vec3 from = mesh_mix(a.at, b, c);
             const vec3 side = vec3_scale((vec3){random_in(-1, 1), random_in(-1, 1), random_in(-1, 1)}, 0.7);
-            const vec3 s = vec3_scale(vec3_add(vec3_scale(n, i % 2 ? 1.5 : -1.5), side), 16); /* through the ball in any case */
+            const vec3 s =
+                vec3_scale(vec3_add(vec3_scale(n, i % 2 ? 1.5 : -1.5), side), 16); /* through the ball in any case */
             lane_set(&x.r, i, (bs_vec3){(real)from.x, (real)from.y, (real)from.z});
             lane_set(&x.s, i, (bs_vec3){(real)s.x, (real)s.y, (real)s.z});
             part[i] = k;
@@ -323,7 +342,8 @@ static void own_shadows(void **state)
     surface_free(&f->base);
 }
 
-/* Rays at the image of a mesh, and the mesh of the images; by a map that turns and stretches, and by one that mirrors, too. */
+/* Rays at the image of a mesh, and the mesh of the images; by a map that turns and stretches, and by one that mirrors,
+ * too. */
 static void images(void **state)
 {
     (void)state;
@@ -355,10 +375,12 @@ static void images(void **state)
             /* the moved mesh has its corners rounded to float, in either build */
             assert_true(apart(lane_at(&x, i, a.t[i]), lane_at(&x, i, b.t[i])) < 3e-5);
             assert_true(fabs((double)(u[0][i] - u[1][i])) < 1e-4 && fabs((double)(w[0][i] - w[1][i])) < 1e-4);
-            assert_true(apart(lane_get(&p.Qu, i), lane_get(&q.Qu, i)) < 0.2 && apart(lane_get(&p.Qw, i), lane_get(&q.Qw, i)) < 0.2);
+            assert_true(apart(lane_get(&p.Qu, i), lane_get(&q.Qu, i)) < 0.2 &&
+                        apart(lane_get(&p.Qw, i), lane_get(&q.Qw, i)) < 0.2);
             const vec3 n = wide(bs_normal(lane_get(&p.Qu, i), lane_get(&p.Qw, i))), s = wide(lane_get(&x.s, i));
             assert_true(vec3_dot(n, wide(bs_normal(lane_get(&q.Qu, i), lane_get(&q.Qw, i)))) > 0);
-            assert_true(vec3_dot(n, s) < 0.35 * vec3_length(n) * vec3_length(s)); /* outward, but for what normals are bent */
+            assert_true(vec3_dot(n, s) <
+                        0.35 * vec3_length(n) * vec3_length(s)); /* outward, but for what normals are bent */
         }
         assert_true(met > 40);
         surface_free(k);
@@ -380,7 +402,8 @@ static bump *bumped(const char *text, double scale, const mesh *f)
 }
 
 /* Against the same surface in closed form: `within` of its hits, as the mesh lies within that of it. */
-static void displaced_as(const char *name, mesh *f, surface *g, const char *text, double scale, double within, double share)
+static void displaced_as(const char *name, mesh *f, surface *g, const char *text, double scale, double within,
+                         double share)
 {
     bump *P = bumped(text, scale, f);
     assert_true(displaced_prepare(&f->base, P));
@@ -429,8 +452,8 @@ static void displaced_as(const char *name, mesh *f, surface *g, const char *text
             if (!(apart(lane_get(&g_a.n_bump, k), lane_get(&g_b.n_bump, k)) < 20 * within + 0.02))
                 far++;
     }
-    print_message("%-6s %3d hits, %d beyond, %d missed by one, %d of %d shadows differ, %ld not sure\n", name, met, far, differ, darker, dark,
-                  c.uncertain);
+    print_message("%-6s %3d hits, %d beyond, %d missed by one, %d of %d shadows differ, %ld not sure\n", name, met, far,
+                  differ, darker, dark, c.uncertain);
     assert_true(met > 150 && dark > 100);
     assert_true(far <= share * met && differ <= share * met && darker <= share * dark);
     bump_free(P);
@@ -451,7 +474,8 @@ static void displaced_plane(void **state)
         }
     f->u[0] = f->w[0] = 0;
     f->u[1] = f->w[1] = 1;
-    /* a mesh has its (u,w) in float in either build, and P is 2 steep; the hits that float finds are 2e-6 off (test_displace.c), in scenes as wide */
+    /* a mesh has its (u,w) in float in either build, and P is 2 steep; the hits that float finds are 2e-6 off
+     * (test_displace.c), in scenes as wide */
     displaced_as("plane", f, g, "sin(20*u)*cos(15*w)", 0.1, 1e-5, 0);
 }
 
@@ -459,7 +483,8 @@ static void displaced_ball(void **state)
 {
     (void)state;
     /* 200 x 100 cells: 4e-4 between chord and arc of twice 1.8 degrees at most, where rays graze more of it */
-    displaced_as("ball", mesh_of(ball, 200, 100), sphere_new((vec3){0, 0, 0}, 1), "sin(w)^2*sin(9*u)*sin(8*w)", 0.06, 3e-3, 0.02);
+    displaced_as("ball", mesh_of(ball, 200, 100), sphere_new((vec3){0, 0, 0}, 1), "sin(w)^2*sin(9*u)*sin(8*w)", 0.06,
+                 3e-3, 0.02);
 }
 
 #ifdef KAGE_DOUBLE
@@ -487,7 +512,8 @@ static double error_of(mesh *f, double A, int order)
         f->base.ops->eval(&f->base, LANES, h.part, u, w, 2, &q);
         P->ops->eval(P, LANES, u, w, 2, &p);
         for (int i = 0; i < LANES; i++) {
-            const bs_vec3 s = lane_get(&x.s, i), Qu = lane_get(&q.Qu, i), Qw = lane_get(&q.Qw, i), N = bs_normal(Qu, Qw);
+            const bs_vec3 s = lane_get(&x.s, i), Qu = lane_get(&q.Qu, i), Qw = lane_get(&q.Qw, i),
+                          N = bs_normal(Qu, Qw);
             const double speed = sqrt(bs_dot(s, s));
             if (h.id[i] < 0 || rough.id[i] < 0 || rough.part[i] != h.part[i])
                 continue; /* over an edge the flat triangle's formulas do not go */
@@ -506,8 +532,9 @@ static double error_of(mesh *f, double A, int order)
     return sum / n;
 }
 
-/* How the errors shrink with the amplitude: on a flat mesh as on a plane (test_slopes.c). Where normals are not the triangles' own, the way
- * to the height P is P (N.n)/(s.n), n the triangle's, and not P/(s.N): an error as the amplitude, and as the angle between the two. */
+/* How the errors shrink with the amplitude: on a flat mesh as on a plane (test_slopes.c). Where normals are not the
+ * triangles' own, the way to the height P is P (N.n)/(s.n), n the triangle's, and not P/(s.N): an error as the
+ * amplitude, and as the angle between the two. */
 static void error_slopes(void **state)
 {
     (void)state;
@@ -520,7 +547,8 @@ static void error_slopes(void **state)
     }
     surface_free(&f->base);
     mesh *coarse = mesh_of(ball, 40, 20), *fine = mesh_of(ball, 160, 80);
-    const double a = error_of(coarse, 1e-4, 3), times = (a - error_of(coarse, 1e-5, 3)) / log(10), finer = (a - error_of(fine, 1e-4, 3)) / log(4);
+    const double a = error_of(coarse, 1e-4, 3), times = (a - error_of(coarse, 1e-5, 3)) / log(10),
+                 finer = (a - error_of(fine, 1e-4, 3)) / log(4);
     print_message("ball order 3: error as A^%.3f, and as the cells' size^%.3f\n", times, finer);
     assert_true(fabs(times - 1) < 0.25 && fabs(finer - 1) < 0.25);
     surface_free(&coarse->base);
@@ -584,7 +612,8 @@ static void cleaning(void **state)
     mesh_data_free(&d);
 }
 
-/* A box of 12 triangles: edges are sharp up to a crease of 90 degrees, and the corners' normals the diagonals beyond it. */
+/* A box of 12 triangles: edges are sharp up to a crease of 90 degrees, and the corners' normals the diagonals beyond
+ * it. */
 static void creases(void **state)
 {
     (void)state;
@@ -610,13 +639,14 @@ static void creases(void **state)
     }
 }
 
-/* Textures without an area, and mirrored ones: all that is asked for is finite, n outward, and the place found again. */
+/* Textures without an area, and mirrored ones: all that is asked for is finite, n outward, and the place found again.
+ */
 static void odd_textures(void **state)
 {
     (void)state;
     static const float odd[][3][2] = {
-        {{0.5f, 0.5f}, {0.5f, 0.5f}, {0.5f, 0.5f}}, {{0, 0}, {0.5f, 0.5f}, {1, 1}}, {{0, 0}, {1, -1}, {1, -1}}, {{0.2f, 0.7f}, {0.2f, 0.7f}, {0.9f, 0.1f}},
-        {{0, 0}, {0, 1}, {1, 0}}, {{0, 0}, {1, 0}, {0, 1}},
+        {{0.5f, 0.5f}, {0.5f, 0.5f}, {0.5f, 0.5f}}, {{0, 0}, {0.5f, 0.5f}, {1, 1}}, {{0, 0}, {1, -1}, {1, -1}},
+        {{0.2f, 0.7f}, {0.2f, 0.7f}, {0.9f, 0.1f}}, {{0, 0}, {0, 1}, {1, 0}},       {{0, 0}, {1, 0}, {0, 1}},
     };
     enum { N = sizeof odd / sizeof *odd };
     static const float at[3][3] = {{0, 0, 0}, {1, 0.1f, 0}, {0.2f, 1, 0}};
@@ -648,9 +678,16 @@ static void odd_textures(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(hits_as_by_brute_force), cmocka_unit_test(no_ray_passes_between), cmocka_unit_test(partials_are_those_of_the_triangle),
-        cmocka_unit_test(the_way_past), cmocka_unit_test(own_shadows),            cmocka_unit_test(images),                cmocka_unit_test(displaced_plane),
-        cmocka_unit_test(displaced_ball),         cmocka_unit_test(cleaning),              cmocka_unit_test(creases),
+        cmocka_unit_test(hits_as_by_brute_force),
+        cmocka_unit_test(no_ray_passes_between),
+        cmocka_unit_test(partials_are_those_of_the_triangle),
+        cmocka_unit_test(the_way_past),
+        cmocka_unit_test(own_shadows),
+        cmocka_unit_test(images),
+        cmocka_unit_test(displaced_plane),
+        cmocka_unit_test(displaced_ball),
+        cmocka_unit_test(cleaning),
+        cmocka_unit_test(creases),
         cmocka_unit_test(odd_textures),
 #ifdef KAGE_DOUBLE
         cmocka_unit_test(error_slopes),

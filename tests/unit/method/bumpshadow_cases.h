@@ -1,9 +1,9 @@
-/* bumpshadow.h against the golden vectors, 240 cases on five kinds of surface, computed at 50 digits by a program that shares
- * nothing with this one. Included by a test for float and one for double: the header is for either.
+/* bumpshadow.h against the golden vectors, 240 cases on five kinds of surface, computed at 50 digits by a program that
+ * shares nothing with this one. Included by a test for float and one for double: the header is for either.
  *
- * Tolerances, relative to the vector's or number's own size: straightforward code reaches 1e-14 in double and 1e-5 in float,
- * where the shift is well-conditioned. tau loses digits where B (the sum of three terms) or B^2 - 4AC cancels; the bound
- * grows by how much smaller the sum is than its terms.
+ * Tolerances, relative to the vector's or number's own size: straightforward code reaches 1e-14 in double and 1e-5 in
+ * float, where the shift is well-conditioned. tau loses digits where B (the sum of three terms) or B^2 - 4AC cancels;
+ * the bound grows by how much smaller the sum is than its terms.
  */
 #include <math.h>
 
@@ -89,7 +89,8 @@ static void golden(void **state)
         const double one = terms / fabs((double)B);
         const double disc = (double)(B * B - 4 * A * p.P), discplus = (double)(B * B - 4 * Aplus * p.P);
         const double two = one * fmax(1, (double)(B * B) / fabs(disc)) + fabs((double)(4 * A * p.P)) / fabs(disc);
-        const double plus = one * fmax(1, (double)(B * B) / fabs(discplus)) + 4 * fabs((double)(Aplus * p.P)) / fabs(discplus);
+        const double plus =
+            one * fmax(1, (double)(B * B) / fabs(discplus)) + 4 * fabs((double)(Aplus * p.P)) / fabs(discplus);
         plain += one < 2 && two < 4 && plus < 4;
         near_tau(i, c, "tau_order0", bs_shift_of(0, 0, v, 0, p, all), 1, 0);
         near_tau(i, c, "tau_order1", bs_shift_of(1, 0, v, 0, p, all), one, 1);
@@ -115,7 +116,8 @@ static void guard(void **state)
     for (int order = 0; order <= 3; order++)
         assert_int_equal(bs_shift_of(order, 1, v, 0, gentle, slab).order, order);
     for (int order = 0; order <= 3; order++) {
-        const bs_shift a = bs_shift_of(order, 1, v, 0, facing_away, slab), b = bs_shift_of(order, 1, v, 0, far_off, slab);
+        const bs_shift a = bs_shift_of(order, 1, v, 0, facing_away, slab),
+                       b = bs_shift_of(order, 1, v, 0, far_off, slab);
         const bs_shift c = bs_shift_of(order, 1, v, 0, no_root, slab);
         assert_int_equal(a.order, 0);
         assert_int_equal(b.order, 0);
@@ -136,7 +138,8 @@ static void guard(void **state)
 static void from_behind(void **state)
 {
     (void)state;
-    const bs_vec3 Qu = {1, (bs_real)0.2, 0}, Qw = {(bs_real)0.1, (bs_real)0.3, (bs_real)1.2}, s = {(bs_real)0.3, 1, (bs_real)0.4};
+    const bs_vec3 Qu = {1, (bs_real)0.2, 0}, Qw = {(bs_real)0.1, (bs_real)0.3, (bs_real)1.2},
+                  s = {(bs_real)0.3, 1, (bs_real)0.4};
     const bs_vec3 z = {(bs_real)0.1, (bs_real)0.05, 0};
     const bs_bump p = {(bs_real)0.04, (bs_real)0.2, (bs_real)-0.1, (bs_real)0.3, (bs_real)0.2, (bs_real)-0.4};
     /* u and w exchanged: n turns, so P and its partials change their sign */
@@ -206,11 +209,8 @@ static void poles(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(golden),
-        cmocka_unit_test(guard),
-        cmocka_unit_test(from_behind),
-        cmocka_unit_test(no_end),
-        cmocka_unit_test(poles),
+        cmocka_unit_test(golden), cmocka_unit_test(guard), cmocka_unit_test(from_behind),
+        cmocka_unit_test(no_end), cmocka_unit_test(poles),
     };
     return cmocka_run_group_tests_name(BUMPSHADOW_NAME, tests, NULL, NULL);
 }

@@ -1,5 +1,5 @@
-/* The method's stages over whole waves, in the build's own precision: P = 0, constant, linear, quadratic; march and iter
- * against their header; the stages against the header, lane by lane.
+/* The method's stages over whole waves, in the build's own precision: P = 0, constant, linear, quadratic; march and
+ * iter against their header; the stages against the header, lane by lane.
  */
 #include <math.h>
 #include <setjmp.h>
@@ -33,7 +33,8 @@ static bump *function(const char *text)
     return p;
 }
 
-/* A wave of rays that come down, or up from behind, onto a skewed plane near (u,w) = 0..1; all that precedes the shift. */
+/* A wave of rays that come down, or up from behind, onto a skewed plane near (u,w) = 0..1; all that precedes the shift.
+ */
 static hit_group *wave(const bump *P, double side)
 {
     static hit_group g;
@@ -67,7 +68,8 @@ static hit_group *wave(const bump *P, double side)
 /* |gap| at the shift found, in scene units: how far r + s t0 is from the rough surface along the normal. */
 static double miss(const hit_group *g, int i, const bump *P)
 {
-    bs_view v = bs_view_of(lane_get(&g->x.s, i), lane_get(&g->n_smooth, i), lane_get(&g->q.Qu, i), lane_get(&g->q.Qw, i));
+    bs_view v =
+        bs_view_of(lane_get(&g->x.s, i), lane_get(&g->n_smooth, i), lane_get(&g->q.Qu, i), lane_get(&g->q.Qw, i));
     real u[LANES], w[LANES];
     static bump_values h;
     u[0] = g->u[i] + v.a * g->tau[i];
@@ -76,12 +78,13 @@ static double miss(const hit_group *g, int i, const bump *P)
     return fabs((double)bs_gap(v, 0, g->tau[i], h.P[0]));
 }
 
-static const method every[] = {{METHOD_NONE, 0},  {METHOD_ORDER, 0}, {METHOD_ORDER, 1}, {METHOD_ORDER, 2}, {METHOD_ORDER, 3},
-                               {METHOD_ITER, 1},  {METHOD_ITER, 4},  {METHOD_MARCH, 1}, {METHOD_MARCH, 4}, {METHOD_MARCH, 9}};
+static const method every[] = {{METHOD_NONE, 0},  {METHOD_ORDER, 0}, {METHOD_ORDER, 1}, {METHOD_ORDER, 2},
+                               {METHOD_ORDER, 3}, {METHOD_ITER, 1},  {METHOD_ITER, 4},  {METHOD_MARCH, 1},
+                               {METHOD_MARCH, 4}, {METHOD_MARCH, 9}};
 enum { EVERY = sizeof every / sizeof *every };
 
-/* By these methods the shift must be exact for P: the ray's point is on the rough surface to rounding. `flat`: also where
- * they fall back to order 0. */
+/* By these methods the shift must be exact for P: the ray's point is on the rough surface to rounding. `flat`: also
+ * where they fall back to order 0. */
 static void exact(const char *text, const int *ks, int n, bool flat)
 {
     bump *P = function(text);
@@ -212,7 +215,8 @@ static void counts(void **state)
     g = wave(P, 1);
     shift_group(g, P, (method){METHOD_MARCH, 4}, true);
     for (int i = 0; i < LANES; i++) {
-        bs_view v = bs_view_of(lane_get(&g->x.s, i), lane_get(&g->n_smooth, i), lane_get(&g->q.Qu, i), lane_get(&g->q.Qw, i));
+        bs_view v =
+            bs_view_of(lane_get(&g->x.s, i), lane_get(&g->n_smooth, i), lane_get(&g->q.Qu, i), lane_get(&g->q.Qw, i));
         assert_int_equal(g->order[i], 0);
         assert_true(fabs((double)(g->tau[i] - bs_tau0(v, g->h.P[i]))) < 1e-6);
     }
@@ -230,11 +234,12 @@ static void guarded_shifts_stay_in_the_slab(void **state)
         for (int order = 0; order <= 3; order++) {
             shift_group(g, P, (method){METHOD_ORDER, order}, true);
             for (int i = 0; i < LANES; i++) {
-                bs_view v =
-                    bs_view_of(lane_get(&g->x.s, i), lane_get(&g->n_smooth, i), lane_get(&g->q.Qu, i), lane_get(&g->q.Qw, i));
+                bs_view v = bs_view_of(lane_get(&g->x.s, i), lane_get(&g->n_smooth, i), lane_get(&g->q.Qu, i),
+                                       lane_get(&g->q.Qw, i));
                 bs_slab slab = bs_slab_of(v, P->Pmin, P->Pmax);
                 double slack = 4 * EPS * (double)real_abs(slab.back);
-                assert_true((double)g->tau[i] >= (double)slab.front - slack && (double)g->tau[i] <= (double)slab.back + slack);
+                assert_true((double)g->tau[i] >= (double)slab.front - slack &&
+                            (double)g->tau[i] <= (double)slab.back + slack);
                 back += g->order[i] != order;
             }
         }

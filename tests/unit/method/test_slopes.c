@@ -1,8 +1,8 @@
-/* How fast the error of each method shrinks with the amplitude A of the bumps: a wrong sign or factor in any formula shows
- * as a wrong slope. In double whatever REAL is: the smallest errors are below float.
+/* How fast the error of each method shrinks with the amplitude A of the bumps: a wrong sign or factor in any formula
+ * shows as a wrong slope. In double whatever REAL is: the smallest errors are below float.
  *
- * Truth: the hit of the ray with the displaced surface itself, by Newton in long double. The slopes expected are those of
- * docs/method.md, measured there at 40 digits; the ray is 55 degrees off the normal, as there.
+ * Truth: the hit of the ray with the displaced surface itself, by Newton in long double. The slopes expected are those
+ * of docs/method.md, measured there at 40 digits; the ray is 55 degrees off the normal, as there.
  */
 #include <math.h>
 #include <setjmp.h>
@@ -25,14 +25,14 @@ static real_long f(real_long u, real_long w) { return sinl(2 * u + w) + cosl(3 *
 static bs_bump bumped(double A, double u, double w)
 {
     double s = sin(2 * u + w), c = cos(2 * u + w), S = sin(3 * w - u), C = cos(3 * w - u);
-    bs_bump p = {A * (s + C / 2 + 0.3), A * (2 * c + S / 2), A * (c - 1.5 * S),
+    bs_bump p = {A * (s + C / 2 + 0.3), A * (2 * c + S / 2),    A * (c - 1.5 * S),
                  A * (-4 * s - C / 2),  A * (-2 * s + 1.5 * C), A * (-s - 4.5 * C)};
     return p;
 }
 
-/* Surfaces that the test knows all of, about the axis y: the plane y = 0, (u,w) = (z,x); the sphere about (0,-R,0), touched as the
- * plane is near the origin; the cylinder; the cone whose radius is R at w = 0 and grows by SIN along its side; the torus with a tube
- * of radius TUBE. */
+/* Surfaces that the test knows all of, about the axis y: the plane y = 0, (u,w) = (z,x); the sphere about (0,-R,0),
+ * touched as the plane is near the origin; the cylinder; the cone whose radius is R at w = 0 and grows by SIN along its
+ * side; the torus with a tube of radius TUBE. */
 typedef enum kind { PLANE, SPHERE, CYLINDER, CONE, TORUS } kind;
 static const char *const kinds[] = {"plane", "sphere", "cylinder", "cone", "torus"};
 
@@ -160,24 +160,30 @@ static void cross_long(const real_long a[3], const real_long b[3], real_long c[3
         c[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
 }
 
-static real_long dot_long(const real_long a[3], const real_long b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+static real_long dot_long(const real_long a[3], const real_long b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
 
-/* An image has no foot in closed form: Q(u,w) + A f n/|n| = r + s t in all three unknowns, by steps with the derivatives of Q alone,
- * which converge where A is small. (u,w) in and out. */
+/* An image has no foot in closed form: Q(u,w) + A f n/|n| = r + s t in all three unknowns, by steps with the
+ * derivatives of Q alone, which converge where A is small. (u,w) in and out. */
 static real_long image_truth(const smooth *q, const ray *x, double A, real_long *u, real_long *w)
 {
     const vec3 o = q->image->o;
     real_long t = (real_long)x->t;
     for (int step = 0; step < 200; step++) {
         const real_long R = (real_long)q->R, cu = cosl(*u), su = sinl(*u), cw = cosl(*w), sw = sinl(*w);
-        const real_long sphere[3][3] = {{R * sw * cu, R * cw - R, R * sw * su}, {-R * sw * su, 0, R * sw * cu}, {R * cw * cu, -R * sw, R * cw * su}};
+        const real_long sphere[3][3] = {{R * sw * cu, R * cw - R, R * sw * su},
+                                        {-R * sw * su, 0, R * sw * cu},
+                                        {R * cw * cu, -R * sw, R * cw * su}};
         const real_long plane[3][3] = {{*w, 0, *u}, {0, 0, 1}, {1, 0, 0}};
         real_long X[3], U[3], W[3], n[3], g[3], e[3];
         map_long(q->image, q->is == PLANE ? plane[0] : sphere[0], X);
         map_long(q->image, q->is == PLANE ? plane[1] : sphere[1], U);
         map_long(q->image, q->is == PLANE ? plane[2] : sphere[2], W);
         cross_long(U, W, n);
-        const real_long h = (real_long)A * f(*u, *w) / sqrtl(dot_long(n, n)), away[3] = {(real_long)o.x, (real_long)o.y, (real_long)o.z};
+        const real_long h = (real_long)A * f(*u, *w) / sqrtl(dot_long(n, n)),
+                        away[3] = {(real_long)o.x, (real_long)o.y, (real_long)o.z};
         for (int k = 0; k < 3; k++)
             g[k] = x->r[k] + x->s[k] * t - X[k] - away[k] - h * n[k];
         /* g + s dt = U du + W dw */
@@ -214,7 +220,8 @@ static ray aim(const smooth *q, double where, double turn)
 {
     const double off = 55 * 3.14159265358979323846 / 180;
     ray x;
-    bs_vec3 d[5], p = q->is == PLANE ? shape(q, 0.2 - where, 0.3 + where, d) : shape(q, 0.7, where, d), m = bs_normal(d[0], d[1]);
+    bs_vec3 d[5], p = q->is == PLANE ? shape(q, 0.2 - where, 0.3 + where, d) : shape(q, 0.7, where, d),
+                  m = bs_normal(d[0], d[1]);
     const double l = sqrt(bs_dot(m, m)), n[3] = {m.x / l, m.y / l, m.z / l}, at_place[3] = {p.x, p.y, p.z};
     /* a unit vector across n */
     const double along[3] = {d[0].x, d[0].y, d[0].z}, lu = sqrt(bs_dot(d[0], d[0]));
@@ -226,7 +233,8 @@ static ray aim(const smooth *q, double where, double turn)
         x.r[k] = (real_long)at_place[k] - 4 * x.s[k];
     }
     /* the smooth hit, to the last digit of long double */
-    real_long u = q->is == PLANE ? (real_long)(0.2 - where) : 0.7L, w = (real_long)(q->is == PLANE ? 0.3 + where : where);
+    real_long u = q->is == PLANE ? (real_long)(0.2 - where) : 0.7L,
+              w = (real_long)(q->is == PLANE ? 0.3 + where : where);
     x.t = 4;
     real_long t = q->image ? image_truth(q, &x, 0, &u, &w) : truth(q, &x, 0), at[3];
     x.t = (double)t;
@@ -283,7 +291,10 @@ static void expect(const smooth *q, const int want[METHODS])
     int wrong = 0;
     for (int m = 0; m < METHODS; m++) {
         double s = slope(m, q);
-        print_message("%s%-8s %-6s error as A^%.3f, expected A^%d\n", !q->image ? "" : affine_scale(q->image) > 0 ? "moved " : "stretched ",
+        print_message("%s%-8s %-6s error as A^%.3f, expected A^%d\n",
+                      !q->image                    ? ""
+                      : affine_scale(q->image) > 0 ? "moved "
+                                                   : "stretched ",
                       kinds[q->is], names[m], s, want[m]);
         wrong += !(fabs(s - want[m]) <= 0.15);
     }
@@ -298,7 +309,8 @@ static void on_a_plane(void **state)
     expect(&q, want);
 }
 
-/* Where the surface itself bends the paper's orders neglect that, and with it all beyond A^2; 2+ neglects how its bending changes. */
+/* Where the surface itself bends the paper's orders neglect that, and with it all beyond A^2; 2+ neglects how its
+ * bending changes. */
 static void on_what_bends(void **state)
 {
     const smooth all[] = {{SPHERE, 2, NULL}, {CYLINDER, 2, NULL}, {CONE, 1.5, NULL}, {TORUS, 2, NULL}};
@@ -312,11 +324,13 @@ static void on_what_bends(void **state)
 static void on_images(void **state)
 {
     const double c = cos(0.6), k = sin(0.6);
-    const affine turn = {{c, k, 0}, {-k, c, 0}, {0, 0, 1}, {0.1, 0.2, -0.3}}, all = {{1.3, 0, 0}, {0, 1.3, 0}, {0, 0, 1.3}, {0, 0, 0}};
+    const affine turn = {{c, k, 0}, {-k, c, 0}, {0, 0, 1}, {0.1, 0.2, -0.3}},
+                 all = {{1.3, 0, 0}, {0, 1.3, 0}, {0, 0, 1.3}, {0, 0, 0}};
     const affine some = {{1.4, 0, 0}, {0, 0.7, 0.2}, {0, 0, 0.9}, {0, 0, 0}}, moved = affine_then(&turn, &all);
     const affine stretched = affine_then(&turn, &some);
     const int flat[METHODS] = {2, 3, 3, 4, 3, 4}, bent[METHODS] = {2, 2, 2, 3, 2, 2};
-    const smooth planes[] = {{PLANE, 0, &moved}, {PLANE, 0, &stretched}}, spheres[] = {{SPHERE, 2, &moved}, {SPHERE, 2, &stretched}};
+    const smooth planes[] = {{PLANE, 0, &moved}, {PLANE, 0, &stretched}},
+                 spheres[] = {{SPHERE, 2, &moved}, {SPHERE, 2, &stretched}};
     (void)state;
     for (int i = 0; i < 2; i++) {
         expect(&planes[i], flat);
@@ -326,6 +340,7 @@ static void on_images(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(on_a_plane), cmocka_unit_test(on_what_bends), cmocka_unit_test(on_images)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(on_a_plane), cmocka_unit_test(on_what_bends),
+                                       cmocka_unit_test(on_images)};
     return cmocka_run_group_tests_name("error slopes", tests, NULL, NULL);
 }

@@ -1,5 +1,5 @@
-/* Surfaces that are known by their points alone: partials against golden vectors, hits against closed forms and against brute force,
- * seams, silhouettes, corners and degenerate edges, shadows on themselves.
+/* Surfaces that are known by their points alone: partials against golden vectors, hits against closed forms and against
+ * brute force, seams, silhouettes, corners and degenerate edges, shadows on themselves.
  */
 #include <math.h>
 #include <setjmp.h>
@@ -39,27 +39,33 @@ static const double pi = 3.14159265358979323846;
 
 static surface *moebius(void)
 {
-    return patch_surface_new(function("(1.2 + w*cos(u/2))*cos(u)", "w*sin(u/2)", "(1.2 + w*cos(u/2))*sin(u)", 0, 2 * pi, -0.4, 0.4));
+    return patch_surface_new(
+        function("(1.2 + w*cos(u/2))*cos(u)", "w*sin(u/2)", "(1.2 + w*cos(u/2))*sin(u)", 0, 2 * pi, -0.4, 0.4));
 }
 
 static surface *klein(void)
 {
-    return patch_surface_new(function("(1 + 0.5*cos(u/2)*sin(w) - 0.5*sin(u/2)*sin(2*w))*cos(u)",
-                                 "0.7*(sin(u/2)*sin(w) + cos(u/2)*sin(2*w))",
-                                 "(1 + 0.5*cos(u/2)*sin(w) - 0.5*sin(u/2)*sin(2*w))*sin(u)", 0, 2 * pi, 0, 2 * pi));
+    return patch_surface_new(function(
+        "(1 + 0.5*cos(u/2)*sin(w) - 0.5*sin(u/2)*sin(2*w))*cos(u)", "0.7*(sin(u/2)*sin(w) + cos(u/2)*sin(2*w))",
+        "(1 + 0.5*cos(u/2)*sin(w) - 0.5*sin(u/2)*sin(2*w))*sin(u)", 0, 2 * pi, 0, 2 * pi));
 }
 
 /* A sheet with an edge across it. */
-static surface *roof(void) { return patch_surface_new(function("u", "0.3*abs(u - 0.1) + 0.2*sin(3*w)", "w", -1, 1, -1.1, 1.1)); }
+static surface *roof(void)
+{
+    return patch_surface_new(function("u", "0.3*abs(u - 0.1) + 0.2*sin(3*w)", "w", -1, 1, -1.1, 1.1));
+}
 
 static surface *ball(void)
 {
-    return patch_surface_new(function("0.3 + 1.2*sin(w)*cos(u)", "1.2*cos(w) - 0.2", "0.1 + 1.2*sin(w)*sin(u)", -pi, pi, 0, pi));
+    return patch_surface_new(
+        function("0.3 + 1.2*sin(w)*cos(u)", "1.2*cos(w) - 0.2", "0.1 + 1.2*sin(w)*sin(u)", -pi, pi, 0, pi));
 }
 
 static surface *ring(void)
 {
-    return patch_surface_new(function("0.1 + (0.9 + 0.4*cos(w))*cos(u)", "-0.1 - 0.4*sin(w)", "0.2 + (0.9 + 0.4*cos(w))*sin(u)", -pi, pi, -pi, pi));
+    return patch_surface_new(function("0.1 + (0.9 + 0.4*cos(w))*cos(u)", "-0.1 - 0.4*sin(w)",
+                                      "0.2 + (0.9 + 0.4*cos(w))*sin(u)", -pi, pi, -pi, pi));
 }
 
 static surface *teapot(void)
@@ -149,7 +155,8 @@ static void golden_partials(void **state)
 {
     (void)state;
     struct fy_document *doc = golden_open(KAGE_TESTS_DIR "/golden/sheet.json");
-    struct fy_node *functions = golden_get(fy_document_root(doc), "functions"), *patches = golden_get(fy_document_root(doc), "patches");
+    struct fy_node *functions = golden_get(fy_document_root(doc), "functions"),
+                   *patches = golden_get(fy_document_root(doc), "patches");
     double worst = 0;
     int seen = 0;
     for (int k = 0; k < fy_node_sequence_item_count(functions); k++) {
@@ -166,7 +173,8 @@ static void golden_partials(void **state)
         vec3 p[16];
         for (int i = 0; i < 16; i++) {
             struct fy_node *at = fy_node_sequence_get_by_index(points, i);
-            assert_true(golden_number(fy_node_sequence_get_by_index(at, 0), &p[i].x) && golden_number(fy_node_sequence_get_by_index(at, 1), &p[i].y) &&
+            assert_true(golden_number(fy_node_sequence_get_by_index(at, 0), &p[i].x) &&
+                        golden_number(fy_node_sequence_get_by_index(at, 1), &p[i].y) &&
                         golden_number(fy_node_sequence_get_by_index(at, 2), &p[i].z));
         }
         patch *q = patch_bezier_new(1, p);
@@ -205,7 +213,8 @@ static void hits_are_on_the_surface(void **state)
                     continue;
                 double U[2], W[2];
                 f->ops->extent(f, part[i], U, W);
-                assert_true((double)u[i] >= U[0] - 1e-6 && (double)u[i] <= U[1] + 1e-6 && (double)w[i] >= W[0] - 1e-6 && (double)w[i] <= W[1] + 1e-6);
+                assert_true((double)u[i] >= U[0] - 1e-6 && (double)u[i] <= U[1] + 1e-6 && (double)w[i] >= W[0] - 1e-6 &&
+                            (double)w[i] <= W[1] + 1e-6);
                 met++;
                 const double far = 1 + distance(lane_at(&x, i, 0), lane_at(&x, i, h.t[i]));
                 worst = fmax(worst, distance(lane_get(&q.Q, i), lane_at(&x, i, h.t[i])) / (EPS * far));
@@ -217,13 +226,15 @@ static void hits_are_on_the_surface(void **state)
     }
 }
 
-/* The sphere and the torus that have closed forms: the same hits, the same shadows, rays from within and such that graze. */
+/* The sphere and the torus that have closed forms: the same hits, the same shadows, rays from within and such that
+ * graze. */
 static void closed_forms(void **state)
 {
     (void)state;
     for (int kind = BALL; kind <= RING; kind++) {
         surface *f = surface_of(kind);
-        surface *g = kind == BALL ? sphere_new((vec3){0.3, -0.2, 0.1}, 1.2) : torus_new((vec3){0.1, -0.1, 0.2}, (vec3){0, 1, 0}, 0.9, 0.4);
+        surface *g = kind == BALL ? sphere_new((vec3){0.3, -0.2, 0.1}, 1.2)
+                                  : torus_new((vec3){0.1, -0.1, 0.2}, (vec3){0, 1, 0}, 0.9, 0.4);
         int differ = 0, met = 0;
         for (int round = 0; round < 30; round++) {
             static rays x;
@@ -250,9 +261,13 @@ static void closed_forms(void **state)
                     continue;
                 met++;
                 const double off = distance(lane_at(&x, i, a.t[i]), lane_at(&x, i, b.t[i]));
-                g->ops->locate(g, 1, &(rays){.r = {.x = {x.r.x[i]}, .y = {x.r.y[i]}, .z = {x.r.z[i]}}, .s = {.x = {x.s.x[i]}, .y = {x.s.y[i]}, .z = {x.s.z[i]}}}, &b.t[i], part, u, w);
+                g->ops->locate(g, 1,
+                               &(rays){.r = {.x = {x.r.x[i]}, .y = {x.r.y[i]}, .z = {x.r.z[i]}},
+                                       .s = {.x = {x.s.x[i]}, .y = {x.s.y[i]}, .z = {x.s.z[i]}}},
+                               &b.t[i], part, u, w);
                 g->ops->eval(g, 1, part, u, w, 1, &q);
-                const bs_vec3 n = lane_unit(bs_normal(lane_get(&q.Qu, 0), lane_get(&q.Qw, 0))), s = lane_unit(lane_get(&x.s, i));
+                const bs_vec3 n = lane_unit(bs_normal(lane_get(&q.Qu, 0), lane_get(&q.Qw, 0))),
+                              s = lane_unit(lane_get(&x.s, i));
                 const double sine = fabs((double)bs_dot(n, s));
                 if (!(off <= 40 * EPS / fmax(sine, sqrt(EPS))))
                     fail_msg("%s: %g apart, sine %g", names[kind], off, sine);
@@ -269,7 +284,8 @@ static void own_shadows(void **state)
     (void)state;
     for (int kind = BALL; kind <= RING; kind++) {
         surface *f = surface_of(kind);
-        surface *g = kind == BALL ? sphere_new((vec3){0.3, -0.2, 0.1}, 1.2) : torus_new((vec3){0.1, -0.1, 0.2}, (vec3){0, 1, 0}, 0.9, 0.4);
+        surface *g = kind == BALL ? sphere_new((vec3){0.3, -0.2, 0.1}, 1.2)
+                                  : torus_new((vec3){0.1, -0.1, 0.2}, (vec3){0, 1, 0}, 0.9, 0.4);
         int differ = 0, dark = 0, n_all = 0;
         for (int round = 0; round < 20; round++) {
             static rays x, out;
@@ -362,10 +378,12 @@ static void brute_force(void **state)
         no_hits(&h, LANES);
         f->ops->hit(f, LANES, &x, 0, &h);
         for (int i = 0; i < LANES; i++) {
-            const vec3 r = {(double)x.r.x[i], (double)x.r.y[i], (double)x.r.z[i]}, s = {(double)x.s.x[i], (double)x.s.y[i], (double)x.s.z[i]};
+            const vec3 r = {(double)x.r.x[i], (double)x.r.y[i], (double)x.r.z[i]},
+                       s = {(double)x.s.x[i], (double)x.s.y[i], (double)x.s.z[i]};
             const double t = brute(v, n, parts, r, s);
             met += t < HUGE_VAL;
-            off += (t < HUGE_VAL) != (h.id[i] >= 0) || (t < HUGE_VAL && fabs(t - (double)h.t[i]) * vec3_length(s) > 0.01);
+            off +=
+                (t < HUGE_VAL) != (h.id[i] >= 0) || (t < HUGE_VAL && fabs(t - (double)h.t[i]) * vec3_length(s) > 0.01);
         }
         print_message("%-8s %3d hits of 128, %d unlike the facets\n", names[kind], met, off);
         assert_true(met > 15 && off <= 3); /* at silhouettes facets are off by their chords */
@@ -390,9 +408,11 @@ static void no_cracks(void **state)
                 double U[2], W[2];
                 part[i] = (i + round) % f->ops->parts;
                 f->ops->extent(f, part[i], U, W);
-                /* on an edge that something joins: the seam of u where u closes, any of a closed surface's or of a patch */
+                /* on an edge that something joins: the seam of u where u closes, any of a closed surface's or of a
+                 * patch */
                 const bool edge_u = kind == MOEBIUS || kind == KLEIN || i % 2;
-                double a = edge_u ? (i % 4 < 2 ? 0 : 1) : random_in(0, 1), b = edge_u ? random_in(0.02, 0.98) : (i % 4 < 2 ? 0 : 1);
+                double a = edge_u ? (i % 4 < 2 ? 0 : 1) : random_in(0, 1),
+                       b = edge_u ? random_in(0.02, 0.98) : (i % 4 < 2 ? 0 : 1);
                 if (kind == ROOF) /* on the edge, and on the middle, where leaves join */
                     a = i % 2 ? 0.55 : 0.5, b = random_in(0.02, 0.98);
                 if (round % 8 == 0 && kind != ROOF && kind != MOEBIUS)
@@ -407,14 +427,16 @@ static void no_cracks(void **state)
                 assert_true(bs_dot(n, n) > R(0.9)); /* none is NaN, not even where Qu is 0 */
                 /* from 0.05 above, up to 0.2 aside, straight to the place and on by as much */
                 const double aside = kind == ROOF ? 0.01 : 0.1; /* flatter than the roof a ray passes under its edge */
-                const bs_vec3 d = {n.x * R(0.05) + (real)random_in(-aside, aside), n.y * R(0.05) + (real)random_in(-aside, aside),
+                const bs_vec3 d = {n.x * R(0.05) + (real)random_in(-aside, aside),
+                                   n.y * R(0.05) + (real)random_in(-aside, aside),
                                    n.z * R(0.05) + (real)random_in(-aside, aside)};
                 const bs_vec3 r = {Q.x + d.x, Q.y + d.y, Q.z + d.z}, s = {-2 * d.x, -2 * d.y, -2 * d.z};
                 lane_set(&x.r, i, r);
                 lane_set(&x.s, i, s);
                 x.s.x[i] *= fabs((double)bs_dot(n, d)) < 0.02 ? 0 : 1; /* too flat to say */
                 if (x.s.x[i] == 0)
-                    lane_set(&x.s, i, (bs_vec3){-n.x, -n.y, -n.z}), lane_set(&x.r, i, (bs_vec3){Q.x + R(0.05) * n.x, Q.y + R(0.05) * n.y, Q.z + R(0.05) * n.z});
+                    lane_set(&x.s, i, (bs_vec3){-n.x, -n.y, -n.z}),
+                        lane_set(&x.r, i, (bs_vec3){Q.x + R(0.05) * n.x, Q.y + R(0.05) * n.y, Q.z + R(0.05) * n.z});
             }
             no_hits(&h, LANES);
             f->ops->hit(f, LANES, &x, 0, &h);
@@ -460,10 +482,14 @@ static void odd_rays(void **state)
     (void)state;
     const double nan = (double)NAN, inf = (double)INFINITY;
     const double odd[][6] = {
-        {0, 0, 0, 0, 0, 0},         {nan, 0, 0, 1, 0, 0},        {0, 0, 0, nan, nan, nan},   {0, 5, 0, 0, -inf, 0},
-        {inf, 0, 0, -1, 0, 0},      {0.3, 5, 0.1, 0, -1, 0},     {0.3, -5, 0.1, 0, 1, 0},    {1e30, 1e30, 1e30, -1, -1, -1},
-        {0, 0, 0, 1e30, 1e30, 1e30}, {0, 0, 0, 1e-30, 1e-30, 0}, {0.1, 5, 0.2, 0, -1e-20, 0}, {0.1, 5, 0.2, 0, -1, 0},
-        {1.5, -0.2, 0.1, 0, 1, 0},  {-5, 0, 0, 1, 0, 0},         {0, 0, -5, 0, 0, 1},        {0.04, 5, 0, 0, -1, 0},
+        {0, 0, 0, 0, 0, 0},          {nan, 0, 0, 1, 0, 0},
+        {0, 0, 0, nan, nan, nan},    {0, 5, 0, 0, -inf, 0},
+        {inf, 0, 0, -1, 0, 0},       {0.3, 5, 0.1, 0, -1, 0},
+        {0.3, -5, 0.1, 0, 1, 0},     {1e30, 1e30, 1e30, -1, -1, -1},
+        {0, 0, 0, 1e30, 1e30, 1e30}, {0, 0, 0, 1e-30, 1e-30, 0},
+        {0.1, 5, 0.2, 0, -1e-20, 0}, {0.1, 5, 0.2, 0, -1, 0},
+        {1.5, -0.2, 0.1, 0, 1, 0},   {-5, 0, 0, 1, 0, 0},
+        {0, 0, -5, 0, 0, 1},         {0.04, 5, 0, 0, -1, 0},
     };
     enum { ODD = sizeof odd / sizeof *odd };
     for (int kind = 0; kind < KINDS; kind++) {
@@ -524,23 +550,26 @@ static bump *bumps(double A, const double u[2], const double w[2])
     return bump_function_new(expr_parse("sin(2*u+w) + cos(3*w-u)/2 + 0.3", &wrong), A, u, w);
 }
 
-/* What it says of a rough surface over a box holds at all its places, and is close where n does not turn at once; its partials are how it
- * changes. */
+/* What it says of a rough surface over a box holds at all its places, and is close where n does not turn at once; its
+ * partials are how it changes. */
 static void check_rough(const patch *q, const bump *P, int *boxes, int *close)
 {
     enum { STEP = 3 }; /* a place, and one a little farther along u and along w */
     patch *x = patch_offset_new(q, P);
     assert_non_null(x);
     for (int k = 0; k < 300; k++) {
-        const double size = k % 3 ? 0.003 : 0.03, h = 1e-6, ru = size * (q->u[1] - q->u[0]), rw = size * (q->w[1] - q->w[0]);
-        const double u0 = random_in(q->u[0], q->u[1] - ru), w0 = random_in(q->w[0], q->w[1] - rw), u[2] = {u0, u0 + ru}, w[2] = {w0, w0 + rw};
+        const double size = k % 3 ? 0.003 : 0.03, h = 1e-6, ru = size * (q->u[1] - q->u[0]),
+                     rw = size * (q->w[1] - q->w[0]);
+        const double u0 = random_in(q->u[0], q->u[1] - ru), w0 = random_in(q->w[0], q->w[1] - rw), u[2] = {u0, u0 + ru},
+                     w[2] = {w0, w0 + rw};
         const int32_t part = (int32_t)random_in(0, q->parts - 1e-9), parts[STEP] = {part, part, part};
         patch_bounds b;
         x->ops->bound(x, part, u, w, &b, NULL);
         *boxes += 1;
         *close += b.axis[0].u[1] - b.axis[0].u[0] < HUGE_VAL;
         for (int i = 0; i < 20; i++) {
-            const double a = random_in(u[0], u[1]), c = random_in(w[0], w[1]), U[STEP] = {a, a + h * ru, a}, W[STEP] = {c, c, c + h * rw};
+            const double a = random_in(u[0], u[1]), c = random_in(w[0], w[1]), U[STEP] = {a, a + h * ru, a},
+                         W[STEP] = {c, c, c + h * rw};
             patch_jets j;
             x->ops->eval(x, STEP, parts, U, W, 1, &j);
             for (int axis = 0; axis < 3; axis++) {
@@ -704,7 +733,8 @@ static void feet_at_any_scale(void **state)
 
 #ifdef KAGE_DOUBLE
 /* How the orders' errors shrink with the amplitude: as on a sphere (test_slopes.c). */
-static double error_of(surface *f, double A, int order, const rays *x, const hits *h, const partials *q, const real *u, const real *w)
+static double error_of(surface *f, double A, int order, const rays *x, const hits *h, const partials *q, const real *u,
+                       const real *w)
 {
     double U[2], W[2], worst = 0;
     displaced_counts c = {0};
@@ -758,7 +788,8 @@ static void error_slopes(void **state)
         for (int order = 0; order < 4; order++) {
             const double a = error_of(f, 1e-3, order, &x, &h, &q, u, w), b = error_of(f, 1e-4, order, &x, &h, &q, u, w);
             const double slope = (a - b) / log(10);
-            print_message("%-8s order %d: error as A^%.3f, expected A^%d\n", names[kinds[k]], order, slope, want[order]);
+            print_message("%-8s order %d: error as A^%.3f, expected A^%d\n", names[kinds[k]], order, slope,
+                          want[order]);
             assert_true(fabs(slope - want[order]) < 0.2);
         }
     }
@@ -779,11 +810,19 @@ static void refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(golden_partials), cmocka_unit_test(hits_are_on_the_surface), cmocka_unit_test(closed_forms),
-        cmocka_unit_test(own_shadows),     cmocka_unit_test(brute_force),             cmocka_unit_test(no_cracks),
-        cmocka_unit_test(degenerate_edges), cmocka_unit_test(odd_rays),               cmocka_unit_test(each_ray_by_itself),
-        cmocka_unit_test(refused),         cmocka_unit_test(displaced_as_closed_forms),
-        cmocka_unit_test(displaced_at_any_scale), cmocka_unit_test(feet_at_any_scale),
+        cmocka_unit_test(golden_partials),
+        cmocka_unit_test(hits_are_on_the_surface),
+        cmocka_unit_test(closed_forms),
+        cmocka_unit_test(own_shadows),
+        cmocka_unit_test(brute_force),
+        cmocka_unit_test(no_cracks),
+        cmocka_unit_test(degenerate_edges),
+        cmocka_unit_test(odd_rays),
+        cmocka_unit_test(each_ray_by_itself),
+        cmocka_unit_test(refused),
+        cmocka_unit_test(displaced_as_closed_forms),
+        cmocka_unit_test(displaced_at_any_scale),
+        cmocka_unit_test(feet_at_any_scale),
         cmocka_unit_test(rough_bounds),
 #ifdef KAGE_DOUBLE
         cmocka_unit_test(error_slopes),

@@ -55,7 +55,8 @@ static const struct {
 };
 enum { CASES = sizeof cases / sizeof *cases, PLACES = 6 };
 
-static const double places[PLACES][2] = {{0.7, 1.3}, {-1.6, 0.45}, {1.25, -2.75}, {-0.3, -0.3}, {2.5, 2.5}, {-3.75, -1.5}};
+static const double places[PLACES][2] = {{0.7, 1.3},   {-1.6, 0.45}, {1.25, -2.75},
+                                         {-0.3, -0.3}, {2.5, 2.5},   {-3.75, -1.5}};
 
 static expr *parse(const char *text)
 {
@@ -111,7 +112,8 @@ static void test_values(void **state)
         char *text = expr_pov(e);
         fprintf(f, "#declare F%d = function(u, w) { %s }\n", k, text);
         for (int i = 0; i < PLACES; i++)
-            fprintf(f, "#debug concat(\"value %d %d \", str(F%d(%.17g, %.17g), 0, 15), \"\\n\")\n", k, i, k, places[i][0], places[i][1]);
+            fprintf(f, "#debug concat(\"value %d %d \", str(F%d(%.17g, %.17g), 0, 15), \"\\n\")\n", k, i, k,
+                    places[i][0], places[i][1]);
         free(text);
         expr_free(e);
     }
@@ -132,7 +134,8 @@ static void test_values(void **state)
         expr_eval(e, 1, &places[i][0], &places[i][1], 0, &out);
         expr_free(e);
         if (!(fabs(out.v[0] - theirs) <= 1e-12 * fmax(1, fabs(theirs))))
-            fail_msg("%s at %g, %g: %.17g, POV-Ray has %.17g", cases[k].from, places[i][0], places[i][1], out.v[0], theirs);
+            fail_msg("%s at %g, %g: %.17g, POV-Ray has %.17g", cases[k].from, places[i][0], places[i][1], out.v[0],
+                     theirs);
         seen++;
     }
     fclose(f);
@@ -144,6 +147,7 @@ static void test_values(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_text), cmocka_unit_test(test_none), cmocka_unit_test(test_values)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_text), cmocka_unit_test(test_none),
+                                       cmocka_unit_test(test_values)};
     return cmocka_run_group_tests_name("expr_pov", tests, NULL, NULL);
 }

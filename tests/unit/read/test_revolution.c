@@ -1,5 +1,5 @@
-/* Cylinders, cones and tori against brute force in long double: where a ray meets them first, and what shades what. Rays of every
- * kind: anyhow, through holes, along axes and sides, grazing, from inside, from far away.
+/* Cylinders, cones and tori against brute force in long double: where a ray meets them first, and what shades what.
+ * Rays of every kind: anyhow, through holes, along axes and sides, grazing, from inside, from far away.
  */
 #include <math.h>
 #include <setjmp.h>
@@ -57,8 +57,10 @@ static wide dot(const wide a[3], const wide b[3]) { return a[0] * b[0] + a[1] * 
 static wide outside(const shape *f, const wide X[3], wide *beyond)
 {
     const vec3 v = f->torus ? f->b : vec3_sub(f->b, f->a);
-    wide axis[3] = {(wide)v.x, (wide)v.y, (wide)v.z}, d[3] = {X[0] - (wide)f->a.x, X[1] - (wide)f->a.y, X[2] - (wide)f->a.z};
-    wide length = sqrtl(dot(axis, axis)), y = dot(d, axis) / length, across = dot(d, d) - y * y, r = sqrtl(across > 0 ? across : 0);
+    wide axis[3] = {(wide)v.x, (wide)v.y, (wide)v.z},
+         d[3] = {X[0] - (wide)f->a.x, X[1] - (wide)f->a.y, X[2] - (wide)f->a.z};
+    wide length = sqrtl(dot(axis, axis)), y = dot(d, axis) / length, across = dot(d, d) - y * y,
+         r = sqrtl(across > 0 ? across : 0);
     *beyond = -1;
     if (f->torus)
         return hypotl(r - (wide)f->r0, y) - (wide)f->r1;
@@ -67,8 +69,8 @@ static wide outside(const shape *f, const wide X[3], wide *beyond)
     return (r - (wide)f->r0 - rise * y) / sqrtl(1 + rise * rise);
 }
 
-/* 0 on the surface, and a change of sign where a ray passes through it: a solid's signed distance, or so. For an open one, *counts
- * says whether the crossing is between its ends. */
+/* 0 on the surface, and a change of sign where a ray passes through it: a solid's signed distance, or so. For an open
+ * one, *counts says whether the crossing is between its ends. */
 static wide gap(const shape *f, const wide r[3], const wide s[3], wide t, bool *counts)
 {
     wide X[3] = {r[0] + s[0] * t, r[1] + s[1] * t, r[2] + s[2] * t}, beyond, g = outside(f, X, &beyond);
@@ -81,7 +83,8 @@ static wide first_crossing(const shape *f, const wide r[3], const wide s[3], wid
 {
     enum { FINE = 6000 };
     bool counts;
-    wide step = (end - from) / FINE, near = 2 * step * sqrtl(dot(s, s)), before = gap(f, r, s, from, &counts), last = before;
+    wide step = (end - from) / FINE, near = 2 * step * sqrtl(dot(s, s)), before = gap(f, r, s, from, &counts),
+         last = before;
     *doubt = false;
     for (int k = 1; k <= FINE; k++) {
         wide t = from + step * k, g = gap(f, r, s, t, &counts);
@@ -120,8 +123,8 @@ static vec3 somewhere(double within)
     return (vec3){random_in(-within, within), random_in(-within, within), random_in(-within, within)};
 }
 
-/* A ray of the kind: 0 anyhow, 1 nearly along the axis, 2 from within the shape's reach, 3 nearly across the axis, 4 along the
- * coordinate axes. */
+/* A ray of the kind: 0 anyhow, 1 nearly along the axis, 2 from within the shape's reach, 3 nearly across the axis, 4
+ * along the coordinate axes. */
 static void make_ray(const shape *f, int kind, rays *x, int i)
 {
     const vec3 axis = vec3_unit(f->torus ? f->b : vec3_sub(f->b, f->a)), to = somewhere(1);
@@ -171,11 +174,14 @@ static void first_hits(void **state)
                     continue;
                 }
                 wide speed = sqrtl(dot(s, s));
-                wide rate = t < 0 ? 1 : fabsl(gap(f, r, s, t + 1e-7L, &c) - gap(f, r, s, t - 1e-7L, &c)) / 2e-7L / speed;
-                double off = (h.id[i] < 0) != (t < 0) ? 1 : t < 0 ? 0 : fabs((double)(((wide)h.t[i] - t) * speed * rate));
+                wide rate =
+                    t < 0 ? 1 : fabsl(gap(f, r, s, t + 1e-7L, &c) - gap(f, r, s, t - 1e-7L, &c)) / 2e-7L / speed;
+                double off = (h.id[i] < 0) != (t < 0) ? 1
+                             : t < 0                  ? 0
+                                                      : fabs((double)(((wide)h.t[i] - t) * speed * rate));
                 if (!(off <= 60 * EPS * (1 + (double)(speed * fmaxl(t, 0))))) {
-                    print_error("%s: ray %d of kind %d is %g off (t %.9g, bisection %.9g)\n", f->name, i, kind, off, (double)h.t[i],
-                                (double)t);
+                    print_error("%s: ray %d of kind %d is %g off (t %.9g, bisection %.9g)\n", f->name, i, kind, off,
+                                (double)h.t[i], (double)t);
                     fail();
                 }
                 if (t < 0 || fabsl(t - 1) > 1e-4L)
@@ -191,7 +197,8 @@ static void first_hits(void **state)
     }
 }
 
-/* From hits outward and inward: the surface's shadow on itself, and where it is met again, by the crossings after the start. */
+/* From hits outward and inward: the surface's shadow on itself, and where it is met again, by the crossings after the
+ * start. */
 static void own_shadows(void **state)
 {
     (void)state;
@@ -239,7 +246,8 @@ static void own_shadows(void **state)
                 bool doubt, c;
                 widen(&away, i, r, s);
                 /* from a little way off: where the gap still is small there, or has turned, nothing is said */
-                wide off = 0.002L / sqrtl(dot(s, s)), g = gap(f, r, s, off, &c), slope = gap(f, r, s, off * 1.01L, &c) - g;
+                wide off = 0.002L / sqrtl(dot(s, s)), g = gap(f, r, s, off, &c),
+                     slope = gap(f, r, s, off * 1.01L, &c) - g;
                 wide found = first_crossing(f, r, s, off, 1, &doubt), beyond, beside = outside(f, r, &beyond);
                 bool rim = fabsl(beside) < 0.003L && fabsl(beyond) < 0.003L;
                 if (doubt || rim || fabsl(g) < 3e-5L || (slope > 0) != (g > 0)) {
@@ -249,17 +257,21 @@ static void own_shadows(void **state)
                 if (!f->open && g < 0 && found < 0)
                     continue; /* the light is inside */
                 if (lit[i] != (found < 0 ? R(1) : R(0))) {
-                    print_error("%s: from %g %g %g along %g %g %g: %g, crossing at %g\n", f->name, (double)r[0], (double)r[1], (double)r[2],
-                                (double)s[0], (double)s[1], (double)s[2], (double)lit[i], (double)found);
+                    print_error("%s: from %g %g %g along %g %g %g: %g, crossing at %g\n", f->name, (double)r[0],
+                                (double)r[1], (double)r[2], (double)s[0], (double)s[1], (double)s[2], (double)lit[i],
+                                (double)found);
                     fail();
                 }
                 if (found >= 0) {
                     const wide speed = sqrtl(dot(s, s));
-                    const wide rate = fabsl(gap(f, r, s, found + 1e-7L, &c) - gap(f, r, s, found - 1e-7L, &c)) / 2e-7L / speed;
-                    const double far = fabs((double)(((wide)again.t[i] - found) * speed * rate * fminl(1, fabsl(g) * 500)));
+                    const wide rate =
+                        fabsl(gap(f, r, s, found + 1e-7L, &c) - gap(f, r, s, found - 1e-7L, &c)) / 2e-7L / speed;
+                    const double far =
+                        fabs((double)(((wide)again.t[i] - found) * speed * rate * fminl(1, fabsl(g) * 500)));
                     worst = fmax(worst, far);
                     if (!(far <= 60 * EPS * (1 + (double)(speed * found)))) {
-                        print_error("%s: met again %g off (t %.9g, bisection %.9g)\n", f->name, far, (double)again.t[i], (double)found);
+                        print_error("%s: met again %g off (t %.9g, bisection %.9g)\n", f->name, far, (double)again.t[i],
+                                    (double)found);
                         fail();
                     }
                 }
@@ -267,15 +279,16 @@ static void own_shadows(void **state)
                 free += found < 0;
             }
         }
-        print_message("%s: %d dark, met again at most %.2g off, %d lit, %d left out\n", f->name, dark, worst, free, doubts);
+        print_message("%s: %d dark, met again at most %.2g off, %d lit, %d left out\n", f->name, dark, worst, free,
+                      doubts);
         assert_true(dark > 20 && free > 20);
         assert_true(doubts < (dark + free) / 4);
         surface_free(q);
     }
 }
 
-/* The torus' hole is open, the ray along its axis free; one that touches the top ring along a tangent, or runs in the plane that does,
- * harms nothing; one a little below meets it. */
+/* The torus' hole is open, the ray along its axis free; one that touches the top ring along a tangent, or runs in the
+ * plane that does, harms nothing; one a little below meets it. */
 static void around_a_torus(void **state)
 {
     (void)state;
@@ -285,13 +298,13 @@ static void around_a_torus(void **state)
         int met;
         double t;
     } rays_of[] = {
-        {{0, 3, 0, 0, -1, 0}, 0, 0},         {{0.74, 3, 0, 0, -1, 0}, 0, 0},   {{0.76, 3, 0, 0, -1, 0}, 1, 0},
-        {{1, 3, 0, 0, -2, 0}, 1, 1.375},     {{1.26, 3, 0, 0, -1, 0}, 0, 0},   {{-3, 0, 0, 1, 0, 0}, 1, 1.75},
-        {{0, 0, 0, 1, 0, 0}, 1, 0.75},       {{1, 0, 0, 1, 0, 0}, 1, 0.25},    {{1, 0, 0, 0, 0, 1}, 1, 0.75},
-        {{1.001, 0, -3, 0, 0, 4}, 1, 0},     {{-3, 0.2499, 0, 1, 0, 0}, 1, 0}, {{-3, 0.2501, 0, 1, 0, 0}, 0, 0},
-        {{-3, 0, 1.2499, 1, 0, 0}, 1, 0},    {{-3, 0, 1.2501, 1, 0, 0}, 0, 0}, {{-3, 0, 0.7499, 1, 0, 0}, 1, 0},
-        {{-3, 0.2499, 1, 1, 0, 0}, 1, 0},    {{-3, 0.2501, 1, 1, 0, 0}, 0, 0}, {{-3, 0.25, 0.9, 1, 0, 0}, -1, 0},
-        {{-3, 0.25, 1, 1, 0, 0}, -1, 0},     {{0, 0, 0, 0, 1, 0}, 0, 0},       {{-3, 0, 1.25, 1, 0, 0}, -1, 0},
+        {{0, 3, 0, 0, -1, 0}, 0, 0},           {{0.74, 3, 0, 0, -1, 0}, 0, 0},   {{0.76, 3, 0, 0, -1, 0}, 1, 0},
+        {{1, 3, 0, 0, -2, 0}, 1, 1.375},       {{1.26, 3, 0, 0, -1, 0}, 0, 0},   {{-3, 0, 0, 1, 0, 0}, 1, 1.75},
+        {{0, 0, 0, 1, 0, 0}, 1, 0.75},         {{1, 0, 0, 1, 0, 0}, 1, 0.25},    {{1, 0, 0, 0, 0, 1}, 1, 0.75},
+        {{1.001, 0, -3, 0, 0, 4}, 1, 0},       {{-3, 0.2499, 0, 1, 0, 0}, 1, 0}, {{-3, 0.2501, 0, 1, 0, 0}, 0, 0},
+        {{-3, 0, 1.2499, 1, 0, 0}, 1, 0},      {{-3, 0, 1.2501, 1, 0, 0}, 0, 0}, {{-3, 0, 0.7499, 1, 0, 0}, 1, 0},
+        {{-3, 0.2499, 1, 1, 0, 0}, 1, 0},      {{-3, 0.2501, 1, 1, 0, 0}, 0, 0}, {{-3, 0.25, 0.9, 1, 0, 0}, -1, 0},
+        {{-3, 0.25, 1, 1, 0, 0}, -1, 0},       {{0, 0, 0, 0, 1, 0}, 0, 0},       {{-3, 0, 1.25, 1, 0, 0}, -1, 0},
         {{-1e4, 0, 0, 1e3, 0, 0}, 1, 9.99875},
     };
     enum { N = sizeof rays_of / sizeof *rays_of };
@@ -343,7 +356,8 @@ static void small_and_far(void **state)
     }
 }
 
-/* From a place that is on the surface but for rounding, a light on the horizon: just over it is free, just below it dark. */
+/* From a place that is on the surface but for rounding, a light on the horizon: just over it is free, just below it
+ * dark. */
 static void horizons(void **state)
 {
     (void)state;
@@ -359,7 +373,8 @@ static void horizons(void **state)
         for (int i = 0; i < LANES; i++) {
             part[i] = 0;
             u[i] = (real)random_in(U[0], U[1]);
-            w[i] = f->torus ? (real)random_in(-1, 1) : (real)random_in(0.3 * W[1], 0.7 * W[1]); /* a torus bends away there */
+            w[i] = f->torus ? (real)random_in(-1, 1)
+                            : (real)random_in(0.3 * W[1], 0.7 * W[1]); /* a torus bends away there */
             lit[i] = 1;
         }
         q->ops->eval(q, LANES, part, u, w, 1, &p);
@@ -382,7 +397,7 @@ static void horizons(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(first_hits), cmocka_unit_test(own_shadows), cmocka_unit_test(around_a_torus),
+        cmocka_unit_test(first_hits),    cmocka_unit_test(own_shadows), cmocka_unit_test(around_a_torus),
         cmocka_unit_test(small_and_far), cmocka_unit_test(horizons),
     };
     return cmocka_run_group_tests_name("surfaces turned about an axis", tests, NULL, NULL);

@@ -1,5 +1,6 @@
-/* Scenes of many objects: what the hierarchy leaves out is never met. Every ray finds with it just what it finds where all objects are
- * tried, to the last bit: from outside and inside, along axes, from far away, to lights, and from surfaces by mirrors and glass.
+/* Scenes of many objects: what the hierarchy leaves out is never met. Every ray finds with it just what it finds where
+ * all objects are tried, to the last bit: from outside and inside, along axes, from far away, to lights, and from
+ * surfaces by mirrors and glass.
  */
 #include <math.h>
 #include <setjmp.h>
@@ -22,26 +23,28 @@
 
 enum { OBJECTS = 60, WAVES = 40 };
 
-static const char head[] =
-    "camera: {from: [0, 4, -12], at: [0, 1, 0]}\n"
-    "image: {size: [32, 18]}\n"
-    "render: {depth: 4%s}\n"
-    "lights:\n"
-    "  sun: {at: [-6, 9, -4], color: [1, 1, 1]}\n"
-    "  lamp: {at: [2, 2, 1], color: [0.4, 0.4, 0.5]}\n"
-    "materials:\n"
-    "  clay: {color: [0.8, 0.7, 0.6]}\n"
-    "  mirror: {color: [0.2, 0.2, 0.2], reflection: 0.7}\n"
-    "  glass: {color: [0.7, 0.9, 0.8], filter: 0.8, ior: 1.4}\n"
-    "objects:\n"
-    "  floor: {plane: {origin: [0, 0, 0], u: [0, 0, 1], w: [1, 0, 0]}, material: clay, bump: {function: 0.04*sin(7*u)*sin(7*w)}}\n";
+static const char head[] = "camera: {from: [0, 4, -12], at: [0, 1, 0]}\n"
+                           "image: {size: [32, 18]}\n"
+                           "render: {depth: 4%s}\n"
+                           "lights:\n"
+                           "  sun: {at: [-6, 9, -4], color: [1, 1, 1]}\n"
+                           "  lamp: {at: [2, 2, 1], color: [0.4, 0.4, 0.5]}\n"
+                           "materials:\n"
+                           "  clay: {color: [0.8, 0.7, 0.6]}\n"
+                           "  mirror: {color: [0.2, 0.2, 0.2], reflection: 0.7}\n"
+                           "  glass: {color: [0.7, 0.9, 0.8], filter: 0.8, ior: 1.4}\n"
+                           "objects:\n"
+                           "  floor: {plane: {origin: [0, 0, 0], u: [0, 0, 1], w: [1, 0, 0]}, material: clay, bump: "
+                           "{function: 0.04*sin(7*u)*sin(7*w)}}\n";
 
 /* One of each kind in turn: p is a place, k a size. */
 static void put_object(FILE *f, int i)
 {
     static const char *const materials[] = {"clay", "mirror", "clay", "glass", "clay"};
-    static const char patch_surface[] = "x: \"%.3f + %.3f*cos(u)*(2+cos(w))\", y: \"%.3f + %.3f*sin(w)\", z: \"%.3f + %.3f*sin(u)*(2+cos(w))\"";
-    const double x = random_in(-5, 5), y = random_in(0.2, 4), z = random_in(-4, 6), k = random_in(0.1, 0.5), a = random_in(-1, 1);
+    static const char patch_surface[] =
+        "x: \"%.3f + %.3f*cos(u)*(2+cos(w))\", y: \"%.3f + %.3f*sin(w)\", z: \"%.3f + %.3f*sin(u)*(2+cos(w))\"";
+    const double x = random_in(-5, 5), y = random_in(0.2, 4), z = random_in(-4, 6), k = random_in(0.1, 0.5),
+                 a = random_in(-1, 1);
     fprintf(f, "  o%d:\n    material: %s\n    ", i, materials[i % 5]);
     switch (i % 16 == 15 ? 7 : i % 7) {
     case 0:
@@ -51,19 +54,23 @@ static void put_object(FILE *f, int i)
         fprintf(f, "box: {from: [%.3f, %.3f, %.3f], to: [%.3f, %.3f, %.3f]}\n", x, y, z, x + k, y + 2 * k, z - k);
         break;
     case 2:
-        fprintf(f, "torus: {center: [%.3f, %.3f, %.3f], axis: [%.3f, 1, 0.4], major: %.3f, minor: %.3f}\n", x, y, z, a, k, k / 3);
+        fprintf(f, "torus: {center: [%.3f, %.3f, %.3f], axis: [%.3f, 1, 0.4], major: %.3f, minor: %.3f}\n", x, y, z, a,
+                k, k / 3);
         break;
     case 3:
-        fprintf(f, "cylinder: {from: [%.3f, %.3f, %.3f], to: [%.3f, %.3f, %.3f], radius: %.3f}\n", x, y, z, x + k, y - k, z + a, k / 2);
+        fprintf(f, "cylinder: {from: [%.3f, %.3f, %.3f], to: [%.3f, %.3f, %.3f], radius: %.3f}\n", x, y, z, x + k,
+                y - k, z + a, k / 2);
         break;
     case 4:
-        fprintf(f, "cone: {from: [%.3f, %.3f, %.3f], from_radius: %.3f, to: [%.3f, %.3f, %.3f], to_radius: 0}\n", x, y, z, k, x + a, y + k, z);
+        fprintf(f, "cone: {from: [%.3f, %.3f, %.3f], from_radius: %.3f, to: [%.3f, %.3f, %.3f], to_radius: 0}\n", x, y,
+                z, k, x + a, y + k, z);
         break;
     case 5:
         fprintf(f, "disc: {center: [%.3f, %.3f, %.3f], normal: [%.3f, 0.7, -0.3], radius: %.3f}\n", x, y, z, a, k);
         break;
     case 6:
-        fprintf(f, "rectangle: {origin: [%.3f, %.3f, %.3f], u: [%.3f, 0, %.3f], w: [0, %.3f, 0.1]}\n", x, y, z, k, a, k);
+        fprintf(f, "rectangle: {origin: [%.3f, %.3f, %.3f], u: [%.3f, 0, %.3f], w: [0, %.3f, 0.1]}\n", x, y, z, k, a,
+                k);
         break;
     default:
         fprintf(f, "parametric: {");
@@ -118,7 +125,8 @@ static void boxes(void **state)
                 partials q;
                 f->ops->extent(f, part, U, W);
                 const bool ends = U[1] < HUGE_VAL;
-                const real u = (real)(ends ? random_in(U[0], U[1]) : random_in(-9, 9)), w = (real)(ends ? random_in(W[0], W[1]) : random_in(-9, 9));
+                const real u = (real)(ends ? random_in(U[0], U[1]) : random_in(-9, 9)),
+                           w = (real)(ends ? random_in(W[0], W[1]) : random_in(-9, 9));
                 f->ops->eval(f, 1, &part, &u, &w, 1, &q);
                 if (is_disc(f, part) && (double)(u * u + w * w) > U[1] * U[1])
                     continue; /* the extent is a square about it */

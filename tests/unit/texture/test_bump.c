@@ -1,5 +1,5 @@
-/* Heights: maps as in section 4.1 of the paper (central differences at the samples, bilinear between), how they lie on (u,w),
- * and functions with their bounds.
+/* Heights: maps as in section 4.1 of the paper (central differences at the samples, bilinear between), how they lie on
+ * (u,w), and functions with their bounds.
  */
 #include <math.h>
 #include <setjmp.h>
@@ -93,9 +93,9 @@ static void differences(const map_layout *l, int i, int j, double d[6])
 }
 
 static const map_layout layouts[] = {
-    {{2, 3}, {0, 0}, MAP_REPEAT, false, 0.1, 0.5},      {{2, 3}, {0.3, -0.2}, MAP_CLAMP, false, 0.1, 0.5},
-    {{0.7, 0.9}, {-1, 2}, MAP_MIRROR, false, -0.3, 0},  {{2, 3}, {0.5, 0.25}, MAP_REPEAT, true, 0.1, 0.25},
-    {{2, 3}, {0, 0}, MAP_CLAMP, true, 0.1, 0.5},        {{5, 1}, {0, 0}, MAP_MIRROR, true, 2, 1},
+    {{2, 3}, {0, 0}, MAP_REPEAT, false, 0.1, 0.5},     {{2, 3}, {0.3, -0.2}, MAP_CLAMP, false, 0.1, 0.5},
+    {{0.7, 0.9}, {-1, 2}, MAP_MIRROR, false, -0.3, 0}, {{2, 3}, {0.5, 0.25}, MAP_REPEAT, true, 0.1, 0.25},
+    {{2, 3}, {0, 0}, MAP_CLAMP, true, 0.1, 0.5},       {{5, 1}, {0, 0}, MAP_MIRROR, true, 2, 1},
 };
 enum { LAYOUTS = sizeof layouts / sizeof *layouts };
 
@@ -152,7 +152,8 @@ static void bilinear_between(void **state)
             for (int m = 0; m < 4; m++)
                 differences(l, i + m % 2, j + m / 2, c[m]);
             for (int m = 0; m < 6; m++)
-                near(got[m], (c[0][m] * (1 - a) + c[1][m] * a) * (1 - b) + (c[2][m] * (1 - a) + c[3][m] * a) * b, size[m] * 8);
+                near(got[m], (c[0][m] * (1 - a) + c[1][m] * a) * (1 - b) + (c[2][m] * (1 - a) + c[3][m] * a) * b,
+                     size[m] * 8);
         }
         bump_free(p);
     }
@@ -176,27 +177,27 @@ static void differences_of_P(const bump *p, double u, double w, double du, doubl
 }
 
 /* Whether sample number x is well beyond the outermost of n, or well within: not so near that rounding decides. */
-static int beyond(double x, int n)
-{
-    return x < -1e-3 || x > n - 1 + 1e-3 ? 1 : x > 1e-3 && x < n - 1 - 1e-3 ? 0 : -1;
-}
+static int beyond(double x, int n) { return x < -1e-3 || x > n - 1 + 1e-3 ? 1 : x > 1e-3 && x < n - 1 - 1e-3 ? 0 : -1; }
 
-/* The derivatives at any place, on a sample or between, are the differences of P itself over a sample to either side: bilinear
- * interpolation and differences at such a distance can be exchanged. So the tolerance is for rounding alone: of the place, and of P.
- * Where a clamped map is level its derivatives that way are exactly 0, and the others are those of the border. */
+/* The derivatives at any place, on a sample or between, are the differences of P itself over a sample to either side:
+ * bilinear interpolation and differences at such a distance can be exchanged. So the tolerance is for rounding alone:
+ * of the place, and of P. Where a clamped map is level its derivatives that way are exactly 0, and the others are those
+ * of the border. */
 static void derivatives_are_differences(void **state)
 {
     (void)state;
     for (int n = 0; n < LAYOUTS; n++) {
         const map_layout *l = &layouts[n];
-        const double du = l->size[0] / (W - l->corners), dw = l->size[1] / (H - l->corners), half = l->corners ? 0 : 0.5;
+        const double du = l->size[0] / (W - l->corners), dw = l->size[1] / (H - l->corners),
+                     half = l->corners ? 0 : 0.5;
         bump *p = bump_map_new(data(), l);
         double got[6], want[6], size[6];
         int level[3] = {0, 0, 0};
         sizes(l, size);
         for (int k = 0; k < 5000; k++) {
             const double x = (k * 37 % 1009 / 1009.0 * 2 - 0.5) * W, y = (k * 61 % 1013 / 1013.0 * 2 - 0.5) * H;
-            const int clamped = l->wrap == MAP_CLAMP, past_u = clamped ? beyond(x, W) : 0, past_w = clamped ? beyond(y, H) : 0;
+            const int clamped = l->wrap == MAP_CLAMP, past_u = clamped ? beyond(x, W) : 0,
+                      past_w = clamped ? beyond(y, H) : 0;
             const double u = l->offset[0] + (x + half) * du, w = l->offset[1] + (y + half) * dw;
             if (past_u < 0 || past_w < 0)
                 continue;
@@ -215,8 +216,8 @@ static void derivatives_are_differences(void **state)
     }
 }
 
-/* A ramp between two levels as a clamped map and as a function: P and its gradient are the same but for a cell next to the bends,
- * where a map's are means. */
+/* A ramp between two levels as a clamped map and as a function: P and its gradient are the same but for a cell next to
+ * the bends, where a map's are means. */
 static void clamped_ramp(void **state)
 {
     (void)state;
@@ -226,7 +227,8 @@ static void clamped_ramp(void **state)
         ramp[i] = (float)(i % SIDE) / (SIDE - 1); /* exact in float, too */
     image m = {SIDE, SIDE, ramp};
     for (int corners = 0; corners < 2; corners++) {
-        const double cell = 1.0 / (SIDE - corners), lo = corners ? 0 : cell / 2, hi = 1 - lo, all[2] = {-HUGE_VAL, HUGE_VAL};
+        const double cell = 1.0 / (SIDE - corners), lo = corners ? 0 : cell / 2, hi = 1 - lo,
+                     all[2] = {-HUGE_VAL, HUGE_VAL};
         const map_layout l = {{1, 1}, {0, 0}, MAP_CLAMP, corners, 0.5, 0};
         char text[99];
         expr_error e;
@@ -294,7 +296,7 @@ static void orders(void **state)
     const double extent[2] = {-HUGE_VAL, HUGE_VAL};
     expr_error e;
     bump *ps[2] = {bump_map_new(data(), &layouts[0]),
-                      bump_function_new(expr_parse("sin(3*u)*cos(w) + u*w", &e), -0.3, extent, extent)};
+                   bump_function_new(expr_parse("sin(3*u)*cos(w) + u*w", &e), -0.3, extent, extent)};
     for (int i = 0; i < LANES; i++) {
         u[i] = (real)(i * 0.037 - 3);
         w[i] = (real)(i * 0.021 - 1);
@@ -309,8 +311,9 @@ static void orders(void **state)
                 assert_true(some.P[i] == all.P[i]);
                 assert_true(order >= 1 ? some.Pu[i] == all.Pu[i] && some.Pw[i] == all.Pw[i]
                                        : some.Pu[i] == 77 && some.Pw[i] == 77);
-                assert_true(order == 2 ? some.Puu[i] == all.Puu[i] && some.Puw[i] == all.Puw[i] && some.Pww[i] == all.Pww[i]
-                                       : some.Puu[i] == 77 && some.Puw[i] == 77 && some.Pww[i] == 77);
+                assert_true(order == 2
+                                ? some.Puu[i] == all.Puu[i] && some.Puw[i] == all.Puw[i] && some.Pww[i] == all.Pww[i]
+                                : some.Puu[i] == 77 && some.Puw[i] == 77 && some.Pww[i] == 77);
             }
         }
         bump_free(ps[k]);
@@ -353,8 +356,8 @@ static double draw_in(double lo, double hi)
     return lo + (hi - lo) * (draw_state >> 8) / 16777216.0;
 }
 
-/* Pairs anywhere on several copies of the map, across cells and wraps, half of them near, some along one coordinate only:
- * none rises by more than the bounds allow, and along each coordinate some pair rises by as much. */
+/* Pairs anywhere on several copies of the map, across cells and wraps, half of them near, some along one coordinate
+ * only: none rises by more than the bounds allow, and along each coordinate some pair rises by as much. */
 static void map_slopes(void **state)
 {
     (void)state;
@@ -367,7 +370,8 @@ static void map_slopes(void **state)
         /* a place rounds as its sample number does: up to 3 copies of W samples */
         const double rounding = TOLERANCE * (size[0] + (top[0] * l->size[0] + top[1] * l->size[1]) * 3);
         for (int k = 0; k < 100000; k++) {
-            double u = l->offset[0] + l->size[0] * draw_in(-1.2, 2.2), w = l->offset[1] + l->size[1] * draw_in(-1.2, 2.2);
+            double u = l->offset[0] + l->size[0] * draw_in(-1.2, 2.2),
+                   w = l->offset[1] + l->size[1] * draw_in(-1.2, 2.2);
             double reach = k % 2 ? 0.03 : 1, a[6], b[6];
             double du = k % 3 == 0 ? 0 : reach * l->size[0] * draw_in(-1, 1);
             double dw = k % 3 == 1 ? 0 : reach * l->size[1] * draw_in(-1, 1);
@@ -381,7 +385,8 @@ static void map_slopes(void **state)
         /* from each sample to the next; those beyond the last are the first's copies or mirrored */
         for (int j = 0; j < 2 * H; j++)
             for (int i = 0; i < 2 * W; i++) {
-                double half = l->corners ? 0 : 0.5, d[2] = {l->size[0] / (W - l->corners), l->size[1] / (H - l->corners)};
+                double half = l->corners ? 0 : 0.5,
+                       d[2] = {l->size[0] / (W - l->corners), l->size[1] / (H - l->corners)};
                 double u = l->offset[0] + (i + half) * d[0], w = l->offset[1] + (j + half) * d[1], a[6], b[6];
                 look(p, u, w, a);
                 look(p, u + d[0], w, b);
@@ -415,7 +420,8 @@ static void odd_map_slopes(void **state)
     /* a step along w alone; the last row's is across the wrap */
     float steps[6] = {0, 0, 1, 1, 3, 3};
     image m = {2, 3, steps};
-    const map_layout plain = {{1, 0.5}, {0, 0}, MAP_REPEAT, false, 2, 0}, clamped = {{1, 0.5}, {0, 0}, MAP_CLAMP, false, 2, 0};
+    const map_layout plain = {{1, 0.5}, {0, 0}, MAP_REPEAT, false, 2, 0},
+                     clamped = {{1, 0.5}, {0, 0}, MAP_CLAMP, false, 2, 0};
     p = bump_map_new(&m, &plain);
     assert_true(p->Pu_max == 0);
     near((double)p->Pw_max, 3 * 2 * 6, 36); /* a difference of 3, scale 2, 6 samples per unit */
@@ -472,10 +478,12 @@ static void too_small(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(at_the_samples), cmocka_unit_test(bilinear_between), cmocka_unit_test(anywhere),
-        cmocka_unit_test(map_bounds),     cmocka_unit_test(orders),           cmocka_unit_test(functions),
-        cmocka_unit_test(map_slopes),     cmocka_unit_test(odd_map_slopes),   cmocka_unit_test(function_slopes),
-        cmocka_unit_test(too_small),      cmocka_unit_test(clamped_ramp),     cmocka_unit_test(derivatives_are_differences),
+        cmocka_unit_test(at_the_samples),  cmocka_unit_test(bilinear_between),
+        cmocka_unit_test(anywhere),        cmocka_unit_test(map_bounds),
+        cmocka_unit_test(orders),          cmocka_unit_test(functions),
+        cmocka_unit_test(map_slopes),      cmocka_unit_test(odd_map_slopes),
+        cmocka_unit_test(function_slopes), cmocka_unit_test(too_small),
+        cmocka_unit_test(clamped_ramp),    cmocka_unit_test(derivatives_are_differences),
     };
     return cmocka_run_group_tests_name("heights", tests, NULL, NULL);
 }
