@@ -5,9 +5,10 @@
  * displace.c searches along a ray over each triangle whose prism the ray may pass, many pairs side by side. The foot of
  * a place is that from which N leads to it, by Newton's iteration.
  */
-#include "mesh/mesh.h"
+#include "displaced/form.h"
 
 #include "displaced/march.h"
+#include "mesh/mesh.h"
 #include "wave/lane.h"
 
 #include <stdlib.h>
@@ -19,9 +20,10 @@ enum {
                   fine mesh */
 };
 
-#define OVERLAP 1e-4 /* by how much of a triangle its rough surface goes on beyond it, so that no hit is between two   \
-                      */
-#define AIR 1e-5     /* of the boxes, against float */
+#define OVERLAP                                                                                                        \
+    1e-4         /* by how much of a triangle its rough surface goes on beyond it, so that no hit is between two       \
+                  */
+#define AIR 1e-5 /* of the boxes, against float */
 
 static inline vec3 get(const vec3s *v, int i) { return (vec3){(double)v->x[i], (double)v->y[i], (double)v->z[i]}; }
 static inline bs_vec3 to_real(vec3 v) { return (bs_vec3){(real)v.x, (real)v.y, (real)v.z}; }
@@ -54,15 +56,16 @@ static void rough_box(const mesh_triangle *x, double lo, double hi, double box[2
     }
 }
 
-static bool rough_prepare(surface *base, const bump *P)
+static const mesh *mesh_of(const displaced *d) { return (const mesh *)d->smooth; }
+
+static double greatest_height(const bump *P) { return fmax(fabs((double)P->Pmin), fabs((double)P->Pmax)); }
+
+static bool over_mesh_prepare(displaced *d)
 {
-    mesh *f = (mesh *)base;
-    if (f->rough && f->lowest <= (double)P->Pmin && f->highest >= (double)P->Pmax)
-        return true;
-    const double lo = f->lowest = fmin(f->lowest, (double)P->Pmin), hi = f->highest = fmax(f->highest, (double)P->Pmax);
-    f->height = fmax(fabs(lo), fabs(hi));
+    const mesh *f = mesh_of(d);
+    const double lo = fmin(0, (double)d->P->Pmin), hi = fmax(0, (double)d->P->Pmax);
+    const double air = AIR * (f->space.radius + greatest_height(d->P));
     bvh_box *box = malloc(sizeof *box * (size_t)f->d.n);
-    const double air = AIR * (f->space.radius + f->height);
     for (int i = 0; box && i < f->d.n; i++) {
         const mesh_triangle x = mesh_triangle_of(f, i);
         double b[2][3];
@@ -73,10 +76,9 @@ static bool rough_prepare(surface *base, const bump *P)
         }
         box[i] = bvh_box_in(&f->space, b[0], b[1]);
     }
-    bvh_free(f->rough);
-    f->rough = box ? bvh_new(f->d.n, box) : NULL;
+    d->prisms = box ? bvh_new(f->d.n, box) : NULL;
     free(box);
-    return f->rough;
+    return d->prisms;
 }
 
 /* Narrow t0..t1 to where a + b t is in lo..hi. */
@@ -171,7 +173,7 @@ static void foot_of(const mesh_triangle *x, vec3 at, closest_points *out, int la
 
 typedef struct pieces {
     domain base;
-    const mesh *f;
+    double radius, height;  /* of the mesh; of the highest place over it */
     const mesh_triangle *x; /* of each lane */
 } pieces;
 
@@ -180,7 +182,7 @@ static const mesh_triangle *piece(const domain *g, int32_t lane) { return &((con
 static void pieces_shell(const domain *g, int n, const rays *x, const real *end, real Pmin, real Pmax, real *t0,
                          real *t1)
 {
-    const double air = AIR * ((const pieces *)g)->f->space.radius;
+    const double air = AIR * ((const pieces *)g)->radius;
     for (int i = 0; i < n; i++) {
         double from = 0, to = (double)end[i];
         const bool some =
@@ -201,7 +203,7 @@ static void pieces_foot(const domain *g, int n, const int32_t *lane, const rays 
 static void pieces_steep(const domain *g, int n, const int32_t *lane, const rays *x, const closest_points *p,
                          real Pu_max, real Pw_max, real *rate, real *reach)
 {
-    const double height = ((const pieces *)g)->f->height;
+    const double height = ((const pieces *)g)->height;
     for (int i = 0; i < n; i++) {
         const mesh_triangle *f = piece(g, lane[i]);
         double turn = 0, side = HUGE_VAL;
@@ -243,12 +245,14 @@ static void pieces_within(const domain *g, int n, const int32_t *lane, const clo
 /* ---- rays and triangles ---- */
 
 typedef struct tour {
+    const displaced *d;
     const mesh *f;
     const bump *P;
+    double height;
     const rays *x;
     real end[LANES];
     bool own[LANES]; /* the ray starts on the rough surface */
-    displaced_counts counts;
+    long evaluations, uncertain;
     real *t; /* the nearest hits so far */
     int32_t *index_hit;
     int lane;
@@ -271,9 +275,9 @@ static void starts_on(tour *k, const pieces *g, int32_t *own)
     pieces_foot(&g->base, k->n, lane, &k->y, zero, &p);
     pieces_within(&g->base, k->n, lane, &p, u, w);
     k->P->ops->eval(k->P, k->n, u, w, 0, &h);
-    k->counts.evaluations += k->n;
+    k->evaluations += k->n;
     for (int i = 0; i < k->n; i++) {
-        const double size = vec3_length(get(&k->y.r, i)) + k->f->height;
+        const double size = vec3_length(get(&k->y.r, i)) + k->height;
         const bool in = u[i] == p.u[i] && w[i] == p.w[i];
         own[i] = k->own[k->of[i]] && in && fabs((double)p.h[i] - (double)h.P[i]) <= 64 * REAL_ROUNDING * size;
     }
@@ -288,14 +292,15 @@ static void search_all(tour *k)
                        .within = pieces_within,
                        .loose = true,
                        .steps = SEARCH},
-                      k->f,
+                      k->f->space.radius,
+                      k->height,
                       k->triangle};
     real end[LANES], t[LANES];
     int32_t found[LANES], own[LANES];
     for (int i = 0; i < k->n; i++)
         end[i] = k->end[k->of[i]];
     starts_on(k, &g, own);
-    k->counts.evaluations += displaced_search_over(&g.base, k->P, k->n, &k->y, end, own, t, found);
+    k->evaluations += displaced_search(&g.base, k->P, k->n, &k->y, end, own, t, found);
     for (int i = 0; i < k->n; i++) {
         const int at = k->of[i];
         const bool nearer = found[i] != DISPLACED_MISSED && t[i] > 0 &&
@@ -304,7 +309,7 @@ static void search_all(tour *k)
             continue;
         k->t[at] = t[i];
         k->index_hit[at] = k->index[i];
-        k->counts.uncertain += found[i] == DISPLACED_UNCERTAIN;
+        k->uncertain += found[i] == DISPLACED_UNCERTAIN;
     }
     k->n = 0;
 }
@@ -327,40 +332,45 @@ static void visit(void *user, int32_t index)
         search_all(k);
 }
 
+static void tour_begin(tour *k, const displaced *d)
+{
+    k->d = d;
+    k->f = mesh_of(d);
+    k->P = d->P;
+    k->height = greatest_height(d->P);
+    k->evaluations = k->uncertain = 0;
+    k->n = 0;
+}
+
 /* t[i] becomes the nearest hit with 0 < t < t[i], on the triangle index[i], which is -1 where there is none. k->own is
  * set. */
-static void go_round(tour *k, int n, const rays *x, real *t, int32_t *index, displaced_counts *c)
+static void go_round(tour *k, int n, const rays *x, real *t, int32_t *index)
 {
     k->x = x;
-    k->counts = (displaced_counts){0};
     k->t = t;
     k->index_hit = index;
-    k->n = 0;
     for (int i = 0; i < n; i++) {
         double from = 0, to = (double)t[i];
         float at[3], way[3], far;
         k->end[i] = t[i];
         index[i] = -1;
         k->lane = i;
-        if (bvh_enter(&k->f->space, k->f->space.radius + k->f->height, get(&x->r, i), get(&x->s, i), &from, &to, at,
-                      way, &far))
-            bvh_along(k->f->rough, at, way, far, visit, k);
+        if (bvh_enter(&k->f->space, k->f->space.radius + k->height, get(&x->r, i), get(&x->s, i), &from, &to, at, way,
+                      &far))
+            bvh_along(k->d->prisms, at, way, far, visit, k);
     }
     search_all(k);
-    c->evaluations += k->counts.evaluations;
-    c->uncertain += k->counts.uncertain;
+    displaced_count(k->d, k->evaluations, k->uncertain);
 }
 
-static void rough_hit(const surface *base, const bump *P, int n, const rays *x, const ray_origins *from, int32_t id,
-                      hits *h, displaced_counts *c)
+static void over_mesh_hit(const displaced *d, int n, const rays *x, const ray_origins *from, int32_t id, hits *h)
 {
     int32_t index[LANES];
     tour k;
-    k.f = (const mesh *)base;
-    k.P = P;
+    tour_begin(&k, d);
     for (int i = 0; i < n; i++)
         k.own[i] = from && from->id[i] == id;
-    go_round(&k, n, x, h->t, index, c);
+    go_round(&k, n, x, h->t, index);
     for (int i = 0; i < n; i++)
         if (index[i] >= 0) {
             h->id[i] = id;
@@ -368,31 +378,27 @@ static void rough_hit(const surface *base, const bump *P, int n, const rays *x, 
         }
 }
 
-static void rough_occlude(const surface *base, const bump *P, int n, const rays *x, bool from_it, real *lit,
-                          displaced_counts *c)
+static void over_mesh_occlude(const displaced *d, int n, const rays *x, const int32_t *part, real *lit)
 {
     int32_t index[LANES];
     real t[LANES];
     tour k;
-    k.f = (const mesh *)base;
-    k.P = P;
+    tour_begin(&k, d);
     for (int i = 0; i < n; i++) {
         t[i] = lit[i] > 0 ? R(1) : R(-1);
-        k.own[i] = from_it;
+        k.own[i] = part != NULL;
     }
-    go_round(&k, n, x, t, index, c);
+    go_round(&k, n, x, t, index);
     for (int i = 0; i < n; i++)
         lit[i] = index[i] >= 0 ? 0 : lit[i];
 }
 
-/* The height changes along N there, whatever the triangle itself is like: so the rough surface is as smooth as the mesh
- * is shown. */
-static void rough_feet(const surface *base, const bump *P, int n, const rays *x, const real *t, int32_t *part,
-                       closest_points *p)
+/* The height changes along N there, whatever the triangle itself is like: so the displaced surface is as smooth as the
+ * mesh is shown. */
+static void over_mesh_closest(const displaced *d, int n, const rays *x, const real *t, int32_t *part, closest_points *p)
 {
-    (void)P;
     for (int i = 0; i < n; i++) {
-        const mesh_triangle a = mesh_triangle_of((const mesh *)base, part[i]);
+        const mesh_triangle a = mesh_triangle_of(mesh_of(d), part[i]);
         double b, c;
         foot_of(&a, vec3_add(get(&x->r, i), vec3_scale(get(&x->s, i), (double)t[i])), p, i);
         mesh_shares(&a, (double)p->u[i], (double)p->w[i], &b, &c);
@@ -400,4 +406,5 @@ static void rough_feet(const surface *base, const bump *P, int n, const rays *x,
     }
 }
 
-const displaced_ops mesh_displaced = {rough_prepare, rough_hit, rough_occlude, rough_feet};
+const displaced_form displaced_over_mesh = {mesh_is, over_mesh_prepare, over_mesh_hit, over_mesh_occlude,
+                                            over_mesh_closest};

@@ -6,7 +6,6 @@
  */
 #include "mesh/mesh.h"
 
-#include "displaced/march.h"
 #include "wave/lane.h"
 
 #include <stdlib.h>
@@ -399,7 +398,6 @@ static void mesh_free(surface *base)
 {
     mesh *f = (mesh *)base;
     bvh_free(f->tree);
-    bvh_free(f->rough);
     mesh_data_free(&f->d);
     free(f);
 }
@@ -417,12 +415,13 @@ static const surface_ops methods = {
     .parts = 1, /* all the same to who goes over them: part is the triangle */
 };
 
+bool mesh_is(const surface *f) { return f->ops == &methods; }
+
 /* Range and texture are known. */
 static surface *finish(mesh *f, const progress *w)
 {
     f->base.ops = &methods;
     f->base.free = mesh_free;
-    f->base.rough = &mesh_displaced;
     double lo[3], hi[3];
     mesh_box(&f->base, lo, hi);
     f->space = bvh_space_about(lo, hi);

@@ -22,9 +22,7 @@ typedef struct mesh {
     bool textured;
     double u[2], w[2]; /* the range of the texture coordinates; 0..1 where there are none */
     bvh_space space;
-    bvh *tree;  /* over the triangles */
-    bvh *rough; /* the same over what their rough surfaces may be in, with any P so far; NULL: not prepared */
-    double lowest, highest, height; /* of those P, 0 among them: least, greatest, and the larger magnitude */
+    bvh *tree; /* over the triangles */
 } mesh;
 
 /* Owns *d, also on failure. It must have been through mesh_clean, and have a triangle. NULL: out of memory. */
@@ -34,8 +32,8 @@ surface *mesh_new(mesh_data *d, const progress *w);
  * displacement. Where the map mirrors, u runs the other way in its range, as there. NULL: out of memory. */
 surface *mesh_moved(const surface *from, const affine *m);
 
-/* For true displacement. */
-extern const struct displaced_ops mesh_displaced;
+/* Whether a surface is one. */
+bool mesh_is(const surface *f);
 
 /* A triangle in double: corners, what its normals are, and (u,w). */
 typedef struct mesh_triangle {

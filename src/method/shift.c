@@ -16,7 +16,7 @@ STAGE static void normals_bump(hit_group *restrict g)
 {
     for (int i = 0; i < g->n; i++) {
         bs_vec3 Qu = lane_get(&g->q.Qu, i), Qw = lane_get(&g->q.Qw, i), n = bs_normal(Qu, Qw);
-        bs_vec3 np = bs_perturbed_normal(n, Qu, Qw, g->h.Pu[i], g->h.Pw[i]);
+        bs_vec3 np = bs_perturbed_normal(n, Qu, Qw, g->bump.Pu[i], g->bump.Pw[i]);
         int regular = bs_regular(n, Qu, Qw);
         np.x = regular ? np.x : n.x;
         np.y = regular ? np.y : n.y;
@@ -62,12 +62,12 @@ STAGE static void drop_irregular(hit_group *restrict g)
 static inline void by_order(hit_group *g, int i, int order, int guard, real Pmin, real Pmax)
 {
     bs_view v = view(g, i);
-    bs_bump p = {g->h.P[i],
-                 order >= 1 ? g->h.Pu[i] : 0,
-                 order >= 1 ? g->h.Pw[i] : 0,
-                 order >= 2 ? g->h.Puu[i] : 0,
-                 order == 3 ? g->h.Puw[i] : 0,
-                 order >= 2 ? g->h.Pww[i] : 0};
+    bs_bump p = {g->bump.P[i],
+                 order >= 1 ? g->bump.Pu[i] : 0,
+                 order >= 1 ? g->bump.Pw[i] : 0,
+                 order >= 2 ? g->bump.Puu[i] : 0,
+                 order == 3 ? g->bump.Puw[i] : 0,
+                 order >= 2 ? g->bump.Pww[i] : 0};
     bs_shift s = bs_shift_of(order, guard, v, order == 3 ? curvature(g, i, v) : 0, p, bs_slab_of(v, Pmin, Pmax));
     g->tau[i] = s.tau;
     g->order[i] = s.order;
@@ -139,7 +139,7 @@ static long iterate(hit_group *g, const bump *P, method m)
 {
     walk k;
     walk_start(g, &k);
-    iter_step(g->n, &k, g->h.P); /* the first look-up is the one that shading has made */
+    iter_step(g->n, &k, g->bump.P); /* the first look-up is the one that shading has made */
     for (int step = 1; step < m.n; step++) {
         walk_look_up(g, &k, P);
         iter_step(g->n, &k, k.h.P);
@@ -200,7 +200,7 @@ static long march(hit_group *g, const bump *P, method m)
     }
     for (int i = 0; i < g->n; i++) {
         bs_view v = {k.sn[i], 0, 0};
-        g->tau[i] = x.found[i] ? x.tau[i] : bs_tau0(v, g->h.P[i]);
+        g->tau[i] = x.found[i] ? x.tau[i] : bs_tau0(v, g->bump.P[i]);
         g->order[i] = x.found[i] ? method_code(m) : 0;
     }
     return (long)(m.n + 1) * g->n;
@@ -231,3 +231,11 @@ STAGE static void within(int n, const real *restrict t, real *restrict tau)
 }
 
 void shift_within(hit_group *g) { within(g->n, g->t, g->tau); }
+
+STAGE static void origins(int n, const real *restrict t, const real *restrict tau, real *restrict t0)
+{
+    for (int i = 0; i < n; i++)
+        t0[i] = t[i] + tau[i];
+}
+
+void shift_origins(hit_group *g) { origins(g->n, g->t, g->tau, g->t0); }

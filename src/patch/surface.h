@@ -14,24 +14,13 @@ typedef struct patch_surface {
     pieces l;
     bvh *tree;   /* over the leaves; its unit is the sheet's radius, its origin the sheet's centre */
     bool broken; /* it may jump, or turn at once: then nothing is proved of some pieces, however small */
-    struct displaced_form *rough; /* its rough surfaces so far */
 } patch_surface;
 
-/* A rough surface of it, as a surface of its own. */
-typedef struct displaced_form displaced_form;
-struct displaced_form {
-    const struct bump *P;
-    surface *shape;
-    displaced_form *next;
-};
+/* Whether a surface is one. */
+bool patch_surface_is(const surface *f);
 
 /* As patch_surface_new, with leaves as flat as that. */
 patch_surface *patch_surface_make(patch *q, double flat);
-
-void patch_surface_free_displaced(displaced_form *first);
-
-/* For true displacement. */
-extern const struct displaced_ops patch_surface_displaced;
 
 /* The rays that are searched, each from the place of it that is nearest to the sheet's centre on, so that no digit is
  * lost to a far eye: r + s (t - start) is where the ray is at t. */

@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "wave/lane.h"
-#include "render/trace.h"
+#include "render/workspace.h"
 
 void secondary_begin(workspace *v) { v->reflected.n = v->refracted.n = v->straight.n = 0; }
 
@@ -155,9 +155,8 @@ STAGE static void through_pattern(const hit_group *restrict g, real filter, real
     }
 }
 
-static void send_clear(const tracer *k, int id, workspace *v, ways *y)
+static void send_clear(const scene *sc, int32_t id, workspace *v, ways *y)
 {
-    const scene *sc = k->scene;
     const material *m = &sc->material[sc->object[id].material];
     const hit_group *g = &v->g;
     const bs_vec3 mirror_weight = weight_of(m->reflection), one = {1, 1, 1};
@@ -180,90 +179,57 @@ static void send_clear(const tracer *k, int id, workspace *v, ways *y)
         bs_vec3 through = lane_get(&y->through, i);
         const bool total = y->ratio[i] != 1 && y->total[i] && !is_zero(through);
         if (total)
-            send(g, i, id, g->t[i] + g->tau[i], lane_get(&y->mirrored, i), one, before, hit_group_place(g, i),
-                 &v->refracted);
+            send(g, i, id, g->t0[i], lane_get(&y->mirrored, i), one, before, hit_group_place(g, i), &v->refracted);
         else if (is_zero(through))
             ;
         else if (y->ratio[i] == 1) /* the same ray: what is before the surface it has passed already */
             send(g, i, id, g->t[i], lane_get(&g->x.s, i), through, &in, i, &v->straight);
         else
-            send(g, i, id, g->t[i] + g->tau[i], lane_get(&y->bent, i), through, &in, i, &v->refracted);
+            send(g, i, id, g->t0[i], lane_get(&y->bent, i), through, &in, i, &v->refracted);
         if (!total && !is_zero(mirror_weight))
-            send(g, i, id, g->t[i] + g->tau[i], lane_get(&y->mirrored, i), mirror_weight, before, hit_group_place(g, i),
+            send(g, i, id, g->t0[i], lane_get(&y->mirrored, i), mirror_weight, before, hit_group_place(g, i),
                  &v->reflected);
     }
 }
 
-void secondary_send(const tracer *k, int id, workspace *v)
+void secondary_send(const scene *s, int32_t id, workspace *v)
 {
-    const material *m = &k->scene->material[k->scene->object[id].material];
+    const material *m = &s->material[s->object[id].material];
     const hit_group *g = &v->g;
     ways y;
     if (v->left == 0 || !material_sends(m))
         return;
     mirror(g, &y);
     if (material_clear(m)) {
-        send_clear(k, id, v, &y);
+        send_clear(s, id, v, &y);
         return;
     }
     for (int i = 0; i < g->n; i++)
-        send(g, i, id, g->t[i] + g->tau[i], lane_get(&y.mirrored, i), weight_of(m->reflection),
-             v->of ? &v->of->in : NULL, hit_group_place(g, i), &v->reflected);
+        send(g, i, id, g->t0[i], lane_get(&y.mirrored, i), weight_of(m->reflection), v->of ? &v->of->in : NULL,
+             hit_group_place(g, i), &v->reflected);
 }
 
-/* ---- following ---- */
-
-static void add_light(const ray_queue *b, const vec3s *from, vec3s *to)
+void secondary_add(const ray_queue *q, const vec3s *from, vec3s *to)
 {
-    for (int i = 0; i < b->n; i++) {
-        const int at = b->lane[i];
-        to->x[at] += b->weight.x[i] * from->x[i];
-        to->y[at] += b->weight.y[i] * from->y[i];
-        to->z[at] += b->weight.z[i] * from->z[i];
+    for (int i = 0; i < q->n; i++) {
+        const int at = q->lane[i];
+        to->x[at] += q->weight.x[i] * from->x[i];
+        to->y[at] += q->weight.y[i] * from->y[i];
+        to->z[at] += q->weight.z[i] * from->z[i];
     }
 }
 
-/* What goes straight on of b becomes b. */
-static void go_on(const ray_queue *on, ray_queue *b)
+void secondary_go_on(const ray_queue *on, ray_queue *q)
 {
     int32_t lane[LANES];
     vec3s weight;
     for (int i = 0; i < on->n; i++) {
-        bs_vec3 w = lane_get(&on->weight, i), before = lane_get(&b->weight, on->lane[i]);
+        bs_vec3 w = lane_get(&on->weight, i), before = lane_get(&q->weight, on->lane[i]);
         bs_vec3 both = {w.x * before.x, w.y * before.y, w.z * before.z};
-        lane[i] = b->lane[on->lane[i]];
+        lane[i] = q->lane[on->lane[i]];
         lane_set(&weight, i, both);
     }
-    *b = *on;
-    memcpy(b->lane, lane, (size_t)on->n * sizeof *lane);
-    memcpy(&b->weight, &weight, sizeof weight);
-}
-
-/* Trace a wave that `left` more may follow. A ray that goes straight on through a surface is none more, as in POV-Ray;
- * so it is traced in the same workspace, in a loop. */
-static void follow(const tracer *k, ray_queue *b, int left, workspace *v)
-{
-    workspace *d = v->deeper;
-    tracer inner = *k;
-    inner.layers = false;
-    for (int times = 0; b->n > 0 && times < STRAIGHTS; times++) {
-        d->of = b;
-        d->left = left;
-        d->x = b->x;
-        d->stats = v->stats; /* the counts go along */
-        trace(&inner, b->n, d);
-        v->stats = d->stats;
-        add_light(b, &d->out.rgb, &v->out.rgb);
-        go_on(&d->straight, b);
-    }
-}
-
-void secondary_follow(const tracer *k, workspace *v)
-{
-    if (v->left == 0)
-        return;
-    follow(k, &v->reflected, v->left - 1, v);
-    follow(k, &v->refracted, v->left - 1, v);
-    if (!v->of)
-        follow(k, &v->straight, v->left, v);
+    *q = *on;
+    memcpy(q->lane, lane, (size_t)on->n * sizeof *lane);
+    memcpy(&q->weight, &weight, sizeof weight);
 }

@@ -28,16 +28,19 @@ typedef struct ray_queue {
     media in;
 } ray_queue;
 
-struct tracer;
+struct scene;
 struct workspace;
 
-/* None yet. */
+/* No rays yet in the workspace's queues. */
 void secondary_begin(struct workspace *v);
 
-/* The rays that go on from the group v->g, which has met object `id`. */
-void secondary_send(const struct tracer *k, int id, struct workspace *v);
+/* Queue the rays that go on from the group v->g, which has met object `id`. */
+void secondary_send(const struct scene *s, int32_t id, struct workspace *v);
 
-/* Trace all that were sent, and add their light to v->out.rgb. */
-void secondary_follow(const struct tracer *k, struct workspace *v);
+/* to += what a queue's rays have found, by their weights. */
+void secondary_add(const ray_queue *q, const vec3s *from, vec3s *to);
+
+/* Replace q by its unrefracted continuations; weights multiply. */
+void secondary_go_on(const ray_queue *on, ray_queue *q);
 
 #endif

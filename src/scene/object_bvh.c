@@ -32,15 +32,12 @@ struct candidates {
 
 /* ---- the objects ---- */
 
-static box box_of(const scene *s, const object *o)
+/* The displaced surface's box holds the smooth one too. */
+static box box_of(const object *o)
 {
+    const surface *f = o->displaced ? o->displaced : o->shape;
     box b;
-    o->shape->ops->box(o->shape, b.lo, b.hi);
-    const double high = s->displaced && o->bump ? fmax(fabs((double)o->bump->Pmin), fabs((double)o->bump->Pmax)) : 0;
-    for (int k = 0; k < 3; k++) {
-        b.lo[k] -= high;
-        b.hi[k] += high;
-    }
+    f->ops->box(f, b.lo, b.hi);
     return b;
 }
 
@@ -79,7 +76,7 @@ object_bvh *object_bvh_new(const scene *s, bool *good)
     object_bvh *c = calloc(1, sizeof *c);
     *good = c && (c->object = malloc(sizeof *c->object * n)) && (c->box = malloc(sizeof *c->box * n));
     for (int i = 0, endless = 0; *good && i < s->objects; i++) {
-        const box b = box_of(s, &s->object[i]);
+        const box b = box_of(&s->object[i]);
         if (has_end(&b)) {
             c->box[c->bounded] = b;
             c->object[c->bounded++] = i;
