@@ -91,7 +91,7 @@ static void moved_bound(const patch *base, int part, const double u[2], const do
 
 static void moved_free(patch *q) { free(q); }
 
-static const patch_ops moved_methods = {moved_eval, moved_bound, moved_free};
+static const patch_ops moved_methods = {.eval = moved_eval, .bound = moved_bound, .free = moved_free};
 
 patch *patch_affine_new(const patch *from, const affine *m)
 {

@@ -193,7 +193,7 @@ static void bezier_free(patch *base)
     free(q);
 }
 
-static const patch_ops bezier_methods = {bezier_eval, bezier_bound, bezier_free};
+static const patch_ops bezier_methods = {.eval = bezier_eval, .bound = bezier_bound, .free = bezier_free};
 
 patch *patch_bezier_new(int patches, const vec3 *point)
 {

@@ -8,7 +8,7 @@
  * The first of a ray's roots does not depend on the order in which the hierarchy tells leaves, nor on what it tells too
  * many: the pictures are the same on every processor.
  */
-#include "patch/surface.h"
+#include "patch/query.h"
 
 #include "base/real.h"
 

@@ -17,6 +17,16 @@ typedef struct patch_jets {
     expr_jets axis[3];
 } patch_jets;
 
+/* Qu and Qw of one of them. */
+static inline vec3 patch_jets_u(const patch_jets *j, int i)
+{
+    return (vec3){j->axis[0].u[i], j->axis[1].u[i], j->axis[2].u[i]};
+}
+static inline vec3 patch_jets_w(const patch_jets *j, int i)
+{
+    return (vec3){j->axis[0].w[i], j->axis[1].w[i], j->axis[2].w[i]};
+}
+
 /* Bounds of Q, Qu and Qw over a box of (u,w), for x, y and z. Infinite where none is known. */
 typedef struct patch_bounds {
     expr_bounds axis[3];

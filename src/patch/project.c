@@ -1,7 +1,7 @@
 /* The place of a sheet that is nearest to a place in space: Gauss and Newton's iteration on each leaf that is near, the
  * best of them taken. The places are on the sheet but for a rounding, so that the iteration converges as Newton's does.
  */
-#include "patch/surface.h"
+#include "patch/query.h"
 
 #include "base/real.h"
 
