@@ -6,33 +6,36 @@
 
 #include <math.h>
 
-STAGE static void put(int n, const double *restrict from, real *restrict to)
+STAGE static void round_to_real(int n, const double *restrict from, real *restrict to)
 {
     for (int i = 0; i < n; i++)
         to[i] = (real)from[i];
 }
 
-static void put3(int n, const double *x, const double *y, const double *z, vec3s *to, int at)
+static void store3(int n, const double *x, const double *y, const double *z, vec3s *to, int at)
 {
-    put(n, x, to->x + at);
-    put(n, y, to->y + at);
-    put(n, z, to->z + at);
+    round_to_real(n, x, to->x + at);
+    round_to_real(n, y, to->y + at);
+    round_to_real(n, z, to->z + at);
 }
+
+/* The square of the sine of the angle between Qu and Qw, times their ratio, below which n has few digits of double. */
+#define DEGENERATE2 1e-18
 
 static bool has_two_directions(vec3 U, vec3 W)
 {
     const vec3 n = vec3_cross(U, W);
     const double e = vec3_dot(U, U) + vec3_dot(W, W);
-    return vec3_dot(n, n) > 1e-18 * e * e;
+    return vec3_dot(n, n) > DEGENERATE2 * e * e;
 }
 
-/* Where Qu x Qw = 0, as at the end of a patch that is but a point, n is the limit from within the range: that a little
- * way off. One of the partials is made so short that bs_regular still sees that there is no second direction. Only
- * directions count there: where both are short, as at a cusp, the longer one is made LONG, so that float holds the
- * square of their product. */
+/* Where Qu x Qw = 0, as where a side of a patch shrinks to a point, n is its limit from within the range: that of a
+ * point NEAR by. The shorter partial is made SHORT, as a share of the longer one, so that bs_regular still sees that
+ * there is no second direction. Only directions count there. Where both are short, as at a cusp, the longer one gets
+ * the length LONG, so that float holds the square of their product. */
 static void take_limit(const patch *q, int32_t part, double u, double w, int lane, vec3s *Qu, vec3s *Qw)
 {
-    const double NEAR = 1e-6, SHORT = 1e-9, LONG = 1e-4;
+    const double NEAR = 1e-6 /* of the way to the middle */, SHORT = 1e-9, LONG = 1e-4;
     patch_jets j;
     u += NEAR * (0.5 * (q->u[0] + q->u[1]) - u);
     w += NEAR * (0.5 * (q->w[0] + q->w[1]) - w);
@@ -41,8 +44,8 @@ static void take_limit(const patch *q, int32_t part, double u, double w, int lan
     const double lu = vec3_length(U), lw = vec3_length(W), l = fmax(fmax(lu, lw), LONG);
     U = vec3_scale(U, (lu < lw ? SHORT : 1) * l / lu);
     W = vec3_scale(W, (lu < lw ? 1 : SHORT) * l / lw);
-    put3(1, &U.x, &U.y, &U.z, Qu, lane);
-    put3(1, &W.x, &W.y, &W.z, Qw, lane);
+    store3(1, &U.x, &U.y, &U.z, Qu, lane);
+    store3(1, &W.x, &W.y, &W.z, Qw, lane);
 }
 
 static double clamp(double x, const double range[2]) { return x < range[0] ? range[0] : x > range[1] ? range[1] : x; }
@@ -56,18 +59,18 @@ void patch_surface_eval(const surface *base, int n, const int32_t *part, const r
         double U[PATCH_BATCH], W[PATCH_BATCH];
         patch_jets j;
         const expr_jets *x = &j.axis[0], *y = &j.axis[1], *z = &j.axis[2];
-        for (int i = 0; i < m; i++) { /* float's pi is beyond pi, where a sphere would be inside out */
+        for (int i = 0; i < m; i++) { /* float's pi is larger than pi, and beyond pi a sphere is inside out */
             U[i] = clamp((double)u[at + i], f->q->u);
             W[i] = clamp((double)w[at + i], f->q->w);
         }
         f->q->ops->eval(f->q, m, part + at, U, W, order > 1 ? 2 : 1, &j);
-        put3(m, x->v, y->v, z->v, &q->Q, at);
-        put3(m, x->u, y->u, z->u, &q->Qu, at);
-        put3(m, x->w, y->w, z->w, &q->Qw, at);
+        store3(m, x->v, y->v, z->v, &q->Q, at);
+        store3(m, x->u, y->u, z->u, &q->Qu, at);
+        store3(m, x->w, y->w, z->w, &q->Qw, at);
         if (order > 1) {
-            put3(m, x->uu, y->uu, z->uu, &q->Quu, at);
-            put3(m, x->uw, y->uw, z->uw, &q->Quw, at);
-            put3(m, x->ww, y->ww, z->ww, &q->Qww, at);
+            store3(m, x->uu, y->uu, z->uu, &q->Quu, at);
+            store3(m, x->uw, y->uw, z->uw, &q->Quw, at);
+            store3(m, x->ww, y->ww, z->ww, &q->Qww, at);
         }
         for (int i = 0; i < m; i++)
             if (!has_two_directions(patch_jets_u(&j, i), patch_jets_w(&j, i)))

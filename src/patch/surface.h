@@ -1,5 +1,4 @@
-/* What the files of searched surfaces share: a sheet in leaves, and which of them a ray may meet. Private to
- * searched*.c. */
+/* A patch as a surface: the patch in pieces, and a hierarchy over them. */
 #ifndef KAGE_PATCH_SURFACE_H
 #define KAGE_PATCH_SURFACE_H
 
@@ -9,11 +8,11 @@
 
 typedef struct patch_surface {
     surface base;
-    surface_ops *methods; /* its own, as `parts` is */
-    patch *q;
+    surface_ops *methods; /* owned: `kind` and `parts` are the patch's */
+    patch *q;             /* owned */
     pieces l;
-    bvh *tree;   /* over the leaves; its unit is the sheet's radius, its origin the sheet's centre */
-    bool broken; /* it may jump, or turn at once: then nothing is proved of some pieces, however small */
+    bvh *tree;   /* over the pieces, in l.space */
+    bool broken; /* Q or its normal may jump: nothing can be proved of pieces there, however small they are */
     struct displaced_form *rough; /* its rough surfaces so far */
 } patch_surface;
 
@@ -35,7 +34,7 @@ surface *patch_surface_new(patch *q);
  * patch_surface_new. */
 surface *patch_surface_affine(const surface *from, const affine *m);
 
-/* As patch_surface_new, with leaves as flat as that. */
+/* As patch_surface_new, with pieces as flat as that (pieces_of). */
 patch_surface *patch_surface_make(patch *q, double flat);
 
 void patch_surface_free_displaced(displaced_form *first);
@@ -43,16 +42,17 @@ void patch_surface_free_displaced(displaced_form *first);
 /* For true displacement. */
 extern const struct displaced_ops patch_surface_displaced;
 
-/* The surface's methods, with what they have counted. looks: as above; unsure: hits. */
+/* Counts of work: evaluations of the patch, and hits that are not proved to be the first. */
 typedef struct patch_counts {
     long evaluations, unsure;
 } patch_counts;
 
+/* The methods of a patch surface that count: work is added to *c. */
 void patch_surface_intersect(const patch_surface *f, int n, const rays *x, int32_t id, hits *h, patch_counts *c);
 void patch_surface_intersect_own(const patch_surface *f, int n, const rays *x, const ray_origins *from, int32_t id,
                                  hits *h, patch_counts *c);
 void patch_surface_occlude(const patch_surface *f, int n, const rays *x, real *lit, patch_counts *c);
-/* part: NULL: on any */
+/* part: of each start; NULL: any part. */
 void patch_surface_occlude_own(const patch_surface *f, int n, const rays *x, const int32_t *part, real *lit,
                                patch_counts *c);
 
