@@ -148,6 +148,17 @@ def test_peak_memory_is_the_commands_own() -> None:
         programs.peak_memory(["sh", "-c", "exit 1"])
 
 
+@pytest.mark.skipif(not shutil.which("valgrind"), reason="no valgrind")
+def test_instructions_do_not_depend_on_the_environment(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """A longer environment moves the stack, and memset takes other steps by the place of an array."""
+    command = [PROGRAM, "render", "scenes/waves.yaml", "--shadow", "exact", "--size", "16x16", "--threads", "1", "--quiet"]
+    counts = set()
+    for length in (0, 16, 32, 48):
+        monkeypatch.setenv("LONG", "x" * length)
+        counts.add(programs.count_instructions([*command, "-o", tmp_path / "a.png"]))
+    assert len(counts) == 1
+
+
 @pytest.mark.skipif(not hasattr(os, "sched_getaffinity"), reason="this system pins no process")
 def test_pinned() -> None:
     before = os.sched_getaffinity(0)

@@ -19,11 +19,9 @@ from types import ModuleType
 
 import numpy as np
 import pytest
-from conftest import PROGRAM, TOP
+import references
+from conftest import PROGRAM, TOP, start
 from PIL import Image
-
-
-import references  # noqa: E402
 
 RENDER = TOP / "reference" / "render.py"
 
@@ -317,8 +315,8 @@ def runs(pid: int) -> bool:
 def test_interrupted(studio: Studio, how: signal.Signals) -> None:
     """POV-Ray ends with the program, and nothing is left."""
     env = os.environ | {"FAKE_POVRAY": "sleeps"}
-    process = subprocess.Popen([sys.executable, RENDER, *studio.arguments()], env=env, stdout=subprocess.PIPE,
-                               stderr=subprocess.PIPE, text=True)
+    process = start([sys.executable, RENDER, *studio.arguments()], env=env, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                    text=True)
     pid = studio.log.with_name("pid")
     for _ in range(300):
         if pid.exists() and pid.read_text():
