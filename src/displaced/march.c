@@ -14,7 +14,7 @@ typedef struct search {
     int32_t lane[LANES]; /* whose ray it is */
     rays x;
     real t[LANES], gap[LANES], end[LANES], shortest[LANES], tolerance[LANES];
-    real side[LANES]; /* 1: the ray comes from above the rough surface; -1: from below; 0: not known yet */
+    real side[LANES]; /* 1: the ray comes from above the displaced surface; -1: from below; 0: not known yet */
     int32_t own[LANES], left[LANES], open[LANES]; /* starts on this part; has clearly left it; is still searched */
     closest_points p;
     bump_values h;
@@ -33,7 +33,7 @@ STAGE static void gaps(search *restrict s, real *restrict slope)
     }
 }
 
-static void look(const domain *f, const bump *P, search *s, real *slope)
+static void evaluate(const domain *f, const bump *P, search *s, real *slope)
 {
     real u[LANES], w[LANES];
     f->foot(f, s->n, s->lane, &s->x, s->t, &s->p);
@@ -81,7 +81,7 @@ static displaced_result refine(const domain *f, const bump *P, search *s, int i,
     lane_set(&one.x.s, 0, lane_get(&s->x.s, i));
     one.t[0] = b;
     for (int k = 0; k < REFINE; k++) {
-        look(f, P, &one, slope);
+        evaluate(f, P, &one, slope);
         real gap = s->side[i] * one.gap[0], size = real_abs(gap);
         if (size < least) {
             least = size;
@@ -106,7 +106,7 @@ static displaced_result refine(const domain *f, const bump *P, search *s, int i,
 }
 
 /* Whether the foot of a hit is on the piece, and not on what extends it. */
-static bool counts(const domain *f, const search *s, int i, real t)
+static bool on_piece(const domain *f, const search *s, int i, real t)
 {
     rays x;
     closest_points p;
@@ -175,7 +175,7 @@ long displaced_search(const domain *f, const bump *P, int n, const rays *x, cons
         found[i] = DISPLACED_MISSED;
     begin(f, P, n, x, end, own, &s);
     for (int step = 0; step < f->steps && s.n; step++) {
-        look(f, P, &s, slope);
+        evaluate(f, P, &s, slope);
         f->steep(f, s.n, s.lane, &s.x, &s.p, P->Pu_max, P->Pw_max, s.rate, s.reach);
         for (int i = 0; i < s.n; i++) {
             if (!s.open[i])
@@ -200,7 +200,7 @@ long displaced_search(const domain *f, const bump *P, int n, const rays *x, cons
                 /* no step goes past a crossing by more than the shortest does */
                 real from = real_max(s.t[i] - s.shortest[i], 0), at;
                 displaced_result end_of = refine(f, P, &s, i, from, s.t[i], &at);
-                if (counts(f, &s, i, at)) {
+                if (on_piece(f, &s, i, at)) {
                     t[s.lane[i]] = at;
                     found[s.lane[i]] = (int32_t)end_of;
                     s.open[i] = 0;
@@ -223,7 +223,7 @@ long displaced_search(const domain *f, const bump *P, int n, const rays *x, cons
     }
     compact(&s);
     for (int i = 0; i < s.n; i++)
-        if (counts(f, &s, i, s.t[i])) {
+        if (on_piece(f, &s, i, s.t[i])) {
             t[s.lane[i]] = s.t[i];
             found[s.lane[i]] = DISPLACED_UNCERTAIN;
         }

@@ -94,7 +94,7 @@ static by_order_stage *const by_orders[2][4] = {
     {order_0, order_1, order_2, order_2_plus},
 };
 
-/* The places of the look-ups and the ray's way past the surface, for the methods that look P up again. */
+/* For the methods that evaluate P again along the ray: its way past the surface, and the places where it is now. */
 typedef struct walk {
     real sn[LANES], a[LANES], b[LANES], curvature[LANES];
     real tau[LANES], u[LANES], w[LANES];
@@ -108,6 +108,13 @@ STAGE static void walk_start(const hit_group *restrict g, walk *restrict k)
         k->sn[i] = v.sn;
         k->a[i] = v.a;
         k->b[i] = v.b;
+    }
+}
+
+STAGE static void walk_curvature(const hit_group *restrict g, walk *restrict k)
+{
+    for (int i = 0; i < g->n; i++) {
+        bs_view v = {k->sn[i], k->a[i], k->b[i]};
         k->curvature[i] = curvature(g, i, v);
     }
 }
@@ -121,7 +128,7 @@ STAGE static void walk_place(const hit_group *restrict g, walk *restrict k)
     }
 }
 
-static void walk_look_up(const hit_group *g, walk *k, const bump *P)
+static void walk_evaluate(const hit_group *g, walk *k, const bump *P)
 {
     walk_place(g, k);
     P->ops->eval(P, g->n, k->u, k->w, 0, &k->h);
@@ -139,9 +146,9 @@ static long iterate(hit_group *g, const bump *P, method m)
 {
     walk k;
     walk_start(g, &k);
-    iter_step(g->n, &k, g->bump.P); /* the first look-up is the one that shading has made */
+    iter_step(g->n, &k, g->bump.P); /* P at the smooth hit is known */
     for (int step = 1; step < m.n; step++) {
-        walk_look_up(g, &k, P);
+        walk_evaluate(g, &k, P);
         iter_step(g->n, &k, k.h.P);
     }
     for (int i = 0; i < g->n; i++) {
@@ -192,10 +199,11 @@ static long march(hit_group *g, const bump *P, method m)
     walk k;
     march_lanes x;
     walk_start(g, &k);
+    walk_curvature(g, &k);
     march_start(g->n, &k, P->Pmin, P->Pmax, &x);
     for (int step = 0; step <= m.n; step++) {
         march_place(g->n, &k, P->Pmin, P->Pmax, step, m.n);
-        walk_look_up(g, &k, P);
+        walk_evaluate(g, &k, P);
         march_step(g->n, &k, &x);
     }
     for (int i = 0; i < g->n; i++) {

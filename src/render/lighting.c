@@ -5,6 +5,8 @@
 #include "math/kmath.h"
 #include "wave/lane.h"
 
+#define SHORT 1e-6 /* scene units */
+
 STAGE static void aim_at_place(hit_group *restrict g, const light *l, const real *restrict t)
 {
     const real lx = (real)l->at.x, ly = (real)l->at.y, lz = (real)l->at.z;
@@ -15,15 +17,15 @@ STAGE static void aim_at_place(hit_group *restrict g, const light *l, const real
     }
 }
 
-/* Up to the light's plane. Beyond it there is light and no shadow, as in POV-Ray: a segment too short to meet a thing,
- * which still has its direction. */
+/* Up to the light's plane. Beyond it there is light and no shadow, as in POV-Ray: the segment is too SHORT to meet
+ * anything there, and still has its direction. */
 STAGE static void aim_along(hit_group *restrict g, const light *l, const real *restrict t)
 {
     const real lx = (real)l->at.x, ly = (real)l->at.y, lz = (real)l->at.z;
     const real ax = (real)l->axis.x, ay = (real)l->axis.y, az = (real)l->axis.z;
     for (int i = 0; i < g->n; i++) {
         bs_vec3 o = lane_at(&g->x, i, t[i]);
-        real depth = real_max((o.x - lx) * ax + (o.y - ly) * ay + (o.z - lz) * az, R(1e-6));
+        real depth = real_max((o.x - lx) * ax + (o.y - ly) * ay + (o.z - lz) * az, R(SHORT));
         bs_vec3 d = {-depth * ax, -depth * ay, -depth * az};
         lane_set(&g->to_light.r, i, o);
         lane_set(&g->to_light.s, i, d);

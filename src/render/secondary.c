@@ -1,3 +1,4 @@
+/* Directions, media and weights of the rays that go on from a group, as POV-Ray has them. */
 #include "render/secondary.h"
 
 #include <string.h>
@@ -17,21 +18,21 @@ typedef struct ways {
     vec3s through;
 } ways;
 
-/* d turned over, so that it is on the other side of the surface across n. */
-static inline bs_vec3 turned_over(bs_vec3 d, bs_vec3 n)
+/* d reflected at the plane across n. */
+static inline bs_vec3 reflected(bs_vec3 d, bs_vec3 n)
 {
     real k = 2 * bs_dot(d, n) / bs_dot(n, n);
     bs_vec3 x = {d.x - k * n.x, d.y - k * n.y, d.z - k * n.z};
     return x;
 }
 
-/* s mirrored at n'. What goes below the smooth surface then is turned over at it; where n' itself is turned away from
+/* s mirrored at n'. What goes below the smooth surface then is reflected at it; where n' itself is turned away from
  * the viewer, s is mirrored at the smooth surface. Both as in POV-Ray. */
 static inline bs_vec3 mirrored(bs_vec3 s, bs_vec3 smooth, bs_vec3 bumped)
 {
-    bs_vec3 d = turned_over(s, bumped), again, plain = turned_over(s, smooth);
+    bs_vec3 d = reflected(s, bumped), again, plain = reflected(s, smooth);
     real side = bs_dot(s, smooth), below = side * bs_dot(d, smooth), away = side * bs_dot(s, bumped);
-    again = turned_over(d, smooth);
+    again = reflected(d, smooth);
     again.x = away < 0 ? plain.x : again.x;
     again.y = away < 0 ? plain.y : again.y;
     again.z = away < 0 ? plain.z : again.z;
@@ -48,7 +49,7 @@ STAGE static void mirror(const hit_group *restrict g, ways *restrict y)
 }
 
 /* Snell's law with n' on the viewer's side, whichever that is. What stays on the viewer's side of the smooth surface is
- * turned over. */
+ * reflected. */
 STAGE static void bend(const hit_group *restrict g, ways *restrict y)
 {
     for (int i = 0; i < g->n; i++) {
@@ -57,7 +58,7 @@ STAGE static void bend(const hit_group *restrict g, ways *restrict y)
              root = real_sqrt(real_max(k, 0));
         real by = ratio * c - (c < 0 ? -root : root);
         bs_vec3 d = {ratio * s.x + by * n.x, ratio * s.y + by * n.y, ratio * s.z + by * n.z},
-                over = turned_over(d, smooth);
+                over = reflected(d, smooth);
         int back = bs_dot(s, smooth) * bs_dot(d, smooth) < 0;
         y->bent.x[i] = back ? over.x : d.x;
         y->bent.y[i] = back ? over.y : d.y;

@@ -17,6 +17,7 @@
 #include "support/golden_json.h"
 #include "wave/lane.h"
 #include "displaced/offset.h"
+#include "displaced/offset_patch.h"
 #include "read/patch_file.h"
 #include "support/random_rays.h"
 #include "patch/surface.h"
