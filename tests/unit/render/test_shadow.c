@@ -12,7 +12,7 @@
 static real *visible(const char *text, const char *method_text, bool self_shadow, real *lit)
 {
     scene *s = scene_text(text);
-    tracer tr = {.scene = s, .guard = true, .self_shadow = self_shadow, .layers = true};
+    tracer tr = {.scene = s, .guard = true, .displaced = s->displaced, .self_shadow = self_shadow, .layers = true};
     assert_true(method_parse(method_text, &tr.shadow));
     workspace *v = camera_wave(&tr);
     trace(&tr, LANES, v);
@@ -104,6 +104,36 @@ static void through_a_ball(void **state)
     NEAR(lit[64 + 8], (0.5 * 0.5 + 0.3 * 0.3 + 0.9 * 0.9) / 3, 4 * EPS);
 }
 
+/* Sixteen points of the rectangle x = 4, 0 <= y <= 9, z0 <= z <= z0 + 9. */
+static int put_patch(char *to, size_t size, double z0)
+{
+    int n = snprintf(to, size, "[");
+    for (int k = 0; k < 16; k++)
+        n += snprintf(to + n, size - (size_t)n, "%s[4, %d, %g]", k ? ", " : "", 3 * (k / 4), z0 + 3 * (k % 4));
+    return n + snprintf(to + n, size - (size_t)n, "]");
+}
+
+/* A displaced pane of two patches: a segment that has crossed one goes on from there, whichever of them it is. */
+static void through_displaced_patches(void **state)
+{
+    static char text[4096];
+    real lit[LANES];
+    (void)state;
+    int n = snprintf(text, sizeof text, "%s",
+                     HEAD "lights: {sun: {at: [40, 40, 0], color: [1, 1, 1]}}\n"
+                          "render: {surface: displaced}\n"
+                          "objects:\n"
+                          "  floor: {plane: {origin: [0, 0, 0], u: [0, 0, 1], w: [1, 0, 0]}, material: clay}\n"
+                          "  pane: {material: glass, bump: {function: 0.01}, patches: {points: [");
+    n += put_patch(text + n, sizeof text - (size_t)n, -9);
+    n += snprintf(text + n, sizeof text - (size_t)n, ", ");
+    n += put_patch(text + n, sizeof text - (size_t)n, 0);
+    snprintf(text + n, sizeof text - (size_t)n, "]}}\n");
+    visible(text, "none", true, lit);
+    for (int i = 0; i < LANES; i++)
+        NEAR(lit[i], (0.5 * 0.8 + 0.1 + 0.25 * 0.8 + 0.1 + 0.8 + 0.1) / 3, 4 * EPS);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -113,6 +143,7 @@ int main(void)
         cmocka_unit_test(half_of_an_area),
         cmocka_unit_test(through_a_pane),
         cmocka_unit_test(through_a_ball),
+        cmocka_unit_test(through_displaced_patches),
     };
     return cmocka_run_group_tests_name("shadow", tests, NULL, NULL);
 }
