@@ -234,21 +234,22 @@ static operand build_pow(emitter *e, int n, const operand *arg)
 /* ---- the table ---- */
 
 #define OF_TWO(rule) .least = 2, .most = 2, .operands = 2, .run = expr_run_rule, .rule2 = rule
+#define OF_THREE(rule) .least = 3, .most = 3, .operands = 3, .run = expr_run_rule, .rule3 = rule
 
 const expr_op expr_pow = {"pow",
                           OF_TWO(rule_pow),
                           .build = build_pow,
-                          .curved = EXPR_AA | EXPR_AB | EXPR_BB,
+                          .curved = EXPR_ALL,
                           .value = pow_value,
                           .gradient = pow_gradient,
                           .hessian = pow_hessian,
                           .pov = "pow"};
 
 const expr_op *const expr_functions[] = {
-    &(const expr_op){"noise", OF_TWO(rule_gradient_noise), .curved = EXPR_AA | EXPR_AB | EXPR_BB, .value = noise_value,
+    &(const expr_op){"noise", OF_TWO(rule_gradient_noise), .curved = EXPR_ALL, .value = noise_value,
                      .gradient = noise_slopes, .hessian = noise_hessian},
-    &(const expr_op){"atan2", OF_TWO(rule_atan2), .curved = EXPR_AA | EXPR_AB | EXPR_BB, .value = atan2_value,
-                     .gradient = atan2_gradient, .hessian = atan2_hessian, .pov = "atan2"},
+    &(const expr_op){"atan2", OF_TWO(rule_atan2), .curved = EXPR_ALL, .value = atan2_value, .gradient = atan2_gradient,
+                     .hessian = atan2_hessian, .pov = "atan2"},
     &(const expr_op){"mod", OF_TWO(rule_mod), .value = mod_value, .gradient = mod_gradient, .hessian = mod_hessian,
                      .pov = "mod"},
     &expr_pow,

@@ -31,7 +31,7 @@ static inline const double *expr_part_or_zeros(expr_view v, int p)
 
 /* The operands of a function with partials f_i, f_ij: at most three; and the pairs i <= j, as sets. */
 enum { EXPR_CURVED = 3, EXPR_PAIRS = 6 };
-enum { EXPR_AA = 1, EXPR_AB = 2, EXPR_AC = 4, EXPR_BB = 8, EXPR_BC = 16, EXPR_CC = 32 };
+enum { EXPR_AA = 1, EXPR_AB = 2, EXPR_AC = 4, EXPR_BB = 8, EXPR_BC = 16, EXPR_CC = 32, EXPR_ALL = 63 };
 extern const struct expr_pair {
     int i, j;
 } expr_pairs[EXPR_PAIRS];
