@@ -1,10 +1,10 @@
-"""The rooms of the house: the folders of src/, their order, and what includes what; as a table and a picture for docs/design.md.
+"""The rooms of the house, the folders of src/: their order and what includes what, as a table and a picture.
 
     scripts/venv python scripts/rooms.py           the table
     scripts/venv python scripts/rooms.py --write   the table and the picture, into docs/design.md and docs/rooms.svg
 
-ROOMS is the order that the sources must keep: a file includes files of its own room and of rooms of a lower rank. The tests
-check it (tests/program/test_house.py), and that the table and the picture are not stale.
+ROOMS is the order that the sources must keep: a file includes files of its own room and of rooms of a lower rank.
+The tests check it (tests/program/test_house.py), and that the table and the picture are not stale.
 """
 
 from __future__ import annotations
@@ -160,7 +160,9 @@ def routes(arrows: Graph, layer: Mapping[str, int]) -> list[Arrow]:
 def ordered(layer: Mapping[str, int], found: list[Arrow]) -> dict[int, list[Place]]:
     """The places of each layer from left to right: each near the middle of its neighbours, so that few arrows cross."""
     rows: dict[int, list[Place]] = {k: [] for k in set(layer.values())}
-    for place in dict.fromkeys([Place(room, layer[room]) for room in ROOMS if room in layer] + [p for a in found for p in a]):
+    for place in dict.fromkeys(
+        [Place(room, layer[room]) for room in ROOMS if room in layer] + [p for a in found for p in a]
+    ):
         rows[place.layer].append(place)
     for turn in range(24):
         near: dict[Place, list[float]] = {}
@@ -192,7 +194,7 @@ def placed(rows: Mapping[int, list[Place]]) -> tuple[dict[Place, tuple[float, fl
 
 
 def ports(ways: list[Arrow], at: Mapping[Place, tuple[float, float]], end: int) -> dict[int, float]:
-    """Where each arrow leaves its box (end 0) or arrives at it (end -1): side by side, in the order in which they go on."""
+    """Where each arrow leaves its box (end 0) or arrives at it (end -1): side by side, in the order of their ways."""
     found = {}
     for box in {way[end] for way in ways}:
         own = [k for k, way in enumerate(ways) if way[end] == box]
@@ -209,7 +211,8 @@ def svg_arrow(points: list[tuple[float, float]]) -> str:
         last = k == len(points) - 1
         start, stop = y + HEIGHT / 2, y1 - HEIGHT / 2 - (8 if last else 0)
         middle = (start + stop) / 2
-        path += f"{'L' if path else 'M'}{x:.0f},{start:.0f} C{x:.0f},{middle:.0f} {x1:.0f},{middle:.0f} {x1:.0f},{stop:.0f} "
+        curve = f"C{x:.0f},{middle:.0f} {x1:.0f},{middle:.0f} {x1:.0f},{stop:.0f}"
+        path += f"{'L' if path else 'M'}{x:.0f},{start:.0f} {curve} "
         x, y = x1, y1
     return f'<path class="arrow" d="{path.rstrip()}" marker-end="url(#head)"/>'
 
@@ -229,7 +232,8 @@ def picture(sources: Mapping[str, str]) -> str:
         if ">" not in place.name:
             box = f'x="{x - WIDTH / 2:.0f}" y="{y - HEIGHT / 2:.0f}" width="{WIDTH}" height="{HEIGHT}"'
             idea = html.escape(ROOMS[place.name][1])
-            parts.append(f'<g><title>{idea}</title><rect {box} rx="5"/><text x="{x:.0f}" y="{y + 6:.0f}">{place.name}/</text></g>')
+            label = f'<text x="{x:.0f}" y="{y + 6:.0f}">{place.name}/</text>'
+            parts.append(f'<g><title>{idea}</title><rect {box} rx="5"/>{label}</g>')
     body = "\n".join(parts)
     return f"""<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width:.0f} {height:.0f}" width="{width:.0f}">
 <style>
