@@ -7,11 +7,12 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
 
-import house
 import pytest
-import rooms
-from conftest import PROGRAM, TOP
-from house import House
+
+from scripts import rooms
+from tests.conftest import PROGRAM, TOP
+from tests.support import house
+from tests.support.house import House
 
 Rule = Callable[[House], Iterator[str]]
 

@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-import rooms
+from scripts import rooms
 
 PROGRAMS = ("cli", "import")  # rooms that the library has not: only these print, exit and install signal handlers
 
