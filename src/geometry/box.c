@@ -239,9 +239,9 @@ static const surface_ops box_methods = {
     .extent = box_extent,
     .box = box_box,
     .parts = 6,
-    .shell = box_shell,
-    .foot = box_foot,
-    .steep = box_steep,
+    .bound = box_shell,
+    .closest = box_foot,
+    .lipschitz = box_steep,
 };
 
 surface *box_new(vec3 from, vec3 to)

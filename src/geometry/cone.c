@@ -216,7 +216,7 @@ static void cone_shell(const surface *base, int part, int n, const rays *x, cons
         cone_side_shell((const cone *)base, n, x, end, Pmin, Pmax, t0, t1);
     else {
         const surface *cap = &cone_cap(base, part)->base;
-        cap->ops->shell(cap, 0, n, x, end, Pmin, Pmax, t0, t1);
+        cap->ops->bound(cap, 0, n, x, end, Pmin, Pmax, t0, t1);
     }
 }
 
@@ -244,7 +244,7 @@ static void cone_foot(const surface *base, int part, int n, const rays *x, const
         cone_side_foot((const cone *)base, n, x, t, p);
     else {
         const surface *cap = &cone_cap(base, part)->base;
-        cap->ops->foot(cap, 0, n, x, t, p);
+        cap->ops->closest(cap, 0, n, x, t, p);
     }
 }
 
@@ -268,7 +268,7 @@ static void cone_steep(const surface *base, int part, int n, const rays *x, cons
         cone_side_steep(n, x, p, Pu_max, Pw_max, rate, reach);
     else {
         const surface *cap = &cone_cap(base, part)->base;
-        cap->ops->steep(cap, 0, n, x, p, Pu_max, Pw_max, rate, reach);
+        cap->ops->lipschitz(cap, 0, n, x, p, Pu_max, Pw_max, rate, reach);
     }
 }
 
@@ -277,8 +277,8 @@ static void cone_steep(const surface *base, int part, int n, const rays *x, cons
     {                                                                                                                  \
         .kind = name, .hit = cone_##form##_hit, .hit_own = cone_##form##_hit_own, .locate = cone_locate,               \
         .eval = cone_eval, .occlude = cone_##form##_occlude, .occlude_own = cone_##form##_occlude_own,                 \
-        .extent = cone_extent, .box = cone_box, .parts = number, .shell = cone_shell, .foot = cone_foot,               \
-        .steep = cone_steep, .loose = is_cone                                                                          \
+        .extent = cone_extent, .box = cone_box, .parts = number, .bound = cone_shell, .closest = cone_foot,            \
+        .lipschitz = cone_steep, .unclamped = is_cone                                                                  \
     }
 
 static const surface_ops cone_methods[2][2] = {

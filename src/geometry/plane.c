@@ -303,9 +303,9 @@ static const surface_ops plane_methods = {
     .extent = plane_extent,
     .box = plane_box,
     .parts = 1,
-    .shell = plane_shell,
-    .foot = plane_foot,
-    .steep = plane_steep,
+    .bound = plane_shell,
+    .closest = plane_foot,
+    .lipschitz = plane_steep,
 };
 
 static const surface_ops rectangle_methods = {
@@ -318,9 +318,9 @@ static const surface_ops rectangle_methods = {
     .extent = rectangle_extent,
     .box = rectangle_box,
     .parts = 1,
-    .shell = rectangle_shell,
-    .foot = plane_foot,
-    .steep = plane_steep,
+    .bound = rectangle_shell,
+    .closest = plane_foot,
+    .lipschitz = plane_steep,
 };
 
 static const surface_ops disc_methods = {
@@ -333,9 +333,9 @@ static const surface_ops disc_methods = {
     .extent = disc_extent,
     .box = disc_box,
     .parts = 1,
-    .shell = disc_shell,
-    .foot = plane_foot,
-    .steep = plane_steep,
+    .bound = disc_shell,
+    .closest = plane_foot,
+    .lipschitz = plane_steep,
 };
 
 bool plane_place(plane *f, vec3 origin, vec3 U, vec3 W)

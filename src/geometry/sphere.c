@@ -225,9 +225,9 @@ static const surface_ops sphere_methods = {
     .extent = sphere_extent,
     .box = sphere_box,
     .parts = 1,
-    .shell = sphere_shell,
-    .foot = sphere_foot,
-    .steep = sphere_steep,
+    .bound = sphere_shell,
+    .closest = sphere_foot,
+    .lipschitz = sphere_steep,
 };
 
 surface *sphere_new(vec3 centre, double radius)

@@ -159,9 +159,9 @@ static const surface_ops torus_methods = {
     .extent = torus_extent,
     .box = torus_box,
     .parts = 1,
-    .shell = torus_shell,
-    .foot = torus_foot,
-    .steep = torus_steep,
+    .bound = torus_shell,
+    .closest = torus_foot,
+    .lipschitz = torus_steep,
 };
 
 static void store(double to[3], vec3 v)

@@ -187,7 +187,7 @@ static void similar_shell(const surface *base, int part, int n, const rays *x, c
     const transformed *f = of(base);
     rays y;
     rays_back(f, n, x, &y);
-    f->from->ops->shell(f->from, part, n, &y, end, Pmin * f->over, Pmax * f->over, t0, t1);
+    f->from->ops->bound(f->from, part, n, &y, end, Pmin * f->over, Pmax * f->over, t0, t1);
 }
 
 static void similar_foot(const surface *base, int part, int n, const rays *x, const real *t, closest_points *p)
@@ -195,7 +195,7 @@ static void similar_foot(const surface *base, int part, int n, const rays *x, co
     const transformed *f = of(base);
     rays y;
     rays_back(f, n, x, &y);
-    f->from->ops->foot(f->from, part, n, &y, t, p);
+    f->from->ops->closest(f->from, part, n, &y, t, p);
     turn_u(f, n, p->u, p->u);
     stretch(n, f->scale, p->h);
     gradients_to(f, n, f->turn, &p->gu);
@@ -217,7 +217,7 @@ static void similar_steep(const surface *base, int part, int n, const rays *x, c
     gradients_back(f, n, f->turn, &p->gu, &q.gu);
     gradients_back(f, n, 1, &p->gw, &q.gw);
     gradients_back(f, n, f->over, &p->gh, &q.gh);
-    f->from->ops->steep(f->from, part, n, &y, &q, Pu_max * f->over, Pw_max * f->over, rate, reach);
+    f->from->ops->lipschitz(f->from, part, n, &y, &q, Pu_max * f->over, Pw_max * f->over, rate, reach);
     stretch(n, f->scale, rate);
 }
 
@@ -227,20 +227,20 @@ static void faces_shell(const surface *base, int part, int n, const rays *x, con
                         real *t0, real *t1)
 {
     const surface *face = &of(base)->face[part].base;
-    face->ops->shell(face, 0, n, x, end, Pmin, Pmax, t0, t1);
+    face->ops->bound(face, 0, n, x, end, Pmin, Pmax, t0, t1);
 }
 
 static void faces_foot(const surface *base, int part, int n, const rays *x, const real *t, closest_points *p)
 {
     const surface *face = &of(base)->face[part].base;
-    face->ops->foot(face, 0, n, x, t, p);
+    face->ops->closest(face, 0, n, x, t, p);
 }
 
 static void faces_steep(const surface *base, int part, int n, const rays *x, const closest_points *p, real Pu_max,
                         real Pw_max, real *rate, real *reach)
 {
     const surface *face = &of(base)->face[part].base;
-    face->ops->steep(face, 0, n, x, p, Pu_max, Pw_max, rate, reach);
+    face->ops->lipschitz(face, 0, n, x, p, Pu_max, Pw_max, rate, reach);
 }
 
 /* The image of the box of what is mapped. */
@@ -294,9 +294,9 @@ static bool box_image(transformed *f, const affine *m)
         rectangle_set(&f->face[part]);
         good = flat_image(&f->face[part], f->from, part, m, (double)f->turn, (double)f->ends) && good;
     }
-    f->methods.shell = faces_shell;
-    f->methods.foot = faces_foot;
-    f->methods.steep = faces_steep;
+    f->methods.bound = faces_shell;
+    f->methods.closest = faces_foot;
+    f->methods.lipschitz = faces_steep;
     return good;
 }
 
@@ -312,9 +312,9 @@ static void choose_methods(transformed *f, double scale)
     f->methods.occlude_own = f->from->ops->occlude_own ? transformed_occlude_own : NULL;
     f->methods.extent = transformed_extent;
     f->methods.box = transformed_box;
-    f->methods.shell = scale > 0 ? similar_shell : NULL;
-    f->methods.foot = scale > 0 ? similar_foot : NULL;
-    f->methods.steep = scale > 0 ? similar_steep : NULL;
+    f->methods.bound = scale > 0 ? similar_shell : NULL;
+    f->methods.closest = scale > 0 ? similar_foot : NULL;
+    f->methods.lipschitz = scale > 0 ? similar_steep : NULL;
 }
 
 surface *surface_transformed(const surface *from, const affine *m)
