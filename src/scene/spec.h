@@ -1,4 +1,4 @@
-/* What the scene file said, for exports and reports. Tracing does not read it, but for shape_has_inside. */
+/* What the scene file said, for exports and reports. Tracing asks for shape_has_inside alone. */
 #ifndef KAGE_SCENE_SPEC_H
 #define KAGE_SCENE_SPEC_H
 
