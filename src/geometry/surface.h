@@ -73,8 +73,6 @@ typedef struct surface_ops {
 struct surface {
     const surface_ops *ops;
     void (*free)(surface *f); /* NULL: it owns nothing but itself */
-    const struct displaced_ops
-        *rough; /* its own way to its rough surface (displace.h), in place of shell, foot and steep; NULL: none */
 };
 
 /* Q = origin + u U + w W; over all (u,w), or over 0..1 where `bounded`. NULL where U and W are parallel, zero or not
