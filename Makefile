@@ -187,7 +187,7 @@ reference: all
 
 accept: all
 	@CC='$(CC)' scripts/bootstrap python
-	@KAGE=$(BUILD)/kage scripts/venv python tests/regression/accept.py
+	@KAGE=$(BUILD)/kage scripts/venv python -m tests.regression.accept
 
 install: all
 	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/include

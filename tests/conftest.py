@@ -7,9 +7,12 @@ from __future__ import annotations
 
 import os
 import shutil
+import signal
 import subprocess
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -20,7 +23,8 @@ PROGRAM = Path(os.environ.get("KAGE", TOP / "build" / "float" / "kage")).resolve
 needs_povray = pytest.mark.skipif(not shutil.which("povray") and not os.environ.get("CI"), reason="no povray")
 
 #: The files that take longest, which begin first, so that two workers end together.
-LONG = ("test_parity.py", "test_bench_run.py", "test_images.py", "test_regression.py", "test_input.py", "test_mesh.py", "test_pov.py")
+LONG = ("test_parity.py", "test_bench_run.py", "test_images.py", "test_regression.py", "test_input.py", "test_mesh.py",
+        "test_pov.py")
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
@@ -55,6 +59,15 @@ objects:
 """
 
 
+def start(command: Sequence[object], **options: Any) -> subprocess.Popen[Any]:
+    """Start a command that is to be interrupted: Ctrl-C ends it even where it is ignored here, as under nohup."""
+    return subprocess.Popen([str(word) for word in command], preexec_fn=restore_interrupt, **options)
+
+
+def restore_interrupt() -> None:
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
 @dataclass
 class Kage:
     """Runs the program in a folder of its own."""
@@ -62,7 +75,8 @@ class Kage:
     folder: Path
     environment: dict[str, str] = field(default_factory=lambda: dict(os.environ))
 
-    def __call__(self, *arguments: object, cwd: Path | None = None, timeout: float = 120) -> subprocess.CompletedProcess[str]:
+    def __call__(self, *arguments: object, cwd: Path | None = None,
+                 timeout: float = 120) -> subprocess.CompletedProcess[str]:
         return subprocess.run(
             [str(PROGRAM), *map(str, arguments)],
             cwd=cwd or self.folder,
