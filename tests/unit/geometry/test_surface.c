@@ -2,12 +2,11 @@
  * without sense do no harm.
  */
 #include <stdbool.h>
-#include <stdio.h>
 #include <string.h>
 
 #include "base/frame.h"
 #include "geometry/surface.h"
-#include "support/check.h"
+#include "support/properties.h"
 #include "support/random_rays.h"
 #include "wave/lane.h"
 
@@ -581,46 +580,20 @@ static void constructors_refuse_nonsense(void **state)
     assert_null(torus_new(o, x, (double)NAN, 1));
 }
 
-/* What holds of every surface, or of some: a test for each pair, so that a failure names both. */
-static bool all(int kind) { return kind < KINDS; }
-
-static const struct {
-    const char *name;
-    CMUnitTestFunction run;
-    bool (*of)(int kind);
-} PROPERTIES[] = {
-    {"hits are on the surface", hits_are_on_the_surface, all},
-    {"partials are derivatives", partials_are_derivatives, all},
-    {"shadows agree with hits", shadows_agree_with_hits, all},
-    {"dark stays dark", dark_stays_dark, all},
-    {"only flat ones cannot shade themselves", only_flat_ones_cannot_shade_themselves, all},
+static const property PROPERTIES[] = {
+    {"hits are on the surface", hits_are_on_the_surface, NULL},
+    {"partials are derivatives", partials_are_derivatives, NULL},
+    {"shadows agree with hits", shadows_agree_with_hits, NULL},
+    {"dark stays dark", dark_stays_dark, NULL},
+    {"only flat ones cannot shade themselves", only_flat_ones_cannot_shade_themselves, NULL},
     {"outward is lit", outward_is_lit, is_convex},
     {"inward is dark", inward_is_dark, is_convex},
-    {"own rays meet what is ahead", own_rays_meet_what_is_ahead, all},
-    {"own hits are on the surface", own_hits_are_on_the_surface, all},
-    {"rays from elsewhere as by hit", rays_from_elsewhere_as_hit, all},
+    {"own rays meet what is ahead", own_rays_meet_what_is_ahead, NULL},
+    {"own hits are on the surface", own_hits_are_on_the_surface, NULL},
+    {"rays from elsewhere as by hit", rays_from_elsewhere_as_hit, NULL},
     {"from inside", from_inside, is_convex},
-    {"odd rays", odd_rays, all},
+    {"odd rays", odd_rays, NULL},
 };
-enum { COUNT = sizeof PROPERTIES / sizeof *PROPERTIES };
-
-static int run_properties(void)
-{
-    static int kinds[KINDS];
-    static char names[COUNT * KINDS][64];
-    static struct CMUnitTest tests[COUNT * KINDS];
-    int n = 0;
-    for (int kind = 0; kind < KINDS; kind++)
-        for (int k = 0; k < COUNT; k++) {
-            if (!PROPERTIES[k].of(kind))
-                continue;
-            kinds[kind] = kind;
-            snprintf(names[n], sizeof names[n], "%s: %s", NAMES[kind], PROPERTIES[k].name);
-            tests[n] = (struct CMUnitTest){names[n], PROPERTIES[k].run, NULL, NULL, &kinds[kind]};
-            n++;
-        }
-    return _cmocka_run_group_tests("surfaces", tests, (size_t)n, NULL, NULL);
-}
 
 int main(void)
 {
@@ -631,5 +604,6 @@ int main(void)
         cmocka_unit_test(small_and_far),
         cmocka_unit_test(constructors_refuse_nonsense),
     };
-    return run_properties() + cmocka_run_group_tests_name("surfaces, each by itself", tests, NULL, NULL);
+    return run_properties("surfaces", PROPERTIES, sizeof PROPERTIES / sizeof *PROPERTIES, NAMES, KINDS, NULL, NULL) +
+           cmocka_run_group_tests_name("surfaces, each by itself", tests, NULL, NULL);
 }

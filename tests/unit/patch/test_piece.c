@@ -1,12 +1,8 @@
 /* Pieces of patches: their bounds hold, halves cover the whole, and what is proved for a ray is true. Each property is
  * a test for each of some patches, with random pieces of them.
  */
-#include <stdbool.h>
-#include <stdio.h>
-#include <stdlib.h>
-
 #include "patch/piece.h"
-#include "support/check.h"
+#include "support/properties.h"
 #include "support/random_in.h"
 
 #define PI 3.14159265358979323846
@@ -139,16 +135,16 @@ static void partials_near_sides(const piece *f, const point *p)
     CHECK(vec3_length(vec3_sub(vec3_scale(p->Qw, hw), f->B)), <=, f->eb + ROUNDING);
 }
 
-static void the_box_holds(void **state) { for_points(*(patch **)*state, in_box); }
-static void the_error_holds(void **state) { for_points(*(patch **)*state, near_parallelogram); }
-static void the_radius_holds(void **state) { for_points(*(patch **)*state, in_radius); }
-static void the_sides_hold(void **state) { for_points(*(patch **)*state, partials_near_sides); }
+static void the_box_holds(void **state) { for_points(made[*(const int *)*state], in_box); }
+static void the_error_holds(void **state) { for_points(made[*(const int *)*state], near_parallelogram); }
+static void the_radius_holds(void **state) { for_points(made[*(const int *)*state], in_radius); }
+static void the_sides_hold(void **state) { for_points(made[*(const int *)*state], partials_near_sides); }
 
 /* The bounds become close, or nothing would ever be proved: those of a smooth piece of half the size are about a
  * quarter as wide. */
 static void errors_shrink(void **state)
 {
-    const patch *q = *(patch **)*state;
+    const patch *q = made[*(const int *)*state];
     const double m = 0.3, u[2] = {q->u[0] + m * (q->u[1] - q->u[0]), 0}, w[2] = {q->w[0] + m * (q->w[1] - q->w[0]), 0};
     double e[2];
     for (int k = 0; k < 2; k++) {
@@ -165,7 +161,7 @@ static void errors_shrink(void **state)
 
 static void halves_cover_the_whole(void **state)
 {
-    const patch *q = *(patch **)*state;
+    const patch *q = made[*(const int *)*state];
     for (int round = 0; round < 300; round++) {
         const piece f = random_piece(q), a = piece_half(q, &f, 0), b = piece_half(q, &f, 1);
         const bool along_u = a.u[1] != f.u[1];
@@ -189,8 +185,8 @@ static vec3 random_vector(double size)
 /* No ray misses a piece through whose point it goes. */
 static void no_hit_is_missed(void **state)
 {
-    const patch *q = *(patch **)*state;
-    for (int round = 0; round < 6000; round++) {
+    const patch *q = made[*(const int *)*state];
+    for (int round = 0; round < 1500; round++) {
         const piece f = random_piece(q);
         const point p = random_point(q, &f);
         const vec3 s = random_vector(1), r = vec3_sub(p.Q, vec3_scale(s, 2));
@@ -203,8 +199,8 @@ static void no_hit_is_missed(void **state)
 /* A ray through two points of a piece is never said to meet it once at the most. */
 static void no_second_hit_is_missed(void **state)
 {
-    const patch *q = *(patch **)*state;
-    for (int round = 0; round < 6000; round++) {
+    const patch *q = made[*(const int *)*state];
+    for (int round = 0; round < 1500; round++) {
         const piece f = random_piece(q);
         const point p = random_point(q, &f), p2 = random_point(q, &f);
         const vec3 s = vec3_sub(p2.Q, p.Q), r = vec3_sub(p.Q, s);
@@ -217,9 +213,9 @@ static void no_second_hit_is_missed(void **state)
 /* Small pieces are proved to be met once by most rays through them, and (a,b) is close to the hit. */
 static void most_rays_are_decided(void **state)
 {
-    const patch *q = *(patch **)*state;
+    const patch *q = made[*(const int *)*state];
     int once = 0, tries = 0;
-    for (int round = 0; round < 3000; round++) {
+    for (int round = 0; round < 1000; round++) {
         piece f = random_piece(q);
         for (int k = 0; k < 8; k++)
             f = piece_half(q, &f, random_in(0, 1) < 0.5);
@@ -239,7 +235,7 @@ static void most_rays_are_decided(void **state)
 /* Rays that pass a piece at a distance, and rays that end before it or begin behind it, miss it. */
 static void distant_rays_miss(void **state)
 {
-    const patch *q = *(patch **)*state;
+    const patch *q = made[*(const int *)*state];
     for (int round = 0; round < 1000; round++) {
         const piece f = random_piece(q);
         const double far = 3 * piece_radius(&f);
@@ -259,9 +255,9 @@ static void distant_rays_miss(void **state)
 
 static void pieces_cover_the_patch(void **state)
 {
-    const patch *q = *(patch **)*state;
+    const patch *q = made[*(const int *)*state];
     pieces l;
-    assert_true(pieces_of(q, 0.1, &l));
+    assert_true(pieces_of(q, 0.3, &l));
     double area = 0;
     for (int k = 0; k < l.n; k++)
         area += (l.piece[k].u[1] - l.piece[k].u[0]) * (l.piece[k].w[1] - l.piece[k].w[0]);
@@ -273,9 +269,9 @@ static void pieces_cover_the_patch(void **state)
 
 static void box_and_sphere_hold_the_patch(void **state)
 {
-    const patch *q = *(patch **)*state;
+    const patch *q = made[*(const int *)*state];
     pieces l;
-    assert_true(pieces_of(q, 0.1, &l));
+    assert_true(pieces_of(q, 0.3, &l));
     for (int round = 0; round < 2000; round++) {
         const piece f = random_piece(q);
         const point p = random_point(q, &f);
@@ -292,7 +288,7 @@ static void a_point_has_no_pieces(void **state)
     (void)state;
     patch *q = function("3", "2 + 0*u", "1", 0, 1, 0, 1);
     pieces l;
-    assert_false(pieces_of(q, 0.1, &l));
+    assert_false(pieces_of(q, 0.3, &l));
     assert_int_equal(l.n, 0);
     pieces_free(&l);
     q->ops->free(q);
@@ -303,38 +299,30 @@ static void no_bounds_no_pieces(void **state)
     (void)state;
     patch *q = function("u", "1/u", "w", -1, 1, 0, 1);
     pieces l;
-    assert_false(pieces_of(q, 0.1, &l));
+    assert_false(pieces_of(q, 0.3, &l));
     pieces_free(&l);
     q->ops->free(q);
 }
 
-static const struct {
-    const char *name;
-    CMUnitTestFunction run;
-} PROPERTIES[] = {
-    {"the box holds", the_box_holds},
-    {"the error holds", the_error_holds},
-    {"the radius holds", the_radius_holds},
-    {"the sides hold", the_sides_hold},
-    {"errors shrink", errors_shrink},
-    {"halves cover the whole", halves_cover_the_whole},
-    {"no hit is missed", no_hit_is_missed},
-    {"no second hit is missed", no_second_hit_is_missed},
-    {"most rays are decided", most_rays_are_decided},
-    {"distant rays miss", distant_rays_miss},
-    {"pieces cover the patch", pieces_cover_the_patch},
-    {"box and sphere hold the patch", box_and_sphere_hold_the_patch},
+static const property PROPERTIES[] = {
+    {"the box holds", the_box_holds, NULL},
+    {"the error holds", the_error_holds, NULL},
+    {"the radius holds", the_radius_holds, NULL},
+    {"the sides hold", the_sides_hold, NULL},
+    {"errors shrink", errors_shrink, NULL},
+    {"halves cover the whole", halves_cover_the_whole, NULL},
+    {"no hit is missed", no_hit_is_missed, NULL},
+    {"no second hit is missed", no_second_hit_is_missed, NULL},
+    {"most rays are decided", most_rays_are_decided, NULL},
+    {"distant rays miss", distant_rays_miss, NULL},
+    {"pieces cover the patch", pieces_cover_the_patch, NULL},
+    {"box and sphere hold the patch", box_and_sphere_hold_the_patch, NULL},
 };
-enum { COUNT = sizeof PROPERTIES / sizeof *PROPERTIES };
 
 int main(void)
 {
-    static char names[COUNT * KINDS][64];
-    static struct CMUnitTest tests[COUNT * KINDS + 2] = {cmocka_unit_test(a_point_has_no_pieces),
-                                                         cmocka_unit_test(no_bounds_no_pieces)};
-    for (int k = 0; k < COUNT * KINDS; k++) {
-        snprintf(names[k], sizeof names[k], "%s: %s", NAMES[k % KINDS], PROPERTIES[k / KINDS].name);
-        tests[k + 2] = (struct CMUnitTest){names[k], PROPERTIES[k / KINDS].run, NULL, NULL, &made[k % KINDS]};
-    }
-    return cmocka_run_group_tests_name("pieces of patches", tests, make_all, free_all);
+    const struct CMUnitTest tests[] = {cmocka_unit_test(a_point_has_no_pieces), cmocka_unit_test(no_bounds_no_pieces)};
+    return run_properties("pieces of patches", PROPERTIES, sizeof PROPERTIES / sizeof *PROPERTIES, NAMES, KINDS,
+                          make_all, free_all) +
+           cmocka_run_group_tests_name("patches without pieces", tests, NULL, NULL);
 }
