@@ -2,29 +2,15 @@
  * mapped; n points outward also where the map mirrors; rough ones are met where heights divided by the scale are met in
  * the surface's own space.
  */
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
 #include "support/displace.h"
 #include "wave/lane.h"
+#include "support/properties.h"
 #include "support/random_rays.h"
 #include "geometry/surface.h"
 
-/* Digits of a place a few units from the origin. */
-#ifdef KAGE_DOUBLE
-#define EPS 2.2e-16
-#else
-#define EPS 1.2e-7
-#endif
-
 enum { PLANE, RECTANGLE, DISC, BOX, SPHERE, DRUM, TUBE, HAT, TORUS, KINDS };
 enum { MOVED, MIRRORED, STRETCHED, SHEARED, MAPS };
+static const char *const kind_names[] = {"plane", "rectangle", "disc", "box", "sphere", "drum", "tube", "hat", "torus"};
 static const char *const map_names[] = {"moved", "mirrored", "stretched", "sheared"};
 
 static surface *make(int kind)
@@ -91,20 +77,19 @@ static double turned(const surface *f, int part, const affine *m, double u)
 
 typedef void check(int kind, int map, const surface *own, const surface *f, const affine *m);
 
-static void for_all(check *c)
+/* *state: the number of a pair, KINDS x MAPS. */
+static void for_pair(void **state, check *c)
 {
-    for (int kind = 0; kind < KINDS; kind++)
-        for (int map = 0; map < MAPS; map++) {
-            const affine m = make_map(map);
-            surface *own = make(kind), *f = surface_transformed(own, &m);
-            assert_non_null(f);
-            assert_string_equal(f->ops->kind, own->ops->kind);
-            assert_int_equal(f->ops->parts, own->ops->parts);
-            for (int round = 0; round < 10; round++)
-                c(kind, map, own, f, &m);
-            surface_free(f);
-            surface_free(own);
-        }
+    const int kind = *(const int *)*state / MAPS, map = *(const int *)*state % MAPS;
+    const affine m = make_map(map);
+    surface *own = make(kind), *f = surface_transformed(own, &m);
+    assert_non_null(f);
+    assert_string_equal(f->ops->kind, own->ops->kind);
+    assert_int_equal(f->ops->parts, own->ops->parts);
+    for (int round = 0; round < 10; round++)
+        c(kind, map, own, f, &m);
+    surface_free(f);
+    surface_free(own);
 }
 
 /* ---- rays ---- */
@@ -172,11 +157,7 @@ static void rays_meet_alike(int kind, int map, const surface *own, const surface
     }
 }
 
-static void rays_alike(void **state)
-{
-    (void)state;
-    for_all(rays_meet_alike);
-}
+static void rays_alike(void **state) { for_pair(state, rays_meet_alike); }
 
 static void vectors_are_images(int kind, int map, const surface *own, const surface *f, const affine *m)
 {
@@ -214,11 +195,7 @@ static void vectors_are_images(int kind, int map, const surface *own, const surf
     }
 }
 
-static void partials_and_normals(void **state)
-{
-    (void)state;
-    for_all(vectors_are_images);
-}
+static void partials_and_normals(void **state) { for_pair(state, vectors_are_images); }
 
 static void own_shadow_alike(int kind, int map, const surface *own, const surface *f, const affine *m)
 {
@@ -277,11 +254,7 @@ static void own_shadow_alike(int kind, int map, const surface *own, const surfac
     assert_true(differ <= (kind == TORUS ? 4 : 2));
 }
 
-static void own_shadows(void **state)
-{
-    (void)state;
-    for_all(own_shadow_alike);
-}
+static void own_shadows(void **state) { for_pair(state, own_shadow_alike); }
 
 /* ---- rough surfaces ---- */
 
@@ -334,11 +307,7 @@ static void feet_are_below(int kind, int map, const surface *own, const surface 
     }
 }
 
-static void feet_of_images(void **state)
-{
-    (void)state;
-    for_all(feet_are_below);
-}
+static void feet_of_images(void **state) { for_pair(state, feet_are_below); }
 
 /* Heights h over the image are h/scale over the surface itself. */
 static void rough_alike(int kind, int map, const surface *own, const surface *f, const affine *m)
@@ -387,11 +356,7 @@ static void rough_alike(int kind, int map, const surface *own, const surface *f,
     bump_free(S);
 }
 
-static void rough_hits(void **state)
-{
-    (void)state;
-    for_all(rough_alike);
-}
+static void rough_hits(void **state) { for_pair(state, rough_alike); }
 
 /* On a box that is stretched or sheared hits are on Q + P n/|n|, along the normal of the image. */
 static void rough_box(void **state)
@@ -453,12 +418,22 @@ static void none(void **state)
     }
 }
 
+static const property PROPERTIES[] = {
+    {"rays alike", rays_alike, NULL},   {"partials and normals", partials_and_normals, NULL},
+    {"own shadows", own_shadows, NULL}, {"feet of images", feet_of_images, NULL},
+    {"rough hits", rough_hits, NULL},
+};
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(rays_alike),     cmocka_unit_test(partials_and_normals), cmocka_unit_test(own_shadows),
-        cmocka_unit_test(feet_of_images), cmocka_unit_test(rough_hits),           cmocka_unit_test(rough_box),
-        cmocka_unit_test(none),
-    };
-    return cmocka_run_group_tests_name("transformed surfaces", tests, NULL, NULL);
+    static char text[KINDS * MAPS][40];
+    static const char *names[KINDS * MAPS];
+    for (int k = 0; k < KINDS * MAPS; k++) {
+        snprintf(text[k], sizeof text[k], "%s, %s", kind_names[k / MAPS], map_names[k % MAPS]);
+        names[k] = text[k];
+    }
+    const struct CMUnitTest tests[] = {cmocka_unit_test(rough_box), cmocka_unit_test(none)};
+    return run_properties("transformed surfaces", PROPERTIES, sizeof PROPERTIES / sizeof *PROPERTIES, names,
+                          KINDS * MAPS, NULL, NULL) +
+           cmocka_run_group_tests_name("transformed surfaces, each by itself", tests, NULL, NULL);
 }
