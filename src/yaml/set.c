@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/spelling.h"
 #include "yaml/text.h"
 
 #define NAME_LETTERS "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-"
@@ -115,7 +116,7 @@ static bool step(yaml *y, const char *set, const char *k, size_t n, node *at, co
     *next = fy_node_mapping_lookup_by_string(at, key, n);
     if (*next || last)
         return true;
-    if (root && text_among(key, optional) >= 0) {
+    if (root && spelling_among(key, optional) >= 0) {
         keep_places(y, at);
         *next = fy_node_create_mapping(y->doc);
         fy_node_set_meta(*next, &y->origins[y->count_origins]); /* that of its key */
@@ -124,7 +125,7 @@ static bool step(yaml *y, const char *set, const char *k, size_t n, node *at, co
     keys_of(at, keys, sizeof keys);
     if (!*keys)
         return set_error(y, set, k, "the scene has no '%s' here, there is nothing here", key);
-    text_nearest(key, keys, near, sizeof near);
+    spelling_nearest(key, keys, near, sizeof near);
     if (*near)
         return set_error(y, set, k, "the scene has no '%s' here, did you mean '%s'?", key, near);
     return set_error(y, set, k, "the scene has no '%s' here, expected one of: %s", key, keys);
