@@ -26,7 +26,7 @@ typedef float real;
 /* A literal of type real: R(0.5). */
 #define R(x) ((real)(x))
 
-/* No real number of the scene: the t of a ray that has met nothing. */
+/* The t of a ray that has met nothing: larger than any of a scene. */
 #define REAL_FAR ((real)1e30)
 
 /* Put before the definition of a stage, a static function that is one plain loop over lanes (static, as clang 14

@@ -1,5 +1,5 @@
-/* --set: changes of the document. What they put in remembers where it came from, so that an error in it shows the
- * setting. */
+/* --set: changes of the document. New nodes remember the setting that they came from, which errors in them then show.
+ */
 #include "yaml/document.h"
 
 #include <libfyaml.h>
@@ -35,7 +35,7 @@ static bool set_error(yaml *y, const char *set, const char *at, const char *fmt,
     vsnprintf(message, sizeof message, fmt, args);
     va_end(args);
     text_place(set, (size_t)(at - set), &line, &column);
-    return yaml_tell(y, &(origin){set, 1, true, line, column}, line, column, message);
+    return yaml_add_error(y, &(origin){set, 1, true, line, column}, line, column, message);
 }
 
 /* Before something in a node changes: keep its place, and those of the nodes around it. */
@@ -58,7 +58,7 @@ static void keep_places(yaml *y, node *at)
     }
 }
 
-/* A new node from a part of a setting, with its origin. NULL: an error is told. */
+/* A new node from a part of a setting, with its origin. NULL: an error is added. */
 static node *made(yaml *y, const char *set, const char *at, size_t n, bool key)
 {
     int line, column;

@@ -70,9 +70,9 @@ void text_place(const char *text, size_t at, int *line, int *column)
 bool text_error(errors *e, const char *name, const char *text, int line, int column, const char *message)
 {
     enum { BEFORE = 60, SHOWN = 150, BYTES = 4 };
-    char told[1024], excerpt[SHOWN * BYTES + 1], blank[SHOWN + 1];
+    char shown_message[1024], excerpt[SHOWN * BYTES + 1], blank[SHOWN + 1];
     const char *from = text;
-    copy_shown(told, sizeof told, message, strlen(message));
+    copy_shown(shown_message, sizeof shown_message, message, strlen(message));
     for (int k = 1; k < line; k++) {
         const char *next = from + strcspn(from, "\r\n");
         next += line_end(next);
@@ -102,7 +102,8 @@ bool text_error(errors *e, const char *name, const char *text, int line, int col
             blank[pad++] = *c == '\t' ? '\t' : ' ';
     blank[pad] = 0;
     copy_shown(excerpt, sizeof excerpt, from, length);
-    return errors_add(e, "%s:%d:%d: %s\n%5d | %s\n      | %s^", name, line, column, told, line, excerpt, blank);
+    return errors_add(e, "%s:%d:%d: %s\n%5d | %s\n      | %s^", name, line, column, shown_message, line, excerpt,
+                      blank);
 }
 
 /* ---- scalars ---- */

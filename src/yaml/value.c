@@ -1,4 +1,4 @@
-/* The typed getters: each checks what it hands out, and tells what it expected. */
+/* The typed getters: each checks the value that it returns, and says in its error what it expected. */
 #include "yaml/document.h"
 
 #include <libfyaml.h>
