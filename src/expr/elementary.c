@@ -17,7 +17,7 @@ static expr_hessian second(interval dd) { return (expr_hessian){{dd}}; }
 static interval positive(double x, double y)
 {
     interval z = interval_between(x, y);
-    return (interval){z.lo > 1e-300 ? z.lo : 0, double_max(z.hi, INTERVAL_TINY)};
+    return (interval){z.lo > 1e-300 ? z.lo : 0, greater(z.hi, INTERVAL_TINY)};
 }
 
 static interval at_least_0(interval a) { return interval_clip(a, 0, KM_INF); }

@@ -59,7 +59,7 @@ static interval angle_by(interval t, interval r2)
 {
     interval z = interval_multiply(t, interval_reciprocal(r2));
     double steepest = interval_reciprocal(interval_sqrt(r2)).hi * (1 + INTERVAL_ROUNDINGS);
-    return interval_widen((interval){double_max(z.lo, -steepest), double_min(z.hi, steepest)}, INTERVAL_ROUNDINGS);
+    return interval_widen((interval){greater(z.lo, -steepest), lesser(z.hi, steepest)}, INTERVAL_ROUNDINGS);
 }
 
 static expr_gradient atan2_gradient(const expr_ranges *r)
@@ -145,7 +145,7 @@ static step_bounds step_over(const expr_ranges *r)
     const interval a = interval_negate(r->x[0]), width = interval_add(r->x[1], a);
     const interval d = interval_has(width, 0) ? interval_all : interval_reciprocal(width); /* it jumps where b = a */
     const interval t = interval_multiply(interval_add(r->x[2], a), d);
-    const double lo = double_min(double_max(t.lo, 0), 1), hi = double_min(double_max(t.hi, 0), 1);
+    const double lo = lesser(greater(t.lo, 0), 1), hi = lesser(greater(t.hi, 0), 1);
     step_bounds z = {{lo, hi}, d, interval_between(6 * lo * (1 - lo), 6 * hi * (1 - hi)), {0, 0}};
     if (lo <= 0.5 && hi >= 0.5)
         z.s1.hi = 1.5 * (1 + INTERVAL_ROUNDINGS);
