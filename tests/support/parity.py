@@ -345,6 +345,8 @@ CUBE = "box: {from: [-1, 0, -1], to: [1, 1.2, 1]}"
 DISPLACED = {
     "plane": (PLANE, FUNCTION, "isosurface"),
     "skewed rectangle": (SKEWED, "{function: '0.1*sin(9*u)*sin(11*w)', scale: -0.8}", "isosurface"),
+    "terraces": (SKEWED, "{function: '0.03*(smoothstep(0.25, 0.15, abs(u - 0.5)) + smoothstep(0, 0.2, w - 0.3*u))'}",
+                 "isosurface"),
     "box": (CUBE, "{function: '0.04*sin(12*u)*sin(10*w)'}", "isosurface"),
     "sphere": (GLOBE, ROUND, "isosurface"),
     "sphere, steep at its poles": (GLOBE, "{function: '0.04*sin(8*u)*sin(6*w)'}", "isosurface"),
