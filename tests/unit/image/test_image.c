@@ -384,9 +384,10 @@ static void huge_png_is_refused(void **state)
         for (int k = 0; k < 4; k++)
             b[29 + k] = (unsigned char)(~crc >> (24 - 8 * k));
         /* followed by an empty IDAT, so that the header counts as read */
+        static const unsigned char empty[12] = {0, 0, 0, 0, 'I', 'D', 'A', 'T', 0x35, 0xaf, 0x06, 0x1e};
         unsigned char whole[45];
         memcpy(whole, b, 33);
-        memcpy(whole + 33, "\0\0\0\0IDAT\x35\xaf\x06\x1e", 12);
+        memcpy(whole + 33, empty, 12);
         spill(path, whole, sizeof whole);
         assert_refused(path, NULL, size[i][0] ? "too large" : "libpng");
     }
