@@ -198,6 +198,18 @@ accept: all
 	@CC='$(CC)' scripts/bootstrap python
 	@KAGE=$(BUILD)/kage scripts/venv python -m tests.regression.accept
 
+# ---- sanitizers ----
+
+# The clones' resolvers run before a sanitizer is ready; and stages in AVX2 have no other accesses than those in SSE2.
+SANE      = CLONES=no OPTIMISE='-O1 -fno-math-errno -fno-trapping-math -ffp-contract=off'
+# Those that read every kind of input, right and wrong, and run every command.
+SANE_TESTS = $(addprefix tests/program/test_,cli.py input.py mesh.py patches.py)
+
+sanitize: all
+	@CC='$(CC)' scripts/bootstrap test python
+	@$(MAKE) --no-print-directory $(JOBS) $(SANE) BUILD=build/asan SANITIZE=address,undefined unit-tests build/asan/kage
+	KAGE=build/asan/kage scripts/venv python -m pytest -q -n auto --dist loadfile $(SANE_TESTS)
+
 # ---- style ----
 
 format:

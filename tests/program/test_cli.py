@@ -16,6 +16,7 @@ import OpenEXR
 import pytest
 from PIL import Image
 
+from reference.references import read_exr as exr
 from tests.conftest import PROGRAM, SCENE, TOP, Kage, start
 from tests.support import models
 
@@ -24,11 +25,6 @@ CUBE, SPHERE = DATA / "cube.yaml", DATA / "sphere.yaml"
 SMALL = ("--size", "160x120")
 METHODS = ["none", "0", "1", "2", "2+", "iter:3", "march:4"]
 LAYERS = {"R", "G", "B", "Z", "P.X", "P.Y", "P.Z", "N.X", "N.Y", "N.Z", "uw.u", "uw.w", "height", "tau", "order"}
-
-
-def exr(path: Path) -> dict[str, np.ndarray]:
-    with OpenEXR.File(str(path), separate_channels=True) as file:
-        return {name: channel.pixels.copy() for name, channel in file.channels().items()}
 
 
 def header(path: Path) -> dict[str, object]:

@@ -16,7 +16,7 @@ import pytest
 from scripts import make_lantern
 from tests.conftest import PROGRAM, TOP, Kage, needs_povray
 from tests.support import models
-from tests.support.parity import CAMERA, FLOOR, HEAD, LIGHTS, layers, povray
+from tests.support.parity import CAMERA, FLOOR, HEAD, LIGHTS, layers, povray, rgb
 
 
 def scene(kage: Kage, mesh: str, more: str = "", *, size: str = "[96, 72]", material: str = "clay") -> Path:
@@ -30,10 +30,6 @@ def scene(kage: Kage, mesh: str, more: str = "", *, size: str = "[96, 72]", mate
 def picture(kage: Kage, path: Path, *options: str) -> dict[str, np.ndarray]:
     kage.good("render", path, "-o", "x.exr", "--quiet", *options)
     return layers(kage.folder / "x.exr")
-
-
-def rgb(picture: dict[str, np.ndarray]) -> np.ndarray:
-    return np.stack([picture[c] for c in "RGB"], axis=-1)
 
 
 # ---- what comes in ----

@@ -14,6 +14,7 @@
 #include "base/frame.h"
 #include "wave/lane.h"
 #include "method/method.h"
+#include "support/check.h"
 #include "support/random_in.h"
 
 /* The agreement asked for, in scene units; the scenes are about 6 wide. */
@@ -309,8 +310,8 @@ static void hits_agree_with_bisection(void **state)
             print_message(
                 "%s, %s: %d hits, %d misses, farthest %.2g, %d left out near edges and tangents, %ld uncertain\n",
                 names[kind], bumped ? "map" : "function", met, passed, worst, doubts, counts.uncertain);
-            assert_true(met > 150);
-            assert_true(doubts < 4 * LANES / 8);
+            CHECK(met, >, 150);
+            CHECK(doubts, <, 4 * LANES / 8);
             assert_int_equal(counts.uncertain, 0);
             bump_free(P);
             surface_free(f);
@@ -356,8 +357,9 @@ static void normals_are_gradients(void **state)
             l = sqrtl(l);
             double off = fabs((double)(d[0] / l - (wide)n.x)) + fabs((double)(d[1] / l - (wide)n.y)) +
                          fabs((double)(d[2] / l - (wide)n.z));
-            assert_true(off < 2e-5);
-            assert_true(g.order[i] == ORDER_EXACT && g.tau[i] == 0);
+            CHECK(off, <, 2e-5);
+            CHECK(g.order[i], ==, ORDER_EXACT);
+            CHECK(g.tau[i], ==, 0);
         }
         bump_free(P);
         surface_free(f);
@@ -422,8 +424,9 @@ static void own_shadows(void **state)
             lights += want;
         }
         print_message("%s: %d lit, %d dark, %d otherwise than by bisection\n", names[kind], lights, dark, wrong);
-        assert_true(dark > 10 && lights > 5);
-        assert_true(wrong <= n / 20); /* the bisection's own start, 0.004 off */
+        CHECK(dark, >, 10);
+        CHECK(lights, >, 5);
+        CHECK(wrong, <=, n / 20); /* the bisection's own start, 0.004 off */
         bump_free(P);
         surface_free(f);
     }
@@ -548,7 +551,8 @@ static void leaving(void **state)
             }
             print_message("%s, %s: %d hits, %d misses, %d left out, %d wrong, %ld uncertain\n", names[kind],
                           bumped ? "map" : "function", met, passed, doubts, wrong, counts.uncertain);
-            assert_true(met + passed > 50 && doubts <= LANES / 8);
+            CHECK(met + passed, >, 50);
+            CHECK(doubts, <=, LANES / 8);
             faults += wrong;
             bump_free(P);
             surface_free(f);
@@ -632,7 +636,7 @@ static void flat_and_exact(void **state)
     for (int i = 0; i < LANES; i++) {
         double y = (double)(g.x.r.y[i] + g.x.s.y[i] * (g.t[i] + g.tau[i]));
         assert_int_equal(g.order[i], ORDER_EXACT);
-        assert_true(fabs(y - 0.1) < 1e-6);
+        NEAR(y, 0.1, 1e-6);
     }
     assert_int_equal(counts.uncertain, 0);
     bump_free(P);
@@ -718,8 +722,10 @@ static void constant_bumps(void **state)
             }
             print_message("%s, P = %g: %d hits, %d otherwise; %d more from there, %d otherwise\n", names[kind],
                           levels[k], met, other, met_again, other_again);
-            assert_true(met > 300 && other <= 2); /* at a rim or tangent */
-            assert_true(met_again > 100 && other_again <= 2);
+            CHECK(met, >, 300);
+            CHECK(other, <=, 2); /* at a rim or tangent */
+            CHECK(met_again, >, 100);
+            CHECK(other_again, <=, 2);
             bump_free(P);
             surface_free(f);
             surface_free(wider);

@@ -13,16 +13,11 @@
 
 #include "base/frame.h"
 #include "wave/lane.h"
+#include "support/check.h"
 #include "support/random_rays.h"
 #include "geometry/surface.h"
 
 /* Digits of a place a few units from the origin. */
-#ifdef KAGE_DOUBLE
-#define EPS 2.2e-16
-#else
-#define EPS 1.2e-7
-#endif
-
 enum { PLANE, RECTANGLE, BOX, SPHERE, DISC, DRUM, TUBE, BELL, CUP, HAT, TORUS, THIN, KINDS };
 
 /* The surfaces with an inside that no ray from outside sees, and those of them that never shade themselves from
@@ -92,7 +87,8 @@ static void hits_are_on_the_surface(void **state)
                     continue;
                 met++;
                 assert_int_equal(h.id[i], 3);
-                assert_true(h.t[i] > 0 && h.t[i] < REAL_FAR);
+                CHECK(h.t[i], >, 0);
+                CHECK(h.t[i], <, REAL_FAR);
                 double far = 1 + distance(lane_at(&x, i, 0), lane_at(&x, i, h.t[i]));
                 double off = distance(lane_get(&q.Q, i), lane_at(&x, i, h.t[i]));
                 if (!(off <= 24 * EPS * far)) {
@@ -102,7 +98,7 @@ static void hits_are_on_the_surface(void **state)
                 /* on what is closed, seen from outside, the first hit's n faces the viewer */
                 bs_vec3 n = bs_normal(lane_get(&q.Qu, i), lane_get(&q.Qw, i));
                 if (is_closed(kind))
-                    assert_true(bs_dot(n, lane_get(&x.s, i)) < R(1e-4));
+                    CHECK(bs_dot(n, lane_get(&x.s, i)), <, R(1e-4));
             }
         }
         assert_true(met > (kind == THIN ? 200 : 500));
@@ -177,8 +173,8 @@ static void box_faces(void **state)
         want[i / 2] += (i % 2 ? 1 : -1) * half[i / 2];
         out[i / 2] = i % 2 ? 1 : -1;
         bs_vec3 place = {(real)want[0], (real)want[1], (real)want[2]}, to = {(real)out[0], (real)out[1], (real)out[2]};
-        assert_true(distance(Q, place) < 1e-6);
-        assert_true(distance(lane_unit(n), to) < 1e-6);
+        CHECK(distance(Q, place), <, 1e-6);
+        CHECK(distance(lane_unit(n), to), <, 1e-6);
     }
     surface_free(f);
 }
@@ -210,9 +206,9 @@ static void shadows_agree_with_hits(void **state)
                 lit[i] = 0;
             f->ops->occlude(f, LANES, &x, lit);
             for (int i = 0; i < LANES; i++)
-                assert_true(lit[i] == 0);
+                CHECK(lit[i], ==, 0);
         }
-        assert_true(dark > 100);
+        CHECK(dark, >, 100);
         surface_free(f);
     }
 }
@@ -262,16 +258,16 @@ static void own_shadow(void **state)
             for (int i = 0; i < n; i++) {
                 double length = (double)real_sqrt(bs_dot(lane_get(&out.s, i), lane_get(&out.s, i)));
                 if (cosine[i] > R(1e-4))
-                    assert_true(lit[i] == 1);
+                    CHECK(lit[i], ==, 1);
                 else if ((double)cosine[i] < -1e-4 && length > 4) /* longer than the surface is wide */
-                    assert_true(lit[i] == 0);
+                    CHECK(lit[i], ==, 0);
             }
         }
         surface_free(f);
     }
     for (int kind = 0; kind < KINDS; kind++) {
         surface *f = make(kind);
-        assert_true((f->ops->occlude_own == NULL) == (kind == PLANE || kind == RECTANGLE || kind == DISC));
+        CHECK((f->ops->occlude_own == NULL), ==, (kind == PLANE || kind == RECTANGLE || kind == DISC));
         surface_free(f);
     }
 }
@@ -436,9 +432,11 @@ static void odd_rays(void **state)
         assert_int_equal(h.id[ODD], -1);
         for (int i = 0; i < ODD; i++) {
             assert_true(h.id[i] == -1 || h.id[i] == 0);
-            assert_true(h.t[i] > 0 && h.t[i] <= REAL_FAR);
+            CHECK(h.t[i], >, 0);
+            CHECK(h.t[i], <=, REAL_FAR);
             assert_true(lit[i] == 0 || lit[i] == 1);
-            assert_true(part[i] >= 0 && part[i] < f->ops->parts);
+            CHECK(part[i], >=, 0);
+            CHECK(part[i], <, f->ops->parts);
         }
         surface_free(f);
     }
@@ -472,7 +470,7 @@ static void ways_around(void **state)
         real u = (real)want[k].u, w = (real)want[k].w;
         f[want[k].f]->ops->eval(f[want[k].f], 1, &part, &u, &w, 1, &q);
         bs_vec3 Q = {(real)want[k].Q[0], (real)want[k].Q[1], (real)want[k].Q[2]};
-        assert_true(distance(lane_get(&q.Q, 0), Q) < 1e-6);
+        CHECK(distance(lane_get(&q.Q, 0), Q), <, 1e-6);
     }
     for (int k = 0; k < 3; k++)
         surface_free(f[k]);
@@ -486,12 +484,14 @@ static void frames(void **state)
                          {-1, 0, 0}, {0.9, 0.1, 0.3}, {1e-6, 0, 0}, {3e5, 2e5, 1e5}};
     for (int k = 0; k < (int)(sizeof axes / sizeof *axes); k++) {
         frame a = frame_about(axes[k]);
-        assert_true(vec3_length(vec3_sub(vec3_cross(a.x, a.y), a.z)) < 1e-15);
-        assert_true(vec3_length(vec3_sub(vec3_cross(a.y, a.z), a.x)) < 1e-15);
-        assert_true(vec3_length(vec3_sub(a.y, vec3_unit(axes[k]))) < 1e-15);
+        CHECK(vec3_length(vec3_sub(vec3_cross(a.x, a.y), a.z)), <, 1e-15);
+        CHECK(vec3_length(vec3_sub(vec3_cross(a.y, a.z), a.x)), <, 1e-15);
+        CHECK(vec3_length(vec3_sub(a.y, vec3_unit(axes[k]))), <, 1e-15);
     }
     frame up = frame_about((vec3){0, 7, 0});
-    assert_true(up.x.x == 1 && up.y.y == 1 && up.z.z == 1);
+    CHECK(up.x.x, ==, 1);
+    CHECK(up.y.y, ==, 1);
+    CHECK(up.z.z, ==, 1);
 }
 
 /* A small ball far away keeps its round shadow: the discriminant does not cancel. */

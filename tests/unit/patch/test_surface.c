@@ -13,6 +13,7 @@
 #include <cmocka.h>
 
 #include "displaced/march.h"
+#include "support/check.h"
 #include "support/golden_json.h"
 #include "wave/lane.h"
 #include "displaced/offset.h"
@@ -20,12 +21,6 @@
 #include "support/random_rays.h"
 #include "patch/patch.h"
 #include "geometry/surface.h"
-
-#ifdef KAGE_DOUBLE
-#define EPS 2.2e-16
-#else
-#define EPS 1.2e-7
-#endif
 
 static patch *function(const char *x, const char *y, const char *z, double u0, double u1, double w0, double w1)
 {
@@ -127,7 +122,7 @@ static void check_rows(const patch *q, struct fy_node *rows, double *worst, int 
             const double got[] = {a->v[0], a->u[0], a->w[0], a->uu[0], a->uw[0], a->ww[0]};
             const double off = fabs(got[k / 3] - want[2 + k]) / (1 + fabs(want[2 + k]));
             *worst = fmax(*worst, off);
-            assert_true(off < 2e-14);
+            CHECK(off, <, 2e-14);
         }
         /* and what is bounded holds it, over a box about the place */
         patch_bounds b;
@@ -137,15 +132,16 @@ static void check_rows(const patch *q, struct fy_node *rows, double *worst, int 
         for (int k = 0; k < 9; k++) {
             const expr_bounds *a = &b.axis[k % 3];
             const double *range = k < 3 ? a->v : k < 6 ? a->u : a->w;
-            assert_true(range[0] <= want[2 + k] && want[2 + k] <= range[1]);
-            assert_true(range[1] - range[0] < 3);
+            BETWEEN(range[0], want[2 + k], range[1]);
+            CHECK(range[1] - range[0], <, 3);
         }
         for (int k = 0; k < 9; k++) {
             const expr_hessians *a = &c.axis[k % 3];
             const double *range = k < 3 ? a->uu : k < 6 ? a->uw : a->ww;
             const double zero = 1e-48; /* what 50 digits leave of 0 */
-            assert_true(range[0] <= want[11 + k] + zero && want[11 + k] <= range[1] + zero);
-            assert_true(range[1] - range[0] < 20);
+            CHECK(range[0], <=, want[11 + k] + zero);
+            CHECK(want[11 + k], <=, range[1] + zero);
+            CHECK(range[1] - range[0], <, 20);
         }
         ++*seen;
     }
@@ -213,16 +209,18 @@ static void hits_are_on_the_surface(void **state)
                     continue;
                 double U[2], W[2];
                 f->ops->extent(f, part[i], U, W);
-                assert_true((double)u[i] >= U[0] - 1e-6 && (double)u[i] <= U[1] + 1e-6 && (double)w[i] >= W[0] - 1e-6 &&
-                            (double)w[i] <= W[1] + 1e-6);
+                CHECK(u[i], >=, U[0] - 1e-6);
+                CHECK(u[i], <=, U[1] + 1e-6);
+                CHECK(w[i], >=, W[0] - 1e-6);
+                CHECK(w[i], <=, W[1] + 1e-6);
                 met++;
                 const double far = 1 + distance(lane_at(&x, i, 0), lane_at(&x, i, h.t[i]));
                 worst = fmax(worst, distance(lane_get(&q.Q, i), lane_at(&x, i, h.t[i])) / (EPS * far));
             }
         }
         print_message("%-8s %4d hits, Q(u,w) at most %.1f roundings off r + s t\n", names[kind], met, worst);
-        assert_true(met > 150);
-        assert_true(worst < 12);
+        CHECK(met, >, 150);
+        CHECK(worst, <, 12);
     }
 }
 
@@ -273,7 +271,8 @@ static void closed_forms(void **state)
                     fail_msg("%s: %g apart, sine %g", names[kind], off, sine);
             }
         }
-        assert_true(met > 800 && differ <= 2);
+        CHECK(met, >, 800);
+        CHECK(differ, <=, 2);
         surface_free(g);
     }
 }
@@ -325,7 +324,8 @@ static void own_shadows(void **state)
             n_all += n;
         }
         print_message("%s: own shadows differ at %d of %d places\n", names[kind], differ, n_all);
-        assert_true(dark > 200 && differ <= n_all / 500);
+        CHECK(dark, >, 200);
+        CHECK(differ, <=, n_all / 500);
         surface_free(g);
     }
 }
@@ -386,7 +386,8 @@ static void brute_force(void **state)
                 (t < HUGE_VAL) != (h.id[i] >= 0) || (t < HUGE_VAL && fabs(t - (double)h.t[i]) * vec3_length(s) > 0.01);
         }
         print_message("%-8s %3d hits of 128, %d unlike the facets\n", names[kind], met, off);
-        assert_true(met > 15 && off <= 3); /* at silhouettes facets are off by their chords */
+        CHECK(met, >, 15);
+        CHECK(off, <=, 3); /* at silhouettes facets are off by their chords */
         free(v);
     }
 }
@@ -424,7 +425,7 @@ static void no_cracks(void **state)
             for (int i = 0; i < LANES; i++) {
                 random_ray(&x, i, 1.3);
                 const bs_vec3 n = lane_unit(bs_normal(lane_get(&q.Qu, i), lane_get(&q.Qw, i))), Q = lane_get(&q.Q, i);
-                assert_true(bs_dot(n, n) > R(0.9)); /* none is NaN, not even where Qu is 0 */
+                CHECK(bs_dot(n, n), >, R(0.9)); /* none is NaN, not even where Qu is 0 */
                 /* from 0.05 above, up to 0.2 aside, straight to the place and on by as much */
                 const double aside = kind == ROOF ? 0.01 : 0.1; /* flatter than the roof a ray passes under its edge */
                 const bs_vec3 d = {n.x * R(0.05) + (real)random_in(-aside, aside),
@@ -513,9 +514,11 @@ static void odd_rays(void **state)
         assert_int_equal(h.id[ODD], -1);
         for (int i = 0; i < ODD; i++) {
             assert_true(h.id[i] == -1 || h.id[i] == 0);
-            assert_true(h.t[i] > 0 && h.t[i] <= REAL_FAR);
+            CHECK(h.t[i], >, 0);
+            CHECK(h.t[i], <=, REAL_FAR);
             assert_true(lit[i] == 0 || lit[i] == 1);
-            assert_true(part[i] >= 0 && part[i] < f->ops->parts);
+            CHECK(part[i], >=, 0);
+            CHECK(part[i], <, f->ops->parts);
         }
     }
 }
@@ -575,8 +578,11 @@ static void check_rough(const patch *q, const bump *P, int *boxes, int *close)
             for (int axis = 0; axis < 3; axis++) {
                 const expr_jets *z = &j.axis[axis];
                 const expr_bounds *in = &b.axis[axis];
-                assert_true(in->v[0] <= z->v[0] && z->v[0] <= in->v[1]);
-                assert_true(in->u[0] <= z->u[0] && z->u[0] <= in->u[1] && in->w[0] <= z->w[0] && z->w[0] <= in->w[1]);
+                BETWEEN(in->v[0], z->v[0], in->v[1]);
+                CHECK(in->u[0], <=, z->u[0]);
+                CHECK(z->u[0], <=, in->u[1]);
+                CHECK(in->w[0], <=, z->w[0]);
+                CHECK(z->w[0], <=, in->w[1]);
                 /* the step is of second order in h, and its roundings count by 1/h; at poles partials are steep */
                 const double du = (z->v[1] - z->v[0]) / (h * ru), dw = (z->v[2] - z->v[0]) / (h * rw);
                 const double most = 1 + fabs(z->u[0]) + fabs(z->w[0]), off = 1e-3 * most + 1e-14 / (h * fmin(ru, rw));
@@ -614,7 +620,7 @@ static void rough_bounds(void **state)
             bump_free(P[i]);
         }
         print_message("%d boxes, %d with bounds of slopes\n", boxes, close);
-        assert_true(close > 0.85 * boxes);
+        CHECK(close, >, 0.85 * boxes);
         moved->ops->free(moved);
         q[k]->ops->free(q[k]);
     }
@@ -654,7 +660,9 @@ static void displaced_as_closed_forms(void **state)
         }
     }
     print_message("displaced: %d hits, %d unlike the closed form's, %ld uncertain\n", met, differ, c.uncertain);
-    assert_true(met > 300 && differ <= 1 && c.uncertain <= 1);
+    CHECK(met, >, 300);
+    CHECK(differ, <=, 1);
+    CHECK(c.uncertain, <=, 1);
     bump_free(P);
     surface_free(g);
 }
@@ -671,13 +679,14 @@ static void displaced_at_any_scale(void **state)
     const real scales[] = {R(1e-12), R(1e-3), 800, R(2e3), R(1e4), R(1e6), R(1e12)};
     const offset one = offset_of(Qu, Qw, Quu, Quw, Qww, h);
     const bs_vec3 normal = offset_normal(one, Pu, Pw);
-    assert_true(fabs((double)bs_dot(one.n, one.n) - 1) < 4 * EPS);
+    NEAR((double)bs_dot(one.n, one.n), 1, 4 * EPS);
     for (int i = 0; i < (int)(sizeof scales / sizeof *scales); i++) {
         const real k = scales[i];
         const offset o = offset_of(times(Qu, k), times(Qw, k), times(Quu, k), times(Quw, k), times(Qww, k), k * h);
-        assert_true(distance(o.n, one.n) < 8 * EPS);
-        assert_true(distance(times(o.U, 1 / k), one.U) < 8 * EPS && distance(times(o.W, 1 / k), one.W) < 8 * EPS);
-        assert_true(distance(offset_normal(o, k * Pu, k * Pw), normal) < 8 * EPS);
+        CHECK(distance(o.n, one.n), <, 8 * EPS);
+        CHECK(distance(times(o.U, 1 / k), one.U), <, 8 * EPS);
+        CHECK(distance(times(o.W, 1 / k), one.W), <, 8 * EPS);
+        CHECK(distance(offset_normal(o, k * Pu, k * Pw), normal), <, 8 * EPS);
     }
 }
 
@@ -721,10 +730,10 @@ static void feet_at_any_scale(void **state)
         f->rough->closest_points(f, P, LANES, &x, t, part, &p);
         one = k ? one : p;
         for (int i = 0; i < LANES; i++) {
-            assert_true(fabs((double)(p.h[i] - h.P[i])) < 20 * EPS * size);
-            assert_true(distance(lane_get(&p.gh, i), lane_get(&one.gh, i)) < 100 * EPS);
-            assert_true(distance(times(lane_get(&p.gu, i), c), lane_get(&one.gu, i)) < 100 * EPS);
-            assert_true(distance(times(lane_get(&p.gw, i), c), lane_get(&one.gw, i)) < 100 * EPS);
+            NEAR(p.h[i], h.P[i], 20 * EPS * size);
+            CHECK(distance(lane_get(&p.gh, i), lane_get(&one.gh, i)), <, 100 * EPS);
+            CHECK(distance(times(lane_get(&p.gu, i), c), lane_get(&one.gu, i)), <, 100 * EPS);
+            CHECK(distance(times(lane_get(&p.gw, i), c), lane_get(&one.gw, i)), <, 100 * EPS);
         }
         bump_free(P);
         surface_free(f);
@@ -763,7 +772,7 @@ static double error_of(surface *f, double A, int order, const rays *x, const hit
         n++;
     }
     bump_free(P);
-    assert_true(n > 15);
+    CHECK(n, >, 15);
     return worst / n;
 }
 
@@ -790,7 +799,7 @@ static void error_slopes(void **state)
             const double slope = (a - b) / log(10);
             print_message("%-8s order %d: error as A^%.3f, expected A^%d\n", names[kinds[k]], order, slope,
                           want[order]);
-            assert_true(fabs(slope - want[order]) < 0.2);
+            NEAR(slope, want[order], 0.2);
         }
     }
 }

@@ -17,6 +17,7 @@
 
 #include "scene/object_bvh.h"
 #include "wave/lane.h"
+#include "support/check.h"
 #include "support/random_in.h"
 #include "render/render.h"
 #include "scene/scene.h"
@@ -132,7 +133,7 @@ static void boxes(void **state)
                     continue; /* the extent is a square about it */
                 const double p[3] = {(double)q.Q.x[0], (double)q.Q.y[0], (double)q.Q.z[0]};
                 for (int a = 0; a < 3; a++)
-                    assert_true(p[a] >= lo[a] - 1e-5 && p[a] <= hi[a] + 1e-5);
+                    BETWEEN(lo[a] - 1e-5, p[a], hi[a] + 1e-5);
             }
     }
     scene_free(s);
@@ -178,9 +179,9 @@ static void same_with(scene *s, const tracer *k, int waves)
         for (int i = 0; i < LANES; i++)
             met += a->out.depth[i] < REAL_FAR;
     }
-    assert_true(met > waves * LANES / 4);
+    CHECK(met, >, waves * LANES / 4);
     assert_int_equal(a->stats.secondary_rays, b->stats.secondary_rays);
-    assert_true(a->stats.secondary_rays > waves);
+    CHECK(a->stats.secondary_rays, >, waves);
     s->object_bvh = c;
     workspace_free(a);
     workspace_free(b);
