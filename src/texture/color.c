@@ -1,3 +1,4 @@
+/* Checkers and images as colour textures. */
 #include "texture/color.h"
 
 #include <stdlib.h>
@@ -7,7 +8,7 @@
 typedef struct checker {
     color_texture base;
     real even[3], odd[3];
-    real ku, kw, ou, ow; /* fields per (u,w), and the place of (u,w) = 0 in them */
+    real ku, kw, ou, ow; /* fields per u and per w, and where (u,w) = 0 is, in fields */
 } checker;
 
 STAGE static void checker_eval(const color_texture *base, int n, const real *restrict u, const real *restrict w,
@@ -23,14 +24,7 @@ STAGE static void checker_eval(const color_texture *base, int n, const real *res
     }
 }
 
-static const color_texture_ops checker_methods = {"checker", checker_eval, NULL};
-
-static void store(real to[3], vec3 v)
-{
-    to[0] = (real)v.x;
-    to[1] = (real)v.y;
-    to[2] = (real)v.z;
-}
+static const color_texture_ops checker_methods = {.kind = "checker", .eval = checker_eval};
 
 color_texture *color_checker_new(const vec3 color[2], const double size[2], const double offset[2])
 {
@@ -38,8 +32,8 @@ color_texture *color_checker_new(const vec3 color[2], const double size[2], cons
     if (!c)
         return NULL;
     c->base.ops = &checker_methods;
-    store(c->even, color[0]);
-    store(c->odd, color[1]);
+    vec3_round(c->even, color[0]);
+    vec3_round(c->odd, color[1]);
     c->ku = (real)(1 / size[0]);
     c->kw = (real)(1 / size[1]);
     c->ou = (real)(-offset[0] / size[0]);
@@ -51,7 +45,7 @@ color_texture *color_checker_new(const vec3 color[2], const double size[2], cons
 
 struct texels {
     int width, height;
-    real v[]; /* a table of the image's period */
+    real v[]; /* as table.h has it */
 };
 
 texels *texels_new(const image *m, const map_layout *l)
@@ -77,23 +71,23 @@ texels *texels_new(const image *m, const map_layout *l)
 
 void texels_free(texels *t) { free(t); }
 
-typedef struct image_pigment {
+typedef struct image_texture {
     color_texture base;
     const texels *texels;
     table_grid grid;
-} image_pigment;
+} image_texture;
 
 static void bilinear_eval(const color_texture *base, int n, const real *u, const real *w, vec3s *color)
 {
-    const image_pigment *p = (const image_pigment *)base;
+    const image_texture *p = (const image_texture *)base;
     int32_t at[LANES];
     real a[LANES], b[LANES];
     table_cells(&p->grid, n, u, w, at, a, b);
     table_three(&p->grid, p->texels->v, n, at, a, b, color->x, color->y, color->z);
 }
 
-/* Each pixel is a cell here, and its colour that of the sample at its upper left corner. Where the table ends, place 1
- * in the last cell is the last sample. */
+/* Each pixel is a cell, with the colour of the sample at its upper left corner. At the end of the table, 1 in the last
+ * cell is the last sample. */
 STAGE static void to_corner(int n, real *restrict a)
 {
     for (int i = 0; i < n; i++)
@@ -102,7 +96,7 @@ STAGE static void to_corner(int n, real *restrict a)
 
 static void nearest_eval(const color_texture *base, int n, const real *u, const real *w, vec3s *color)
 {
-    const image_pigment *p = (const image_pigment *)base;
+    const image_texture *p = (const image_texture *)base;
     int32_t at[LANES];
     real a[LANES], b[LANES];
     table_cells(&p->grid, n, u, w, at, a, b);
@@ -111,18 +105,18 @@ static void nearest_eval(const color_texture *base, int n, const real *u, const 
     table_three(&p->grid, p->texels->v, n, at, a, b, color->x, color->y, color->z);
 }
 
-static const color_texture_ops bilinear_methods = {"image", bilinear_eval, NULL},
-                               nearest_methods = {"image", nearest_eval, NULL};
+static const color_texture_ops bilinear_methods = {.kind = "image", .eval = bilinear_eval};
+static const color_texture_ops nearest_methods = {.kind = "image", .eval = nearest_eval};
 
 color_texture *color_image_new(const texels *t, const map_layout *l, bool nearest)
 {
-    image_pigment *p = calloc(1, sizeof *p);
+    image_texture *p = calloc(1, sizeof *p);
     if (!p)
         return NULL;
     p->base.ops = nearest ? &nearest_methods : &bilinear_methods;
     p->texels = t;
     table_lay(&p->grid, t->width, t->height, l);
-    if (nearest) { /* half a pixel back: cells begin where their pixels do */
+    if (nearest) { /* half a pixel on, so that cells begin where their pixels do */
         p->grid.ou += R(0.5);
         p->grid.ow += R(0.5);
     }

@@ -7,12 +7,14 @@ import platform
 import shutil
 import sys
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any, cast
 
 import numpy as np
 import pytest
 from PIL import Image
 
-from bench import programs
+from bench import cost, programs
 from tests.conftest import PROGRAM, TOP
 
 needs_povray = pytest.mark.skipif(not shutil.which("povray"), reason="no povray")
@@ -199,3 +201,14 @@ def test_height_field_is_the_displaced_surface(tmp_path: Path) -> None:
     difference = np.abs(a - b).max(axis=2)
     assert difference.mean() < 1  # of 255
     assert np.mean(difference > 30) < 0.005
+
+
+def test_a_coarse_mesh_is_not_measured(tmp_path: Path) -> None:
+    """POV-Ray would show another surface than the scene's."""
+    kage, made = tmp_path / "kage", tmp_path / "out" / "a.pov"
+    kage.write_text(f"#!/bin/sh\ntouch {made}\necho 'kage: object ground: coarse mesh: heights are off by up to 0.1, 9 pixels' >&2\n")
+    kage.chmod(0o755)
+    bench, scene = SimpleNamespace(kage=kage), SimpleNamespace(name="cube", file=Path("cube.yaml"))
+    with pytest.raises(programs.MeasureError, match="cube: POV-Ray would show another surface: .*coarse mesh"):
+        cost.export(cast("Any", bench), cast("Any", scene), (4, 3), True, made)
+    assert not made.exists()

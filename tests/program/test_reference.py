@@ -256,6 +256,17 @@ def test_failures(studio: Studio, mode: str, capsys: pytest.CaptureFixture[str])
     assert studio.files() == before
 
 
+def test_a_coarse_mesh_is_no_truth(studio: Studio, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """kage writes a file all the same, and says so on stderr alone."""
+    kage = tmp_path / "kage"
+    kage.write_text(f'#!/bin/sh\n{PROGRAM} "$@" || exit\n'
+                    '[ "$1" != pov ] || echo "kage: object ground: coarse mesh: heights are off by up to 0.1, 9 pixels" >&2\n')
+    kage.chmod(0o755)
+    assert studio.make("good", "--kage", str(kage)) == 1
+    assert "no truth comes of it: kage: object ground: coarse mesh" in capsys.readouterr().err
+    assert not studio.files() and not list(render.WORK.glob("*.pov"))
+
+
 def test_old_picture_does_not_pass_for_a_new_one(studio: Studio) -> None:
     studio.make("good")
     assert studio.make("nothing", "--all") == 1

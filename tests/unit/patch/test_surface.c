@@ -19,7 +19,7 @@
 #include "displaced/offset.h"
 #include "read/patch_file.h"
 #include "support/random_rays.h"
-#include "patch/patch.h"
+#include "patch/surface.h"
 #include "geometry/surface.h"
 
 static patch *function(const char *x, const char *y, const char *z, double u0, double u1, double w0, double w1)
