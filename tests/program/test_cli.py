@@ -58,7 +58,7 @@ def test_methods(kage: Kage) -> None:
     assert names == ["none", "0", "1", "2", "2+", "iter:K", "march:N", "exact"]
 
 
-@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="no /dev/full on this system")
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no /dev/full on this system")
 def test_full_standard_output(kage: Kage) -> None:
     with open("/dev/full", "w") as full:
         done = subprocess.run([PROGRAM, "methods"], stdout=full, stderr=subprocess.PIPE, text=True, check=False)
@@ -431,7 +431,7 @@ def test_output_that_cannot_be_written(kage: Kage, name: str) -> None:
     assert kage.files() == before
 
 
-@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="no /dev/full on this system")
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no /dev/full on this system")
 @pytest.mark.parametrize("ending", ["png", "exr"])
 def test_full_disk(kage: Kage, ending: str) -> None:
     (kage.folder / f"full.{ending}").symlink_to("/dev/full")

@@ -115,7 +115,7 @@ def test_mirrored_texture(kage: Kage) -> None:
 def test_image_on_a_mesh(kage: Kage) -> None:
     """An image fills the square of the texture coordinates, its first row at the top, whatever part of it the mesh
     has."""
-    from PIL import Image  # noqa: PLC0415
+    from PIL import Image
 
     Image.fromarray(np.array([[[255, 0, 0], [0, 255, 0]], [[0, 0, 255], [255, 255, 255]]],
                              dtype=np.uint8)).save(kage.folder / "four.png")
