@@ -14,6 +14,7 @@
 #include <string.h>
 
 #include "expr/expr.h"
+#include "support/check.h"
 
 #ifndef KAGE_TESTS_DIR
 #define KAGE_TESTS_DIR "tests"
@@ -68,7 +69,7 @@ static void test_golden(void **state)
     assert_non_null(doc);
     struct fy_node *cases = fy_node_mapping_lookup_by_string(fy_document_root(doc), "cases", (size_t)-1);
     int count = fy_node_sequence_item_count(cases), rows_seen = 0;
-    assert_true(count > 40);
+    CHECK(count, >, 40);
     double worst = 0;
     for (int c = 0; c < count; c++) {
         struct fy_node *one = fy_node_sequence_get_by_index(cases, c);
@@ -232,7 +233,8 @@ static void test_differences(void **state)
             }
         expr_free(e);
     }
-    assert_true(checked > 15000 && skipped < checked / 20);
+    CHECK(checked, >, 15000);
+    CHECK(skipped, <, checked / 20);
 }
 
 /* ---- batches, orders ---- */
@@ -302,7 +304,7 @@ static void test_range_holds(void **state)
         double u0 = draw_in(-2, 2), w0 = draw_in(-2, 2), u1 = u0 + draw_in(0, size), w1 = w0 + draw_in(0, size);
         double lo, hi;
         expr_bound_value(e, u0, u1, w0, w1, &lo, &hi);
-        assert_true(lo <= hi);
+        CHECK(lo, <=, hi);
         finite += isfinite(lo) && isfinite(hi);
         for (int k = 0; k < 40; k++) {
             double u = k & 1 ? draw_in(u0, u1) : k & 2 ? u0 : u1, w = k & 4 ? draw_in(w0, w1) : k & 8 ? w0 : w1;
@@ -315,7 +317,8 @@ static void test_range_holds(void **state)
         }
         expr_free(e);
     }
-    assert_true(inside > 80000 && finite > 2000);
+    CHECK(inside, >, 80000);
+    CHECK(finite, >, 2000);
 }
 
 static void check_range(const char *text, double u0, double u1, double w0, double w1, double lo, double hi)
@@ -417,10 +420,14 @@ static void check_gradient_in(const char *text, const expr *e, const double u[2]
     expr_bound_gradient(e, u[0], u[1], w[0], w[1], &b);
     expr_bound_hessian(e, u[0], u[1], w[0], w[1], &same, &bend);
     assert_memory_equal(&same, &b, sizeof b);
-    assert_true(bend.uu[0] <= bend.uu[1] && bend.uw[0] <= bend.uw[1] && bend.ww[0] <= bend.ww[1]);
+    CHECK(bend.uu[0], <=, bend.uu[1]);
+    CHECK(bend.uw[0], <=, bend.uw[1]);
+    CHECK(bend.ww[0], <=, bend.ww[1]);
     expr_bound_value(e, u[0], u[1], w[0], w[1], &lo, &hi);
-    assert_true(b.v[0] == lo && b.v[1] == hi);
-    assert_true(b.u[0] <= b.u[1] && b.w[0] <= b.w[1]); /* so none is NaN */
+    CHECK(b.v[0], ==, lo);
+    CHECK(b.v[1], ==, hi);
+    CHECK(b.u[0], <=, b.u[1]);
+    CHECK(b.w[0], <=, b.w[1]); /* so none is NaN */
     for (int k = 0; k < 40; k++) {
         double x = draw_place(u[0], u[1]), y = draw_place(w[0], w[1]), jet[JET];
         /* the other end of the pair: anywhere, near, or straight along one coordinate */
@@ -468,7 +475,7 @@ static void test_gradient_holds(void **state)
         expr_free(e);
     }
     print_message("%d pairs under a finite bound\n", pairs);
-    assert_true(pairs > 150000);
+    CHECK(pairs, >, 150000);
 }
 
 static void check_gradient(const char *text, double u0, double u1, double w0, double w1, double fu0, double fu1,
@@ -591,7 +598,8 @@ static void test_gradient_of_noise(void **state)
         top = fmax(top, fmax(fabs(jet[1]), fabs(jet[2])));
     }
     print_message("steepest noise %.4f\n", top);
-    assert_true(top > 2.6 && top < 2.93);
+    CHECK(top, >, 2.6);
+    CHECK(top, <, 2.93);
     expr_free(e);
 }
 
@@ -672,16 +680,17 @@ static void test_noise_is_bounded(void **state)
     double lo = 0, hi = 0;
     for (int i = 0; i < 200000; i++) {
         double span = i % 2 ? 50 : 1e12, v = value_at(e, draw_in(-span, span), draw_in(-span, span));
-        assert_true(v >= -1 && v <= 1);
+        BETWEEN(-1, v, 1);
         lo = fmin(lo, v);
         hi = fmax(hi, v);
     }
-    assert_true(lo < -0.8 && hi > 0.8);
-    assert_true(value_at(e, 5, -7) == 0);
+    CHECK(lo, <, -0.8);
+    CHECK(hi, >, 0.8);
+    CHECK(value_at(e, 5, -7), ==, 0);
     static const double huge[] = {2147483647.5, -2147483648.5, 4294967295.5, 1e15, -1e18, 1e300, -1e308};
     for (size_t i = 0; i < sizeof huge / sizeof huge[0]; i++)
         for (size_t k = 0; k < sizeof huge / sizeof huge[0]; k++)
-            assert_true(fabs(value_at(e, huge[i], huge[k])) <= 1);
+            CHECK(fabs(value_at(e, huge[i], huge[k])), <=, 1);
     expr_free(e);
 }
 
@@ -691,8 +700,10 @@ static void test_large_angles(void **state)
     (void)state;
     expr *s = parse("sin(u)"), *c = parse("cos(u)");
     for (double x = 1; x < 1e308; x *= 1.37) {
-        assert_true(fabs(value_at(s, x, 0)) <= 1 && fabs(value_at(s, -x, 0)) <= 1);
-        assert_true(fabs(value_at(c, x, 0)) <= 1 && fabs(value_at(c, -x, 0)) <= 1);
+        CHECK(fabs(value_at(s, x, 0)), <=, 1);
+        CHECK(fabs(value_at(s, -x, 0)), <=, 1);
+        CHECK(fabs(value_at(c, x, 0)), <=, 1);
+        CHECK(fabs(value_at(c, -x, 0)), <=, 1);
     }
     expr_free(s);
     expr_free(c);
