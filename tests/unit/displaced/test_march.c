@@ -10,6 +10,7 @@
 
 #include <cmocka.h>
 
+#include "support/check.h"
 #include "base/frame.h"
 #include "wave/lane.h"
 #include "method/method.h"
