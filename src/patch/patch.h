@@ -9,6 +9,7 @@
 #include "base/affine.h"
 #include "expr/expr.h"
 #include "base/vec3.h"
+#include "geometry/closed_form.h"
 
 enum { PATCH_BATCH = EXPR_BATCH };
 
@@ -53,6 +54,9 @@ struct patch {
 /* Q from three expressions over u[0]..u[1], w[0]..w[1]. Owns them, also on failure. kind: a constant. NULL: out of
  * memory. */
 patch *patch_function_new(const char *kind, expr *const xyz[3], const double u[2], const double w[2]);
+
+/* A closed form's formula as a surface that is searched; kind: a constant. NULL: out of memory. */
+surface *patch_surface_formula(const char *kind, const form_formula *f);
 
 /* Bicubic Bezier patches, each a part over 0..1 in u and in w, from 16 control points each: point 4 j + i goes with the
  * i-th Bernstein polynomial in u and the j-th in w. Copies them. NULL: out of memory. */
