@@ -1,3 +1,4 @@
+/* A growing list of messages. */
 #include "base/errors.h"
 
 #include <stdarg.h>

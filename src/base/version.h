@@ -1,3 +1,4 @@
+/* The version of kage. */
 #ifndef KAGE_BASE_VERSION_H
 #define KAGE_BASE_VERSION_H
 

@@ -46,8 +46,9 @@ int command_pov(const arguments *a)
     bool good = text ? pov_write(s, &how, a->output[0], &r, &e) : usage_error("out of memory");
     if (good && r.coarse)
         fprintf(stderr,
-                "kage: object %s: a mesh of facets below half a pixel is too large; they have up to %.2g pixels\n",
-                r.coarse, r.pixels);
+                "kage: object %s: coarse mesh: heights are off by up to %.3g, %.3g pixels; a finer one has too many "
+                "triangles\n",
+                r.coarse, r.height, r.pixels);
     free(text);
     scene_free(s);
     return good ? 0 : e.count ? command_fail(&e, EXIT_OUTPUT) : EXIT_OUTPUT;

@@ -1,7 +1,6 @@
 /* Closed forms as patches, for the true displacement of shapes of which no foot is known: ellipsoids, also those that a
  * transform makes of round shapes. A patch's offset surface needs no foot.
  */
-#include "patch/patch.h"
 #include "patch/surface.h"
 
 surface *patch_surface_formula(const char *kind, const form_formula *f)

@@ -7,6 +7,7 @@
 #include "povray/flat.h"
 #include "povray/povray.h"
 
+#include <stdio.h>
 #include <string.h>
 
 #define PI 3.14159265358979323846

@@ -2,6 +2,7 @@
 #include "povray/material.h"
 #include "povray/parts.h"
 
+#include <stdio.h>
 #include <string.h>
 
 /* The base name: a file says nothing of the machine that made it. */

@@ -2,7 +2,7 @@
 #include "read/parts.h"
 
 #include "read/patch_file.h"
-#include "patch/patch.h"
+#include "patch/surface.h"
 
 #include <errno.h>
 #include <stdio.h>

@@ -3,7 +3,7 @@
  * patch, if it has a formula, which is searched without.
  */
 #include "mesh/mesh.h"
-#include "patch/patch.h"
+#include "patch/surface.h"
 #include "read/parts.h"
 
 /* By how much one direction may be stretched more than another: float has 7 digits, and needs 3 for the hits. */
