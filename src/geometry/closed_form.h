@@ -16,7 +16,8 @@
     NAME(sphere)                                                                                                       \
     NAME(cylinder)                                                                                                     \
     NAME(cone)                                                                                                         \
-    NAME(torus)
+    NAME(torus)                                                                                                        \
+    NAME(ellipsoid)
 
 #define SHAPE_SMALL 1e-6 /* shorter lengths are refused: their squares would vanish beside others in float */
 
