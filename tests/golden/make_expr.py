@@ -3,7 +3,7 @@
 
 Nothing here comes from kage: each text is evaluated as Python (with ** for ^, which binds and associates
 the same way) by mpmath with 50 digits, and its partials are mpmath's numerical ones at that precision, good
-to far more digits than a double has. Noise is written anew from its description in src/noise.h.
+to far more digits than a double has. Noise is written anew from its description in src/math/noise.h.
 
     python3 -m venv venv && venv/bin/pip install mpmath && venv/bin/python tests/golden/make_expr.py
 """
@@ -25,6 +25,11 @@ def mod(a, b):
 
 def select(a, b, c, d=None):
     return b if a < 0 else c if d is None or a == 0 else d
+
+
+def smoothstep(a, b, x):
+    t = min(max((x - a) / (b - a), 0), 1)
+    return t * t * (3 - 2 * t)
 
 
 def mix(h):
@@ -54,6 +59,7 @@ NAMES = dict(
     sin=mp.sin, cos=mp.cos, tan=mp.tan, asin=mp.asin, acos=mp.acos, atan=mp.atan, atan2=mp.atan2,
     sinh=mp.sinh, cosh=mp.cosh, tanh=mp.tanh, exp=mp.exp, log=mp.log, sqrt=mp.sqrt, floor=mp.floor,
     abs=abs, min=min, max=max, pow=lambda a, b: mpf(a) ** b, mod=mod, noise=noise, select=select,
+    smoothstep=smoothstep,
     clamp=lambda x, lo, hi: min(max(x, lo), hi), pi=mpf(math.pi))
 
 # text, range of u, range of w, points
@@ -114,6 +120,9 @@ CASES = [
     ("sin(u*w)*tanh(u - w) + log(3 + u*sin(w))", (-1, 1), (-2, 2), 30),
     ("atan2(sinh(u) + 3, cosh(w))*asin(0.5*sin(u + w))", (-2, 2), (-2, 2), 30),
     ("acos(u*w/5)^2 - tan(u/3)*atan(w)^3", (-2, 2), (-2, 2), 30),
+    ("smoothstep(-1.5, 2, u)", (-3, 3), (-1, 1), 30),
+    ("smoothstep(u*w, 2 + w*w, sin(u) + w)", (-1, 1), (-2, 2), 50),
+    ("0.1*smoothstep(0.75, 0.25, u^2 + w^2)", (-1, 1), (-1, 1), 30),
 ]
 ORDERS = [(0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2)]
 

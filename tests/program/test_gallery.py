@@ -7,9 +7,10 @@ import sys
 from pathlib import Path
 
 import numpy as np
-import OpenEXR
 import pytest
-from conftest import PROGRAM, TOP
+
+from reference.references import read_exr
+from tests.conftest import PROGRAM, TOP
 
 SCENES = sorted((TOP / "scenes" / "gallery").glob("*.yaml"))
 SCRIPT = TOP / "scripts" / "gallery.py"
@@ -18,8 +19,7 @@ SCRIPT = TOP / "scripts" / "gallery.py"
 def visibility(scene: Path, out: Path, *options: str) -> np.ndarray:
     command = [PROGRAM, "render", scene, *options, "--size", "320x240", "--layers", "visibility", "--quiet", "-o", out]
     subprocess.run(command, check=True, capture_output=True, timeout=120)
-    with OpenEXR.File(str(out), separate_channels=True) as file:
-        return np.stack([channel.pixels for channel in file.channels().values()])
+    return np.stack(list(read_exr(out).values()))
 
 
 @pytest.mark.parametrize("scene", SCENES, ids=lambda scene: scene.stem)
@@ -48,7 +48,8 @@ def test_page(tmp_path: Path) -> None:
 
 def test_what_is_missing_is_told_and_no_page_made(tmp_path: Path) -> None:
     done = run("-o", tmp_path / "index.html", SCENES[0])
-    assert done.returncode == 1 and f"no {SCENES[0].stem}-none.png, {SCENES[0].stem}.png; have they been rendered?" in done.stderr
+    first = SCENES[0].stem
+    assert done.returncode == 1 and f"no {first}-none.png, {first}.png; have they been rendered?" in done.stderr
     (tmp_path / "bare.yaml").write_text("camera: {}\n")
     done = run("-o", tmp_path / "index.html", tmp_path / "bare.yaml")
     assert done.returncode == 1 and "expected a comment in its first line" in done.stderr
