@@ -524,8 +524,8 @@ class Scene:
 
 
 COLUMNS = ("smooth", "colours", "mirror, glass", "displaced", "own shadows")
-ROWS = ("plane", "rectangle", "disc", "box", "sphere", "cylinder", "cone", "torus", "parametric", "patches",
-        "moved, copied", "lights", "cameras")
+ROWS = ("plane", "rectangle", "disc", "box", "sphere", "cylinder", "cone", "torus", "ellipsoid", "parametric",
+        "patches", "moved, copied", "lights", "cameras")
 
 
 def surface_in(text: str) -> str:
