@@ -11,7 +11,7 @@
 #include "base/files.h"
 #include "base/progress.h"
 
-enum { MESH_MOST = 1 << 24, MESH_WHY = 200 }; /* triangles; bytes of a message */
+enum { MESH_MOST = 1 << 24, MESH_WHY = 400 }; /* triangles; bytes of a message */
 
 /* What of a triangle does not matter to whether a ray meets it. */
 typedef struct mesh_skin {
@@ -40,18 +40,10 @@ void mesh_data_free(mesh_data *d);
 
 typedef enum mesh_normals { MESH_NORMALS_FILE, MESH_NORMALS_SMOOTH, MESH_NORMALS_FLAT } mesh_normals;
 
-/* Read a file of a model; it and those that it names are added to *opened. False, and why not in one line.
- * (mesh_file.c) */
-bool mesh_file_read(const char *path, const progress *w, files *opened, mesh_data *out, char why[MESH_WHY]);
-
-/* The importer itself, as it runs in a process of its own. What it tells: each file that it opens, and the share that
- * has been read. (mesh_import.c) */
-typedef struct mesh_listener {
-    void (*open)(void *user, file_id id);
-    void (*read)(void *user, double share);
-    void *user;
-} mesh_listener;
-bool mesh_import(const char *path, const mesh_listener *to, mesh_data *out, char why[MESH_WHY]);
+/* Read a file of a model; it and those that it names are added to *opened. The program `reader` does it, or where that
+ * is NULL the one that is found (mesh/load.c). False, and why not in one line. Reentrant. */
+bool mesh_file_read(const char *path, const char *reader, const progress *w, files *opened, mesh_data *out,
+                    char why[MESH_WHY]);
 
 /* Check the numbers, leave out triangles without an area, and find a normal for every corner: the file's where it is
  * usable, otherwise the mean over the triangles about the vertex that are within `crease` degrees of this one. `most`:

@@ -1,5 +1,7 @@
 #include "patch/piece.h"
 
+#include "base/threads.h"
+
 #include <math.h>
 #include <stdlib.h>
 
@@ -101,7 +103,9 @@ static bool halve(const patch *q, double flat, pieces *l, bool *any)
     for (int i = 0; i < n; i++)
         if (wants_halving(l, flat, &more[i]))
             whose[halved++] = i;
-#pragma omp parallel for schedule(static) if (halved > AT_FIRST)
+    const int threads = threads_of(q->threads);
+    (void)threads; /* without OpenMP */
+#pragma omp parallel for num_threads(threads) schedule(static) if (halved > AT_FIRST)
     for (int k = 0; k < halved; k++) {
         const piece whole = more[whose[k]];
         more[whose[k]] = piece_half(q, &whole, 0);

@@ -56,6 +56,8 @@ static bool read_range(reader *r, node *at, const char *key, double x[2])
 /* The tree of leaves, or why there is none. */
 static surface *search(reader *r, node *at, patch *q, const char *what)
 {
+    if (q)
+        q->threads = r->from->threads;
     surface *f = q ? patch_surface_new(q) : NULL;
     if (!q)
         errors_add(r->e, "out of memory");

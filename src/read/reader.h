@@ -13,7 +13,7 @@ typedef struct reader {
     yaml *y;
     scene *s;
     errors *e;
-    const progress *progress; /* NULL: nobody */
+    const scene_source *from;
 } reader;
 
 /* An owned copy of a text; NULL of NULL. */
@@ -59,7 +59,7 @@ bool reader_transform(reader *r, node *at, affine *m);
 
 /* A round shape about the origin as a sheet, which bears every transform truly displaced. NULL: it has ends (caps) or
  * is not round, or out of memory. (scene_turned.c) */
-surface *reader_revolution(const shape_spec *f);
+surface *reader_revolution(const shape_spec *f, int threads);
 
 /* Put an object's shape where `placed` says. False: an error is told, at the node. */
 bool reader_place(reader *r, node *at, object *o);

@@ -47,7 +47,7 @@ static bool outline_of(const shape_spec *f, outline *a)
     }
 }
 
-surface *reader_revolution(const shape_spec *f)
+surface *reader_revolution(const shape_spec *f, int threads)
 {
     outline a;
     expr *e[3] = {NULL, NULL, NULL};
@@ -69,5 +69,7 @@ surface *reader_revolution(const shape_spec *f)
         return NULL;
     }
     patch *q = patch_function_new(a.kind, e, u, a.w);
+    if (q)
+        q->threads = threads;
     return q ? patch_surface_new(q) : NULL;
 }

@@ -54,12 +54,12 @@ bool reader_number(reader *r, node *map, const char *key, double lo, bool open, 
 
 char *reader_beside(reader *r, const char *file)
 {
-    const char *slash = strrchr(r->s->path, '/');
-    int folder = slash && *file != '/' ? (int)(slash - r->s->path) + 1 : 0;
-    size_t size = (size_t)folder + strlen(file) + 1;
+    const char *given = r->from->folder, *folder = given ? given : r->s->path, *slash = strrchr(folder, '/');
+    const size_t n = *file == '/' ? 0 : given ? strlen(given) : slash ? (size_t)(slash - folder) + 1 : 0;
+    const size_t size = n + strlen(file) + 2;
     char *path = malloc(size);
     if (path)
-        snprintf(path, size, "%.*s%s", folder, r->s->path, file);
+        snprintf(path, size, "%.*s%s%s", (int)n, folder, given && n > 0 && given[n - 1] != '/' ? "/" : "", file);
     if (!path || !files_add_path(&r->s->made_from, path))
         errors_add(r->e, "out of memory");
     return path;
@@ -212,14 +212,14 @@ static void note_crowd(reader *r)
         errors_add(r->e, "out of memory");
 }
 
-scene *scene_read(const char *path, int sets, char *const *set, const progress *w, errors *e)
+scene *scene_read(const scene_source *from, errors *e)
 {
-    reader r = {.e = e, .progress = w, .s = calloc(1, sizeof *r.s)};
+    reader r = {.e = e, .from = from, .s = calloc(1, sizeof *r.s)};
     int before = e->count;
-    r.y = r.s ? yaml_open(path, sets, set, "image render", e) : NULL;
+    r.y = r.s ? yaml_open(from->path, from->text, from->size, from->sets, from->set, "image render", e) : NULL;
     if (r.y) {
-        r.s->path = reader_copy(&r, path);
-        if (!files_add_path(&r.s->made_from, path))
+        r.s->path = reader_copy(&r, from->path);
+        if (!from->text && !files_add_path(&r.s->made_from, from->path))
             errors_add(e, "out of memory");
         r.s->source = reader_copy(&r, yaml_source(r.y));
         if (r.s->path) {
@@ -238,7 +238,7 @@ scene *scene_read(const char *path, int sets, char *const *set, const progress *
         yaml_close(r.y);
     }
     if (!r.y && e->count == before)
-        errors_add(e, "%s: out of memory", path);
+        errors_add(e, "%s: out of memory", from->path);
     if (e->count == before)
         return r.s;
     scene_free(r.s);

@@ -185,7 +185,7 @@ static surface *image_of(const reader *r, object *o, const surface *from, const 
     if (truth && o->shape_spec.kind == SHAPE_PATCH)
         return patch_surface_affine(from, m);
     surface *f = surface_transformed(from, m),
-            *turned = f && truth && !f->ops->foot ? reader_revolution(&o->shape_spec) : NULL;
+            *turned = f && truth && !f->ops->foot ? reader_revolution(&o->shape_spec, r->from->threads) : NULL;
     if (!turned)
         return f;
     surface_free(f);

@@ -48,6 +48,6 @@ bool yaml_syntax_errors(yaml *y, const origin *o);
 
 /* Make the changes to the document, once it is loaded. What is wrong with one is told, and the next is made. False: out
  * of memory. */
-bool yaml_change(yaml *y, int sets, char *const *set, const char *optional);
+bool yaml_change(yaml *y, int sets, const char *const *set, const char *optional);
 
 #endif
