@@ -354,8 +354,9 @@ typedef struct kage_povray_options {
 } kage_povray_options;
 
 typedef struct kage_povray_report {
-    const char *coarse; /* the first object whose mesh had to be coarser than half a pixel; NULL: none. The scene's */
-    double pixels;      /* the side of its facets in the picture */
+    const char *coarse; /* the object whose mesh is the worst of those that had to be coarse; NULL: none. The scene's */
+    double height;      /* by how much its heights may be off, in scene units, */
+    double pixels;      /* and in pixels */
     void *reserved[8];
 } kage_povray_report;
 

@@ -110,6 +110,9 @@ def export(kage: Path, name: str, shot: Shot) -> Path:
     path = TOP / WORK / f"{name}-{shot.name}.pov"
     path.parent.mkdir(parents=True, exist_ok=True)
     words = run([kage, *export_command(name, shot)])
+    if "coarse mesh" in words:
+        path.unlink()
+        raise ReferenceError(f"{scene_path(name)}, {shot.name}: no truth comes of it: {words.strip()}")
     if words:
         print(f"{name}, {shot.name}: {words.strip()}", flush=True)
     return path

@@ -7,9 +7,12 @@ from __future__ import annotations
 
 import os
 import shutil
+import signal
 import subprocess
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -53,6 +56,15 @@ objects:
     sphere: {center: [1, 1, 0], radius: 0.5}
     material: clay
 """
+
+
+def start(command: Sequence[object], **options: Any) -> subprocess.Popen[Any]:
+    """Start a command that is to be interrupted: Ctrl-C ends it even where it is ignored here, as under nohup."""
+    return subprocess.Popen([str(word) for word in command], preexec_fn=restore_interrupt, **options)
+
+
+def restore_interrupt() -> None:
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
 @dataclass

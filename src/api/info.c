@@ -63,18 +63,18 @@ static kage_object_info of_object(const scene *s, const object *o, const kage_mo
 static bool note_all(const scene *s, kage_scene_info *x)
 {
     const size_t lights = (size_t)s->lights, objects = (size_t)s->objects;
-    kage_light_info *light = calloc(lights + 1, sizeof *light);
-    kage_object_info *object = calloc(1, (objects + 1) * sizeof *object + objects * sizeof(kage_model_info));
-    x->lights = light;
-    x->objects = object;
-    if (!light || !object)
+    kage_light_info *l = calloc(lights + 1, sizeof *l);
+    kage_object_info *o = calloc(1, (objects + 1) * sizeof *o + objects * sizeof(kage_model_info));
+    x->lights = l;
+    x->objects = o;
+    if (!l || !o)
         return false;
-    kage_model_info *model = (kage_model_info *)(void *)&object[objects + 1];
+    kage_model_info *model = (kage_model_info *)(void *)&o[objects + 1];
     for (size_t k = 0; k < lights; k++)
-        light[k] = of_light(&s->light[k]);
+        l[k] = of_light(&s->light[k]);
     for (size_t k = 0; k < objects; k++) {
         model[k] = of_model(&s->object[k].shape_spec);
-        object[k] = of_object(s, &s->object[k], &model[k]);
+        o[k] = of_object(s, &s->object[k], &model[k]);
     }
     return true;
 }

@@ -23,7 +23,7 @@ kage_status kage_scene_write_povray(kage_scene *k, const char *path, const kage_
     }
     c_locale_end(&l);
     if (report)
-        *report = (kage_povray_report){.coarse = good ? r.coarse : NULL, .pixels = r.pixels};
+        *report = (kage_povray_report){.coarse = good ? r.coarse : NULL, .height = r.height, .pixels = r.pixels};
     if (!good)
         return errors_give(&e, status, NULL, to);
     errors_free(&e);

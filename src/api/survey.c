@@ -74,9 +74,9 @@ static kage_bump_survey summary(seen *x)
     return b;
 }
 
-static void warn(kage_warning *w, int *n, kage_warning_code code, int object, double value, double bound)
+static void warn(kage_warning *w, int *n, kage_warning_code code, int id, double value, double bound)
 {
-    w[(*n)++] = (kage_warning){code, object, value, bound};
+    w[(*n)++] = (kage_warning){code, id, value, bound};
 }
 
 static void warn_of(const kage_object_info *o, const kage_bump_survey *b, int id, kage_warning *w, int *n)

@@ -1,9 +1,11 @@
+/* Writing a file aside and renaming it into place. */
 #define _XOPEN_SOURCE 700 /* realpath */
 
 #include "base/file_writer.h"
 
 #include <errno.h>
 #include <fcntl.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>

@@ -1,24 +1,12 @@
-/* What the image files share; private to image*.c. */
+/* Output files that appear whole or not at all. */
 #ifndef KAGE_BASE_FILE_WRITER_H
 #define KAGE_BASE_FILE_WRITER_H
 
+#include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
-#include <stdio.h>
 
-#include "image/image.h"
-
-/* Room for a reason in one sentence. */
-enum { IMAGE_WHY = 512 };
-
-/* NULL, or why an image of this size is neither read nor written. */
-const char *image_refuse_size(int64_t width, int64_t height);
-
-/* Room for width x height pixels of so many values in *out. NULL, or why there is none. */
-const char *image_alloc(image *out, int64_t width, int64_t height, int values);
-
-/* The readers behind image_read. *out is empty and stays so on error; why[IMAGE_WHY] then holds the reason. */
-bool image_read_png(FILE *file, bool color, image *out, char *why); /* after the 8 bytes of signature */
-bool image_read_exr(FILE *file, const char *channel, bool color, image *out, char *why); /* from anywhere */
+#include "base/errors.h"
 
 /* A file being written. Nobody sees it at `path` before it is whole: it grows under another name in the same
  * directory and is renamed at the end. A path that leads to something other than a regular file (a terminal,
@@ -38,7 +26,7 @@ bool file_writer_open(file_writer *f, const char *path, errors *e);
 bool file_writer_write(file_writer *f, const void *data, size_t size, uint64_t offset);
 
 /* End the file: with `why` NULL it takes its place, otherwise it is dropped. False with one message in *e, which
- * tells the system's reason if a write has failed, else `why`. */
+ * gives the system's reason if a write has failed, else `why`. */
 bool file_writer_close(file_writer *f, const char *why, errors *e);
 
 #endif

@@ -41,8 +41,9 @@ static int write_scene(kage_scene *s, const arguments *a)
         return print_errors(e, status == KAGE_BAD_INPUT ? EXIT_INPUT : EXIT_OUTPUT);
     if (r.coarse)
         fprintf(stderr,
-                "kage: object %s: a mesh of facets below half a pixel is too large; they have up to %.2g pixels\n",
-                r.coarse, r.pixels);
+                "kage: object %s: coarse mesh: heights are off by up to %.3g, %.3g pixels; a finer one has too many "
+                "triangles\n",
+                r.coarse, r.height, r.pixels);
     return 0;
 }
 

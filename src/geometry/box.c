@@ -140,7 +140,9 @@ STAGE static void box_occlude_own(const surface *base, int n, const rays *x, con
     }
 }
 
-/* ---- for true displacement: each face by itself, as a rectangle; at the box's edges displaced faces part or cross ---- */
+/* ---- for true displacement ---- */
+
+/* Each face by itself, as a rectangle. At the box's edges displaced faces part or cross. */
 
 /* A face: the axis across it and the place there, the axes of u and w, and the direction of n. */
 typedef struct face {
@@ -227,8 +229,19 @@ static void box_box(const surface *base, double lo[3], double hi[3])
 }
 
 static const surface_ops box_methods = {
-    "box",      box_hit, box_hit_own, box_locate, box_eval, box_occlude, box_occlude_own,
-    box_extent, box_box, 6,           box_shell,  box_foot, box_steep,   false,
+    .kind = "box",
+    .hit = box_hit,
+    .hit_own = box_hit_own,
+    .locate = box_locate,
+    .eval = box_eval,
+    .occlude = box_occlude,
+    .occlude_own = box_occlude_own,
+    .extent = box_extent,
+    .box = box_box,
+    .parts = 6,
+    .shell = box_shell,
+    .foot = box_foot,
+    .steep = box_steep,
 };
 
 surface *box_new(vec3 from, vec3 to)

@@ -3,40 +3,11 @@
  *
  * A cylinder is the cone with a = 0. Part 0 is the side, 1 the cap on top, 2 the one at the bottom; the caps are discs.
  */
+#include "geometry/cone.h"
+
 #include "base/frame.h"
-#include "math/kmath.h"
-#include "geometry/plane.h"
 
 #include <stdlib.h>
-
-typedef struct cone {
-    surface base;
-    real F[3], X[3], Y[3], Z[3]; /* the middle of the lower end, and the frame */
-    real from, to;               /* radii of the lower and of the upper end */
-    real length;                 /* of the axis */
-    real rise;                   /* how the radius changes along it */
-    real side;                   /* length of the side */
-    real sin, cos;               /* of a */
-    int capped;
-    plane cap[2]; /* on top, at the bottom; a radius of 0 is no cap */
-} cone;
-
-/* A ray in the frame. */
-typedef struct local {
-    real ox, oy, oz, sx, sy, sz;
-} local;
-
-KM_INLINE local local_from(const cone *f, const vec3s *r, const vec3s *s, int i)
-{
-    real rx = r->x[i] - f->F[0], ry = r->y[i] - f->F[1], rz = r->z[i] - f->F[2];
-    real sx = s->x[i], sy = s->y[i], sz = s->z[i];
-    local l = {rx * f->X[0] + ry * f->X[1] + rz * f->X[2], rx * f->Y[0] + ry * f->Y[1] + rz * f->Y[2],
-               rx * f->Z[0] + ry * f->Z[1] + rz * f->Z[2], sx * f->X[0] + sy * f->X[1] + sz * f->X[2],
-               sx * f->Y[0] + sy * f->Y[1] + sz * f->Y[2], sx * f->Z[0] + sy * f->Z[1] + sz * f->Z[2]};
-    return l;
-}
-
-KM_INLINE local local_of(const cone *f, const rays *x, int i) { return local_from(f, &x->r, &x->s, i); }
 
 /* Two stretches of a ray: in the solid within the endless side, and between the ends. Each is empty where its ends are
  * the wrong way round. */
@@ -49,7 +20,7 @@ typedef struct spans {
  * to the way there; the discriminant b^2 - a c is a difference of two squares, which cancels only at a tangent. Below 0
  * its root is NaN, and so is what follows: every comparison with that is false. (Choices by more than one comparison
  * would keep gcc 12 from vectorising the loops.) */
-KM_INLINE spans cone_spans(const cone *f, real rho, real lo, real hi, local l)
+KM_INLINE spans cone_spans(const cone *f, real rho, real lo, real hi, cone_ray l)
 {
     real s2 = l.sx * l.sx + l.sy * l.sy + l.sz * l.sz;
     real tc = -(l.ox * l.sx + (l.oy - R(0.5) * f->length) * l.sy + l.oz * l.sz) / s2;
@@ -78,7 +49,7 @@ KM_INLINE spans cone_spans(const cone *f, real rho, real lo, real hi, local l)
     return k;
 }
 
-KM_INLINE spans spans_of(const cone *f, local l) { return cone_spans(f, f->from, 0, f->length, l); }
+KM_INLINE spans spans_of(const cone *f, cone_ray l) { return cone_spans(f, f->from, 0, f->length, l); }
 
 /* The two places where the ray meets the surface, at t0 <= t1, as far as they are any. */
 typedef struct places {
@@ -86,7 +57,7 @@ typedef struct places {
     int first, second;
 } places;
 
-KM_INLINE places cone_places(const cone *f, int capped, local l)
+KM_INLINE places cone_places(const cone *f, int capped, cone_ray l)
 {
     spans k = spans_of(f, l);
     places p = {k.in, k.out, (k.in >= k.from) & (k.in <= k.to), (k.out >= k.from) & (k.out <= k.to)};
@@ -102,7 +73,7 @@ KM_INLINE void hit(const surface *base, int capped, int n, const rays *x, int32_
 {
     const cone f = *(const cone *)base;
     for (int i = 0; i < n; i++) {
-        places p = cone_places(&f, capped, local_of(&f, x, i));
+        places p = cone_places(&f, capped, cone_local_of(&f, x, i));
         int first = p.first & (p.t0 > 0), second = p.second & (p.t1 > 0);
         real t = first ? p.t0 : p.t1;
         int take = (first | second) & (t < h->t[i]);
@@ -124,7 +95,7 @@ KM_INLINE void occlude(const surface *base, int capped, int n, const rays *x, re
 {
     const cone f = *(const cone *)base;
     for (int i = 0; i < n; i++) {
-        places p = cone_places(&f, capped, local_of(&f, x, i));
+        places p = cone_places(&f, capped, cone_local_of(&f, x, i));
         int met = (p.first & (p.t0 > 0) & (p.t0 < 1)) | (p.second & (p.t1 > 0) & (p.t1 < 1));
         lit[i] = met ? 0 : lit[i];
     }
@@ -139,121 +110,8 @@ STAGE static void cone_capped_occlude(const surface *base, int n, const rays *x,
     occlude(base, 1, n, x, lit);
 }
 
-/* The part that a hit is on is the one that it is farthest out towards, as with a box. */
-STAGE static void cone_part(const cone *restrict base, int n, const rays *restrict x, const real *restrict t,
-                            int32_t *restrict part)
-{
-    const cone f = *base;
-    const real none = (real)HUGE_VAL;
-    const real top = (f.capped & (f.to > 0)) ? f.length : none, bottom = (f.capped & (f.from > 0)) ? 0 : -none;
-    for (int i = 0; i < n; i++) {
-        local l = local_of(&f, x, i);
-        real px = l.ox + l.sx * t[i], py = l.oy + l.sy * t[i], pz = l.oz + l.sz * t[i];
-        real out = (real_sqrt(px * px + pz * pz) - f.from - f.rise * py) * f.cos;
-        int32_t end = py - top > bottom - py ? 1 : 2;
-        part[i] = real_max(py - top, bottom - py) > out ? end : 0;
-    }
-}
-
-STAGE static void cone_place(const cone *restrict base, int n, const rays *restrict x, const real *restrict t,
-                             const int32_t *restrict part, real *restrict u, real *restrict w)
-{
-    const cone f = *base;
-    for (int i = 0; i < n; i++) {
-        local l = local_of(&f, x, i);
-        real px = l.ox + l.sx * t[i], py = l.oy + l.sy * t[i], pz = l.oz + l.sz * t[i];
-        real turn = (real)km_atan2((double)pz, (double)px);
-        real down = (real_sqrt(px * px + pz * pz) - f.to) * f.sin + (f.length - py) * f.cos;
-        u[i] = part[i] == 0 ? turn : px;
-        w[i] = part[i] == 0 ? down : part[i] == 1 ? -pz : pz;
-    }
-}
-
-static void cone_locate(const surface *base, int n, const rays *x, const real *t, int32_t *part, real *u, real *w)
-{
-    cone_part((const cone *)base, n, x, t, part);
-    cone_place((const cone *)base, n, x, t, part, u, w);
-}
-
-/* A vector of the frame: x and z along the radius and across it, y along the axis. */
-static inline void put(const cone *f, vec3s *v, int i, real x, real y, real z)
-{
-    v->x[i] = x * f->X[0] + y * f->Y[0] + z * f->Z[0];
-    v->y[i] = x * f->X[1] + y * f->Y[1] + z * f->Z[1];
-    v->z[i] = x * f->X[2] + y * f->Y[2] + z * f->Z[2];
-}
-
-STAGE static void cone_side_eval(const cone *restrict base, int n, const real *restrict u, const real *restrict w,
-                                 int order, partials *restrict q)
-{
-    const cone f = *base;
-    const real least = R(1e-12) * f.side; /* as at a sphere's pole: at an apex the direction of n is kept */
-    for (int i = 0; i < n; i++) {
-        real cu = (real)km_cos((double)u[i]), su = (real)km_sin((double)u[i]);
-        real rho = f.to + w[i] * f.sin, y = f.length - w[i] * f.cos, rim = real_max(rho, least);
-        put(&f, &q->Q, i, rho * cu, y, rho * su);
-        q->Q.x[i] += f.F[0];
-        q->Q.y[i] += f.F[1];
-        q->Q.z[i] += f.F[2];
-        put(&f, &q->Qu, i, -rim * su, 0, rim * cu);
-        put(&f, &q->Qw, i, f.sin * cu, -f.cos, f.sin * su);
-    }
-    if (order < 2)
-        return;
-    for (int i = 0; i < n; i++) {
-        real cu = (real)km_cos((double)u[i]), su = (real)km_sin((double)u[i]);
-        real rho = f.to + w[i] * f.sin;
-        put(&f, &q->Quu, i, -rho * cu, 0, -rho * su);
-        put(&f, &q->Quw, i, -f.sin * su, 0, f.sin * cu);
-    }
-    vec3s_fill(&q->Qww, n, 0, 0, 0);
-}
-
-/* Of lanes on caps: both are flat, and differ in their place and in the way of w. */
-STAGE static void cone_caps_eval(const cone *restrict base, int n, const int32_t *restrict part, const real *restrict u,
-                                 const real *restrict w, partials *restrict q)
-{
-    const cone f = *base;
-    for (int k = 0; k < 3; k++) {
-        real *restrict Q = k == 0 ? q->Q.x : k == 1 ? q->Q.y : q->Q.z;
-        real *restrict Qu = k == 0 ? q->Qu.x : k == 1 ? q->Qu.y : q->Qu.z;
-        real *restrict Qw = k == 0 ? q->Qw.x : k == 1 ? q->Qw.y : q->Qw.z;
-        const real X = f.X[k], Z = f.Z[k], low = f.F[k], high = low + f.length * f.Y[k];
-        for (int i = 0; i < n; i++) {
-            real W = part[i] == 1 ? -Z : Z, O = part[i] == 1 ? high : low, at = O + u[i] * X + w[i] * W;
-            Q[i] = part[i] == 0 ? Q[i] : at;
-            Qu[i] = part[i] == 0 ? Qu[i] : X;
-            Qw[i] = part[i] == 0 ? Qw[i] : W;
-        }
-    }
-}
-
-/* What is 0 on a cap. */
-STAGE static void cone_caps_bend(int n, const int32_t *restrict part, vec3s *restrict v)
-{
-    for (int i = 0; i < n; i++) {
-        v->x[i] = part[i] == 0 ? v->x[i] : 0;
-        v->y[i] = part[i] == 0 ? v->y[i] : 0;
-        v->z[i] = part[i] == 0 ? v->z[i] : 0;
-    }
-}
-
-static void cone_eval(const surface *base, int n, const int32_t *part, const real *u, const real *w, int order,
-                      partials *q)
-{
-    const cone *f = (const cone *)base;
-    cone_side_eval(f, n, u, w, order, q);
-    if (!f->capped)
-        return;
-    cone_caps_eval(f, n, part, u, w, q);
-    if (order == 2) {
-        cone_caps_bend(n, part, &q->Quu);
-        cone_caps_bend(n, part, &q->Quw);
-    }
-}
-
 /* From a place of the side one root is 0, the other -2 b/a; an open side is met there if that is between its ends. */
-KM_INLINE real cone_open_far(const cone *f, local l, int *met)
+KM_INLINE real cone_open_far(const cone *f, cone_ray l, int *met)
 {
     real grow = f->rise * l.sy, r = f->from + f->rise * l.oy;
     real a = l.sx * l.sx + l.sz * l.sz - grow * grow, b = l.ox * l.sx + l.oz * l.sz - grow * r;
@@ -264,7 +122,7 @@ KM_INLINE real cone_open_far(const cone *f, local l, int *met)
 
 /* From a place of a capped one the solid is entered here or not at all; entered, it is left through the first of its
  * other parts, and of the side through that other root. */
-KM_INLINE real cone_capped_far(const cone *f, local l, int part, int *met)
+KM_INLINE real cone_capped_far(const cone *f, cone_ray l, int part, int *met)
 {
     real grow = f->rise * l.sy, r = f->from + f->rise * l.oy;
     real a = l.sx * l.sx + l.sz * l.sz - grow * grow, b = l.ox * l.sx + l.oz * l.sz - grow * r;
@@ -282,8 +140,8 @@ KM_INLINE void hit_own(const surface *base, int capped, int n, const rays *x, co
 {
     const cone f = *(const cone *)base;
     for (int i = 0; i < n; i++) {
-        places p = cone_places(&f, capped, local_of(&f, x, i));
-        local l = local_from(&f, &from->at, &x->s, i);
+        places p = cone_places(&f, capped, cone_local_of(&f, x, i));
+        cone_ray l = cone_local_from(&f, &from->at, &x->s, i);
         int first = p.first & (p.t0 > 0), second = p.second & (p.t1 > 0), again, own = from->id[i] == id;
         real far = capped ? cone_capped_far(&f, l, from->part[i], &again) : cone_open_far(&f, l, &again);
         real near = first ? p.t0 : p.t1, t = own ? far : near;
@@ -311,7 +169,7 @@ STAGE static void cone_open_occlude_own(const surface *base, int n, const rays *
     (void)part;
     for (int i = 0; i < n; i++) {
         int met;
-        real t = cone_open_far(&f, local_of(&f, x, i), &met);
+        real t = cone_open_far(&f, cone_local_of(&f, x, i), &met);
         lit[i] = (met & (t < 1)) ? 0 : lit[i];
     }
 }
@@ -322,7 +180,7 @@ STAGE static void cone_capped_occlude_own(const surface *base, int n, const rays
     const cone f = *(const cone *)base;
     for (int i = 0; i < n; i++) {
         int met;
-        real t = cone_capped_far(&f, local_of(&f, x, i), part[i], &met);
+        real t = cone_capped_far(&f, cone_local_of(&f, x, i), part[i], &met);
         lit[i] = (met & (t < 1)) ? 0 : lit[i];
     }
 }
@@ -339,7 +197,7 @@ STAGE static void cone_side_shell(const cone *restrict base, int n, const rays *
     const real outer = f.from + Pmax / f.cos, inner = f.from + Pmin / f.cos;
     const int exact = f.sin == 0;
     for (int i = 0; i < n; i++) {
-        local l = local_of(&f, x, i);
+        cone_ray l = cone_local_of(&f, x, i);
         spans k = cone_spans(&f, outer, lo, hi, l), core = cone_spans(&f, inner, lo, hi, l);
         real in = real_max(k.from, k.in), out = real_min(k.to, k.out), from = real_max(in, 0);
         /* Within the core the gap is below 0, so that a ray that has come in through the outer cone has met the rough
@@ -351,15 +209,13 @@ STAGE static void cone_side_shell(const cone *restrict base, int n, const rays *
     }
 }
 
-static const plane *cap_of(const surface *base, int part) { return &((const cone *)base)->cap[part - 1]; }
-
 static void cone_shell(const surface *base, int part, int n, const rays *x, const real *end, real Pmin, real Pmax,
                        real *t0, real *t1)
 {
     if (part == 0)
         cone_side_shell((const cone *)base, n, x, end, Pmin, Pmax, t0, t1);
     else {
-        const surface *cap = &cap_of(base, part)->base;
+        const surface *cap = &cone_cap(base, part)->base;
         cap->ops->shell(cap, 0, n, x, end, Pmin, Pmax, t0, t1);
     }
 }
@@ -369,16 +225,16 @@ STAGE static void cone_side_foot(const cone *restrict base, int n, const rays *r
 {
     const cone f = *base;
     for (int i = 0; i < n; i++) {
-        local l = local_of(&f, x, i);
+        cone_ray l = cone_local_of(&f, x, i);
         real px = l.ox + l.sx * t[i], py = l.oy + l.sy * t[i], pz = l.oz + l.sz * t[i];
         real d2 = px * px + pz * pz, d = real_sqrt(d2);
         real id2 = 1 / real_max(d2, R(1e-30)), id = 1 / real_max(d, R(1e-15)), ex = px * id, ez = pz * id;
         p->u[i] = (real)km_atan2((double)pz, (double)px);
         p->w[i] = (d - f.to) * f.sin + (f.length - py) * f.cos;
         p->h[i] = (d - f.to) * f.cos - (f.length - py) * f.sin;
-        put(&f, &p->gu, i, -pz * id2, 0, px * id2);
-        put(&f, &p->gw, i, ex * f.sin, -f.cos, ez * f.sin);
-        put(&f, &p->gh, i, ex * f.cos, f.sin, ez * f.cos);
+        cone_vector(&f, &p->gu, i, -pz * id2, 0, px * id2);
+        cone_vector(&f, &p->gw, i, ex * f.sin, -f.cos, ez * f.sin);
+        cone_vector(&f, &p->gh, i, ex * f.cos, f.sin, ez * f.cos);
     }
 }
 
@@ -387,7 +243,7 @@ static void cone_foot(const surface *base, int part, int n, const rays *x, const
     if (part == 0)
         cone_side_foot((const cone *)base, n, x, t, p);
     else {
-        const surface *cap = &cap_of(base, part)->base;
+        const surface *cap = &cone_cap(base, part)->base;
         cap->ops->foot(cap, 0, n, x, t, p);
     }
 }
@@ -411,55 +267,24 @@ static void cone_steep(const surface *base, int part, int n, const rays *x, cons
     if (part == 0)
         cone_side_steep(n, x, p, Pu_max, Pw_max, rate, reach);
     else {
-        const surface *cap = &cap_of(base, part)->base;
+        const surface *cap = &cone_cap(base, part)->base;
         cap->ops->steep(cap, 0, n, x, p, Pu_max, Pw_max, rate, reach);
     }
 }
 
-static void cone_extent(const surface *base, int part, double u[2], double w[2])
-{
-    const double pi = 3.14159265358979323846;
-    if (part == 0) {
-        u[0] = -pi;
-        u[1] = pi;
-        w[0] = 0;
-        w[1] = (double)((const cone *)base)->side;
-    } else {
-        const surface *cap = &cap_of(base, part)->base;
-        cap->ops->extent(cap, 0, u, w);
+/* What a cone and a cylinder, open or with caps, have in common. A cylinder's stretches end with its side. */
+#define CONE_METHODS(name, is_cone, form, number)                                                                      \
+    {                                                                                                                  \
+        .kind = name, .hit = cone_##form##_hit, .hit_own = cone_##form##_hit_own, .locate = cone_locate,               \
+        .eval = cone_eval, .occlude = cone_##form##_occlude, .occlude_own = cone_##form##_occlude_own,                 \
+        .extent = cone_extent, .box = cone_box, .parts = number, .shell = cone_shell, .foot = cone_foot,               \
+        .steep = cone_steep, .loose = is_cone                                                                          \
     }
-}
-
-/* That of the discs at the ends. */
-static void cone_box(const surface *base, double lo[3], double hi[3])
-{
-    const cone *f = (const cone *)base;
-    for (int k = 0; k < 3; k++) {
-        const double Y = (double)f->Y[k], across = sqrt(fmax(1 - Y * Y, 0));
-        const double a = (double)f->F[k], b = a + (double)f->length * Y, ra = (double)f->from * across,
-                     rb = (double)f->to * across;
-        lo[k] = fmin(a - ra, b - rb);
-        hi[k] = fmax(a + ra, b + rb);
-    }
-}
 
 static const surface_ops cone_methods[2][2] = {
-    {{"cylinder", cone_open_hit, cone_open_hit_own, cone_locate, cone_eval, cone_open_occlude, cone_open_occlude_own,
-      cone_extent, cone_box, 1, cone_shell, cone_foot, cone_steep, false},
-     {"cylinder", cone_capped_hit, cone_capped_hit_own, cone_locate, cone_eval, cone_capped_occlude,
-      cone_capped_occlude_own, cone_extent, cone_box, 3, cone_shell, cone_foot, cone_steep, false}},
-    {{"cone", cone_open_hit, cone_open_hit_own, cone_locate, cone_eval, cone_open_occlude, cone_open_occlude_own,
-      cone_extent, cone_box, 1, cone_shell, cone_foot, cone_steep, true},
-     {"cone", cone_capped_hit, cone_capped_hit_own, cone_locate, cone_eval, cone_capped_occlude,
-      cone_capped_occlude_own, cone_extent, cone_box, 3, cone_shell, cone_foot, cone_steep, true}},
+    {CONE_METHODS("cylinder", false, open, 1), CONE_METHODS("cylinder", false, capped, 3)},
+    {CONE_METHODS("cone", true, open, 1), CONE_METHODS("cone", true, capped, 3)},
 };
-
-static void store(real to[3], vec3 v)
-{
-    to[0] = (real)v.x;
-    to[1] = (real)v.y;
-    to[2] = (real)v.z;
-}
 
 surface *cone_new(vec3 from, double from_radius, vec3 to, double to_radius, bool open)
 {
@@ -473,10 +298,10 @@ surface *cone_new(vec3 from, double from_radius, vec3 to, double to_radius, bool
         return NULL;
     const frame a = frame_about(axis);
     f->base.ops = &cone_methods[from_radius != to_radius][!open];
-    store(f->F, from);
-    store(f->X, a.x);
-    store(f->Y, a.y);
-    store(f->Z, a.z);
+    vec3_round(f->F, from);
+    vec3_round(f->X, a.x);
+    vec3_round(f->Y, a.y);
+    vec3_round(f->Z, a.z);
     f->from = (real)from_radius;
     f->to = (real)to_radius;
     f->length = (real)length;

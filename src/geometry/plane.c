@@ -294,27 +294,49 @@ static void disc_box(const surface *base, double lo[3], double hi[3])
 }
 
 static const surface_ops plane_methods = {
-    "plane",   plane_hit, plane_hit_own, plane_locate, plane_eval,  plane_occlude, NULL, plane_extent,
-    plane_box, 1,         plane_shell,   plane_foot,   plane_steep, false,
+    .kind = "plane",
+    .hit = plane_hit,
+    .hit_own = plane_hit_own,
+    .locate = plane_locate,
+    .eval = plane_eval,
+    .occlude = plane_occlude,
+    .extent = plane_extent,
+    .box = plane_box,
+    .parts = 1,
+    .shell = plane_shell,
+    .foot = plane_foot,
+    .steep = plane_steep,
 };
 
 static const surface_ops rectangle_methods = {
-    "rectangle",       rectangle_hit, rectangle_hit_own, plane_locate,  plane_eval,
-    rectangle_occlude, NULL,          rectangle_extent,  rectangle_box, 1,
-    rectangle_shell,   plane_foot,    plane_steep,       false,
+    .kind = "rectangle",
+    .hit = rectangle_hit,
+    .hit_own = rectangle_hit_own,
+    .locate = plane_locate,
+    .eval = plane_eval,
+    .occlude = rectangle_occlude,
+    .extent = rectangle_extent,
+    .box = rectangle_box,
+    .parts = 1,
+    .shell = rectangle_shell,
+    .foot = plane_foot,
+    .steep = plane_steep,
 };
 
 static const surface_ops disc_methods = {
-    "disc",   disc_hit, disc_hit_own, plane_locate, plane_eval,  disc_occlude, NULL, disc_extent,
-    disc_box, 1,        disc_shell,   plane_foot,   plane_steep, false,
+    .kind = "disc",
+    .hit = disc_hit,
+    .hit_own = disc_hit_own,
+    .locate = plane_locate,
+    .eval = plane_eval,
+    .occlude = disc_occlude,
+    .extent = disc_extent,
+    .box = disc_box,
+    .parts = 1,
+    .shell = disc_shell,
+    .foot = plane_foot,
+    .steep = plane_steep,
 };
-
-static void store(real to[3], vec3 v)
-{
-    to[0] = (real)v.x;
-    to[1] = (real)v.y;
-    to[2] = (real)v.z;
-}
 
 bool plane_place(plane *f, vec3 origin, vec3 U, vec3 W)
 {
@@ -323,12 +345,12 @@ bool plane_place(plane *f, vec3 origin, vec3 U, vec3 W)
     /* sin^2 of the angle between them: below this, float has no digit of N left */
     if (!(n2 > 1e-12 * e2) || !(e2 < HUGE_VAL))
         return false;
-    store(f->O, origin);
-    store(f->U, U);
-    store(f->W, W);
-    store(f->N, vec3_unit(N));
-    store(f->Du, vec3_scale(vec3_cross(W, N), 1 / n2));
-    store(f->Dw, vec3_scale(vec3_cross(N, U), 1 / n2));
+    vec3_round(f->O, origin);
+    vec3_round(f->U, U);
+    vec3_round(f->W, W);
+    vec3_round(f->N, vec3_unit(N));
+    vec3_round(f->Du, vec3_scale(vec3_cross(W, N), 1 / n2));
+    vec3_round(f->Dw, vec3_scale(vec3_cross(N, U), 1 / n2));
     return true;
 }
 
@@ -348,12 +370,12 @@ void rectangle_set(plane *f) { f->base.ops = &rectangle_methods; }
 void disc_set(plane *f, vec3 centre, vec3 U, vec3 W, double radius)
 {
     f->base.ops = &disc_methods;
-    store(f->O, centre);
-    store(f->U, U);
-    store(f->W, W);
-    store(f->N, vec3_cross(U, W));
-    store(f->Du, U);
-    store(f->Dw, W);
+    vec3_round(f->O, centre);
+    vec3_round(f->U, U);
+    vec3_round(f->W, W);
+    vec3_round(f->N, vec3_cross(U, W));
+    vec3_round(f->Du, U);
+    vec3_round(f->Dw, W);
     f->R = (real)radius;
 }
 
@@ -366,12 +388,4 @@ surface *disc_new(vec3 centre, vec3 normal, double radius)
     const frame a = frame_about(normal);
     disc_set(f, centre, a.x, vec3_scale(a.z, -1), radius);
     return &f->base;
-}
-
-void surface_free(surface *f)
-{
-    if (f && f->free)
-        f->free(f);
-    else
-        free(f);
 }

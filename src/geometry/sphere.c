@@ -215,9 +215,19 @@ static void sphere_box(const surface *base, double lo[3], double hi[3])
 }
 
 static const surface_ops sphere_methods = {
-    "sphere",       sphere_hit,         sphere_hit_own, sphere_locate, sphere_eval,
-    sphere_occlude, sphere_occlude_own, sphere_extent,  sphere_box,    1,
-    sphere_shell,   sphere_foot,        sphere_steep,   false,
+    .kind = "sphere",
+    .hit = sphere_hit,
+    .hit_own = sphere_hit_own,
+    .locate = sphere_locate,
+    .eval = sphere_eval,
+    .occlude = sphere_occlude,
+    .occlude_own = sphere_occlude_own,
+    .extent = sphere_extent,
+    .box = sphere_box,
+    .parts = 1,
+    .shell = sphere_shell,
+    .foot = sphere_foot,
+    .steep = sphere_steep,
 };
 
 surface *sphere_new(vec3 centre, double radius)
@@ -226,9 +236,7 @@ surface *sphere_new(vec3 centre, double radius)
     if (!f)
         return NULL;
     f->base.ops = &sphere_methods;
-    f->C[0] = (real)centre.x;
-    f->C[1] = (real)centre.y;
-    f->C[2] = (real)centre.z;
+    vec3_round(f->C, centre);
     f->R = (real)radius;
     return &f->base;
 }

@@ -109,17 +109,6 @@ surface *torus_new(vec3 centre, vec3 axis, double major, double minor);
  * still. Where the map does not keep angles, images of round surfaces have no feet. NULL where the map leaves nothing
  * of a volume (then only: or out of memory). */
 surface *surface_transformed(const surface *from, const affine *m);
-/* Q(u,w) from its points alone (sheet.h): three expressions, or Bezier patches, each a part. n = Qu x Qw is outward by
- * definition. Owns q, also on failure. NULL where Q has no bounds over its range, or is all in one place (then only: or
- * out of memory). */
-struct patch;
-surface *patch_surface_new(struct patch *q);
-
-/* The image of such a surface by an affine map, in leaves of its own: what surface_transformed makes of it has no true
- * displacement. `from` must outlive it; as there, where the map mirrors u runs the other way. NULL: as
- * patch_surface_new. */
-surface *patch_surface_affine(const surface *from, const affine *m);
-
 void surface_free(surface *f);
 
 #endif

@@ -300,13 +300,6 @@ static bool box_image(transformed *f, const affine *m)
     return good;
 }
 
-static void store(real to[3], vec3 v)
-{
-    to[0] = (real)v.x;
-    to[1] = (real)v.y;
-    to[2] = (real)v.z;
-}
-
 static void choose_methods(transformed *f, double scale)
 {
     f->base.ops = &f->methods;
@@ -341,13 +334,13 @@ surface *surface_transformed(const surface *from, const affine *m)
     f->turn = (real)turn;
     f->ends = (real)ends;
     const affine back = affine_back(m);
-    store(f->to[0], m->x);
-    store(f->to[1], m->y);
-    store(f->to[2], m->z);
-    store(f->back[0], back.x);
-    store(f->back[1], back.y);
-    store(f->back[2], back.z);
-    store(f->o, m->o);
+    vec3_round(f->to[0], m->x);
+    vec3_round(f->to[1], m->y);
+    vec3_round(f->to[2], m->z);
+    vec3_round(f->back[0], back.x);
+    vec3_round(f->back[1], back.y);
+    vec3_round(f->back[2], back.z);
+    vec3_round(f->o, m->o);
     f->scale = (real)scale;
     f->over = scale > 0 ? (real)(1 / scale) : 0;
     choose_methods(f, scale);

@@ -1,3 +1,4 @@
+/* Reading OpenEXR files with OpenEXRCore: one channel as heights, or a colour. */
 #include <openexr.h>
 
 #include <errno.h>
@@ -7,7 +8,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "base/file_writer.h"
+#include "image/buffer.h"
+#include "image/read.h"
 
 /* What a damaged header may make the library ask for at once; more than any sound file of our limits needs in
  * a chunk. */

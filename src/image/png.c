@@ -1,3 +1,4 @@
+/* PNG files by libpng: height maps and colours in, pictures out. */
 #include <errno.h>
 #include <png.h>
 #include <setjmp.h>
@@ -5,10 +6,12 @@
 #include <string.h>
 
 #include "base/file_writer.h"
+#include "image/buffer.h"
+#include "image/read.h"
 #include "image/srgb.h"
 
-/* libpng tells an error by a call that must not return. All that is alive when it comes lives here, in the
- * caller's frame, so the function with setjmp has no variable of its own that a longjmp could spoil. */
+/* libpng reports an error through a call that must not return, so it ends in a longjmp. All variables that are alive
+ * then are in this struct, in the caller's frame: the function with setjmp has none that the jump could spoil. */
 typedef struct png_job {
     jmp_buf jump;
     char *why; /* IMAGE_WHY */

@@ -229,7 +229,8 @@ static bool harvest_scene(const struct aiScene *s, mesh_data *out, char why[MESH
     }
     *out = (mesh_data){(int)n, malloc(sizeof *out->at * (size_t)n), malloc(sizeof *out->skin * (size_t)n), {0}};
     if (!out->at || !out->skin) {
-        mesh_data_free(out);
+        free(out->at);
+        free(out->skin);
         snprintf(why, MESH_WHY, "out of memory");
         return false;
     }

@@ -15,27 +15,18 @@ enum {
     FAN = 512
 }; /* triangles about a vertex; beyond that the mean over all stands for every corner, so that time stays linear */
 
-static vec3 wide(const float v[3]) { return (vec3){(double)v[0], (double)v[1], (double)v[2]}; }
-
-static void narrow(vec3 v, float to[3])
-{
-    to[0] = (float)v.x;
-    to[1] = (float)v.y;
-    to[2] = (float)v.z;
-}
-
 /* (b - a) x (c - a) */
 static vec3 area_of(const float at[3][3])
 {
-    const vec3 a = wide(at[0]);
-    return vec3_cross(vec3_sub(wide(at[1]), a), vec3_sub(wide(at[2]), a));
+    const vec3 a = mesh_get(at[0]);
+    return vec3_cross(vec3_sub(mesh_get(at[1]), a), vec3_sub(mesh_get(at[2]), a));
 }
 
 static bool is_flat(const float at[3][3], vec3 area)
 {
     double longest = 0;
     for (int k = 0; k < 3; k++) {
-        const vec3 side = vec3_sub(wide(at[(k + 1) % 3]), wide(at[k]));
+        const vec3 side = vec3_sub(mesh_get(at[(k + 1) % 3]), mesh_get(at[k]));
         longest = fmax(longest, vec3_dot(side, side));
     }
     return !(vec3_length(area) > FLAT * longest);
@@ -152,8 +143,8 @@ static bool find_places(const mesh_data *d, places *p)
 static vec3 weighed(const mesh_data *d, int corner)
 {
     const float(*at)[3] = (const float(*)[3])d->at[corner / 3];
-    const vec3 a = wide(at[corner % 3]);
-    const vec3 b = vec3_sub(wide(at[(corner + 1) % 3]), a), c = vec3_sub(wide(at[(corner + 2) % 3]), a);
+    const vec3 a = mesh_get(at[corner % 3]);
+    const vec3 b = vec3_sub(mesh_get(at[(corner + 1) % 3]), a), c = vec3_sub(mesh_get(at[(corner + 2) % 3]), a);
     const double cosine = vec3_dot(b, c) / (vec3_length(b) * vec3_length(c));
     return vec3_scale(vec3_unit(area_of(at)), km_acos(fmin(1, fmax(-1, cosine))));
 }
@@ -175,7 +166,7 @@ static void smooth_place(mesh_data *d, const int32_t *corner, int n, double leas
                 sum = vec3_add(sum, weighed(d, corner[j]));
         }
         const double length = vec3_length(sum);
-        narrow(length > 1e-6 ? vec3_scale(sum, 1 / length) : own, to);
+        mesh_set(to, length > 1e-6 ? vec3_scale(sum, 1 / length) : own);
     }
 }
 
@@ -198,10 +189,10 @@ static bool take_given(mesh_data *d, mesh_normals normals)
     for (int k = 0; k < d->n; k++)
         for (int i = 0; i < 3; i++) {
             float *to = d->skin[k].normal[i];
-            const vec3 n = wide(to);
+            const vec3 n = mesh_get(to);
             const double length = vec3_length(n);
             const bool good = normals == MESH_NORMALS_FILE && length > 1e-6 && length < 1e6;
-            narrow(good ? vec3_scale(n, 1 / length) : (vec3){0, 0, 0}, to);
+            mesh_set(to, good ? vec3_scale(n, 1 / length) : (vec3){0, 0, 0});
             all &= good;
         }
     return all;
@@ -222,8 +213,8 @@ static void turn_round(mesh_data *d)
     for (int k = 0; k < d->n; k++) {
         const vec3 n = area_of((const float(*)[3])d->at[k]);
         mesh_skin *x = &d->skin[k];
-        if (!(vec3_dot(n, wide(x->normal[0])) < 0 && vec3_dot(n, wide(x->normal[1])) < 0 &&
-              vec3_dot(n, wide(x->normal[2])) < 0))
+        if (!(vec3_dot(n, mesh_get(x->normal[0])) < 0 && vec3_dot(n, mesh_get(x->normal[1])) < 0 &&
+              vec3_dot(n, mesh_get(x->normal[2])) < 0))
             continue;
         exchange(d->at[k][1], d->at[k][2], sizeof d->at[k][1]);
         exchange(x->normal[1], x->normal[2], sizeof x->normal[1]);
@@ -238,8 +229,8 @@ static void bend_back(mesh_data *d)
     for (int k = 0; k < d->n; k++) {
         const vec3 n = vec3_unit(area_of((const float(*)[3])d->at[k]));
         for (int i = 0; i < 3; i++)
-            if (!(vec3_dot(n, wide(d->skin[k].normal[i])) >= FACING)) {
-                narrow(n, d->skin[k].normal[i]);
+            if (!(vec3_dot(n, mesh_get(d->skin[k].normal[i])) >= FACING)) {
+                mesh_set(d->skin[k].normal[i], n);
                 d->notes.bent++;
             }
     }

@@ -117,21 +117,21 @@ static bool can_open(const char *path, size_t *size, char why[MESH_WHY])
 static int start(const char *program, const char *path, int to, pid_t *pid)
 {
     char *argv[] = {(char *)(size_t)program, (char *)(size_t)path, NULL};
-    posix_spawn_file_actions_t files;
+    posix_spawn_file_actions_t ends;
     posix_spawnattr_t how;
     sigset_t none, usual;
     sigemptyset(&none);
     sigemptyset(&usual);
     sigaddset(&usual, SIGPIPE);
     sigaddset(&usual, SIGXCPU);
-    int error = posix_spawn_file_actions_init(&files);
+    int error = posix_spawn_file_actions_init(&ends);
     if (error)
         return error;
     error = posix_spawnattr_init(&how);
     if (!error) {
-        error = posix_spawn_file_actions_adddup2(&files, to, LETTER_FD);
+        error = posix_spawn_file_actions_adddup2(&ends, to, LETTER_FD);
         for (int k = 0; k < 3 && !error; k++)
-            error = posix_spawn_file_actions_addopen(&files, k, "/dev/null", O_RDWR, 0);
+            error = posix_spawn_file_actions_addopen(&ends, k, "/dev/null", O_RDWR, 0);
         if (!error)
             error = posix_spawnattr_setsigmask(&how, &none);
         if (!error)
@@ -139,10 +139,10 @@ static int start(const char *program, const char *path, int to, pid_t *pid)
         if (!error)
             error = posix_spawnattr_setflags(&how, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
         if (!error)
-            error = posix_spawn(pid, program, &files, &how, argv, environ);
+            error = posix_spawn(pid, program, &ends, &how, argv, environ);
         posix_spawnattr_destroy(&how);
     }
-    posix_spawn_file_actions_destroy(&files);
+    posix_spawn_file_actions_destroy(&ends);
     return error;
 }
 

@@ -43,7 +43,17 @@ typedef struct mesh_triangle {
     double u[3], w[3];
 } mesh_triangle;
 
-mesh_triangle mesh_triangle_of(const mesh *f, int32_t index);
+static inline mesh_triangle mesh_triangle_of(const mesh *f, int32_t index)
+{
+    mesh_triangle x;
+    for (int k = 0; k < 3; k++) {
+        x.at[k] = mesh_get(f->d.at[index][k]);
+        x.normal[k] = mesh_get(f->d.skin[index].normal[k]);
+        x.u[k] = (double)f->d.skin[index].uv[k][0];
+        x.w[k] = (double)f->d.skin[index].uv[k][1];
+    }
+    return x;
+}
 
 static inline vec3 mesh_mix(const vec3 v[3], double b, double c)
 {
@@ -53,6 +63,25 @@ static inline vec3 mesh_mix(const vec3 v[3], double b, double c)
 /* How much of b and c, the shares of the second and the third corner, there is at (u,w); not kept within the triangle.
  */
 void mesh_shares(const mesh_triangle *x, double u, double w, double *b, double *c);
+
+/* The shares of the second and the third corner at the foot of p on the triangle, kept within it. */
+static inline void mesh_foot_shares(const mesh_triangle *x, vec3 p, double *b, double *c)
+{
+    const vec3 B = vec3_sub(x->at[1], x->at[0]), C = vec3_sub(x->at[2], x->at[0]), d = vec3_sub(p, x->at[0]),
+               n = vec3_cross(B, C);
+    const double k = 1 / vec3_dot(n, n);
+    *b = k * vec3_dot(n, vec3_cross(d, C));
+    *c = k * vec3_dot(n, vec3_cross(B, d));
+}
+
+static inline void mesh_keep_inside(double *b, double *c)
+{
+    *b = *b > 0 ? *b : 0;
+    *c = *c > 0 ? *c : 0;
+    const double sum = *b + *c, k = sum > 1 ? 1 / sum : 1;
+    *b *= k;
+    *c *= k;
+}
 
 /* What is known at the shares b and c of a triangle and at the height h: the place Q + h N, N, and how the place
  * changes with b and with c. */
@@ -64,5 +93,16 @@ mesh_prism mesh_prism_at(const mesh_triangle *x, double b, double c, double h);
 
 /* How u and w change in space there. det: Xb x Xc . N, or what stands for it where normals meet. */
 void mesh_gradients(const mesh_triangle *x, const mesh_prism *p, double det, vec3 *gu, vec3 *gw);
+
+/* In intersect.c; as the members of surface_ops of the same names. */
+void mesh_hit(const surface *base, int n, const rays *x, int32_t id, hits *h);
+void mesh_hit_own(const surface *base, int n, const rays *x, const ray_origins *from, int32_t id, hits *h);
+void mesh_occlude(const surface *base, int n, const rays *x, real *lit);
+void mesh_occlude_own(const surface *base, int n, const rays *x, const int32_t *part, real *lit);
+
+/* In texture.c: lay out the texture coordinates and set the range, of a mesh that has none in its file, and of one
+ * that has them on every triangle. */
+void mesh_lay_bare(mesh *f);
+void mesh_lay_texture(mesh *f);
 
 #endif

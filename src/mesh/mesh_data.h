@@ -10,6 +10,7 @@
 
 #include "base/files.h"
 #include "base/progress.h"
+#include "base/vec3.h"
 
 enum { MESH_MOST = 1 << 24, MESH_WHY = 400 }; /* triangles; bytes of a message */
 
@@ -35,6 +36,15 @@ typedef struct mesh_data {
     mesh_skin *skin;   /* owned */
     mesh_notes notes;
 } mesh_data;
+
+/* A vertex or a normal as a vector in double, and back. */
+static inline vec3 mesh_get(const float v[3]) { return (vec3){(double)v[0], (double)v[1], (double)v[2]}; }
+static inline void mesh_set(float to[3], vec3 v)
+{
+    to[0] = (float)v.x;
+    to[1] = (float)v.y;
+    to[2] = (float)v.z;
+}
 
 void mesh_data_free(mesh_data *d);
 

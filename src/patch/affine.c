@@ -1,5 +1,5 @@
-/* The image of another sheet by an affine map: Q = o + x X + y Y + z Z, where that one has (x, y, z); X, Y, Z, o the
- * map's columns. */
+/* The image of a patch by an affine map: Q = o + x X + y Y + z Z, where (x, y, z) is on the original patch and X, Y, Z
+ * and o are the map's columns. */
 #include "patch/patch.h"
 
 #include "base/real.h"
@@ -8,54 +8,57 @@
 #include <stdlib.h>
 #include <string.h>
 
-typedef struct moved {
+#define ROUNDING 1e-15 /* more than the roundings of a sum of four products, as a share of its terms */
+
+typedef struct affine_patch {
     patch base;
     const patch *from;
-    double M[3][3], o[3]; /* M[k]: how coordinate k goes by x, y and z */
-    double turn, ends;    /* u there is ends + turn u here */
-} moved;
+    double M[3][3], o[3]; /* M[k]: row k of the map's matrix */
+    double mirror,
+        u_ends_sum; /* the original's u is u_ends_sum + mirror u; mirror is -1 where the map mirrors, else 1 */
+} affine_patch;
 
-/* Coordinate k of what is n wide, in one part of the jets. */
+/* One coordinate of Q or of a partial, from the original's three; sign: what mirroring does to the partial. */
 STAGE static void combine(int n, const double *restrict m, double o, const double *restrict x, const double *restrict y,
-                          const double *restrict z, double turn, double *restrict to)
+                          const double *restrict z, double sign, double *restrict to)
 {
-    const double a = m[0] * turn, b = m[1] * turn, c = m[2] * turn;
+    const double a = m[0] * sign, b = m[1] * sign, c = m[2] * sign;
     for (int i = 0; i < n; i++)
         to[i] = o + (a * x[i] + b * y[i] + c * z[i]);
 }
 
-static void moved_eval(const patch *base, int n, const int32_t *part, const double *u, const double *w, int order,
-                       patch_jets *out)
+static void affine_patch_eval(const patch *base, int n, const int32_t *part, const double *u, const double *w,
+                              int order, patch_jets *out)
 {
-    const moved *q = (const moved *)base;
+    const affine_patch *q = (const affine_patch *)base;
     double there[PATCH_BATCH];
     patch_jets j;
     const expr_jets *x = &j.axis[0], *y = &j.axis[1], *z = &j.axis[2];
     for (int i = 0; i < n; i++)
-        there[i] = q->ends + q->turn * u[i];
+        there[i] = q->u_ends_sum + q->mirror * u[i];
     q->from->ops->eval(q->from, n, part, there, w, order, &j);
     for (int k = 0; k < 3; k++) {
         expr_jets *to = &out->axis[k];
         const double *m = q->M[k];
         combine(n, m, q->o[k], x->v, y->v, z->v, 1, to->v);
         if (order >= 1) {
-            combine(n, m, 0, x->u, y->u, z->u, q->turn, to->u);
+            combine(n, m, 0, x->u, y->u, z->u, q->mirror, to->u);
             combine(n, m, 0, x->w, y->w, z->w, 1, to->w);
         }
         if (order >= 2) {
             combine(n, m, 0, x->uu, y->uu, z->uu, 1, to->uu);
-            combine(n, m, 0, x->uw, y->uw, z->uw, q->turn, to->uw);
+            combine(n, m, 0, x->uw, y->uw, z->uw, q->mirror, to->uw);
             combine(n, m, 0, x->ww, y->ww, z->ww, 1, to->ww);
         }
     }
 }
 
-/* All that o + m.v can be, v in three ranges; the air is more than its roundings. Unknown where one of them is. */
-static void mix(const double m[3], double o, double *const v[3], double turn, double to[2])
+/* The range of o + sign m.v, v in three ranges; infinite where one of them is. */
+static void mix(const double m[3], double o, double *const v[3], double sign, double to[2])
 {
     double lo = o, hi = o, size = fabs(o);
     for (int k = 0; k < 3; k++) {
-        const double a = m[k] * turn * v[k][0], b = m[k] * turn * v[k][1];
+        const double a = m[k] * sign * v[k][0], b = m[k] * sign * v[k][1];
         if (m[k] == 0)
             continue;
         lo += lesser(a, b);
@@ -63,15 +66,16 @@ static void mix(const double m[3], double o, double *const v[3], double turn, do
         size += greater(fabs(a), fabs(b));
     }
     const bool known = size < HUGE_VAL;
-    to[0] = known ? lo - 1e-15 * size : -HUGE_VAL;
-    to[1] = known ? hi + 1e-15 * size : HUGE_VAL;
+    to[0] = known ? lo - ROUNDING * size : -HUGE_VAL;
+    to[1] = known ? hi + ROUNDING * size : HUGE_VAL;
 }
 
-static void moved_bound(const patch *base, int part, const double u[2], const double w[2], patch_bounds *out,
-                        patch_hessians *second)
+static void affine_patch_bound(const patch *base, int part, const double u[2], const double w[2], patch_bounds *out,
+                               patch_hessians *second)
 {
-    const moved *q = (const moved *)base;
-    const double a = q->ends + q->turn * u[0], b = q->ends + q->turn * u[1], there[2] = {lesser(a, b), greater(a, b)};
+    const affine_patch *q = (const affine_patch *)base;
+    const double a = q->u_ends_sum + q->mirror * u[0], b = q->u_ends_sum + q->mirror * u[1],
+                 there[2] = {lesser(a, b), greater(a, b)};
     patch_bounds f;
     patch_hessians g;
     q->from->ops->bound(q->from, part, there, w, &f, second ? &g : NULL);
@@ -79,32 +83,33 @@ static void moved_bound(const patch *base, int part, const double u[2], const do
     expr_hessians *a2 = &g.axis[0], *b2 = &g.axis[1], *c2 = &g.axis[2];
     for (int k = 0; k < 3; k++) {
         mix(q->M[k], q->o[k], (double *const[]){x->v, y->v, z->v}, 1, out->axis[k].v);
-        mix(q->M[k], 0, (double *const[]){x->u, y->u, z->u}, q->turn, out->axis[k].u);
+        mix(q->M[k], 0, (double *const[]){x->u, y->u, z->u}, q->mirror, out->axis[k].u);
         mix(q->M[k], 0, (double *const[]){x->w, y->w, z->w}, 1, out->axis[k].w);
         if (second) {
             mix(q->M[k], 0, (double *const[]){a2->uu, b2->uu, c2->uu}, 1, second->axis[k].uu);
-            mix(q->M[k], 0, (double *const[]){a2->uw, b2->uw, c2->uw}, q->turn, second->axis[k].uw);
+            mix(q->M[k], 0, (double *const[]){a2->uw, b2->uw, c2->uw}, q->mirror, second->axis[k].uw);
             mix(q->M[k], 0, (double *const[]){a2->ww, b2->ww, c2->ww}, 1, second->axis[k].ww);
         }
     }
 }
 
-static void moved_free(patch *q) { free(q); }
+static void affine_patch_free(patch *q) { free(q); }
 
-static const patch_ops moved_methods = {moved_eval, moved_bound, moved_free};
+static const patch_ops affine_patch_methods = {
+    .eval = affine_patch_eval, .bound = affine_patch_bound, .free = affine_patch_free};
 
 patch *patch_affine_new(const patch *from, const affine *m)
 {
-    moved *q = calloc(1, sizeof *q);
+    affine_patch *q = calloc(1, sizeof *q);
     const double x[3][3] = {{m->x.x, m->y.x, m->z.x}, {m->x.y, m->y.y, m->z.y}, {m->x.z, m->y.z, m->z.z}},
                  o[3] = {m->o.x, m->o.y, m->o.z};
     if (!q)
         return NULL;
     q->base = *from;
-    q->base.ops = &moved_methods;
+    q->base.ops = &affine_patch_methods;
     q->from = from;
-    q->turn = affine_volume(m) < 0 ? -1 : 1;
-    q->ends = q->turn < 0 ? from->u[0] + from->u[1] : 0;
+    q->mirror = affine_volume(m) < 0 ? -1 : 1;
+    q->u_ends_sum = q->mirror < 0 ? from->u[0] + from->u[1] : 0;
     memcpy(q->M, x, sizeof x);
     memcpy(q->o, o, sizeof o);
     return &q->base;

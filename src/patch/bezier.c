@@ -7,6 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define ROUNDING 1e-14 /* more than some thirty roundings come to, as a share of the largest coordinate */
+
 typedef double net[16]; /* one coordinate of the control points of a patch; 4 j + i */
 
 typedef struct bezier {
@@ -38,8 +40,8 @@ STAGE static void bezier_weights(int n, const double *restrict x, weights *restr
     }
 }
 
-/* The patches' control points, side by side: 16 loads that no two lanes share, so that this loop is memory's and not
- * SIMD's (SSE2 has no gathers at all). */
+/* The control points for each lane. Not a stage: no two lanes share a load, so memory sets the pace and SIMD would not
+ * help (SSE2 has no gathers at all). */
 static void bezier_gather(int n, const int32_t *part, const net *axis, double p[16][PATCH_BATCH])
 {
     for (int i = 0; i < n; i++)
@@ -84,9 +86,9 @@ static void bezier_eval(const patch *base, int n, const int32_t *part, const dou
     }
 }
 
-/* How the control points of the stretch x0..x1 of a cubic come from its own: m[k] has the share of each in the k-th,
- * the cubic's blossom with k times x1 and 3 - k times x0. */
-static void stretch(double x0, double x1, double m[4][4])
+/* Weights for the control points of a cubic's restriction to x0..x1: m[k] holds the share of each original point in the
+ * k-th new one, the blossom with k arguments x1 and 3 - k arguments x0. */
+static void restriction(double x0, double x1, double m[4][4])
 {
     const double x[2] = {x0, x1};
     for (int k = 0; k < 4; k++) {
@@ -101,8 +103,8 @@ static void stretch(double x0, double x1, double m[4][4])
     }
 }
 
-/* The piece's control points: of one coordinate, by its stretches along u and along w. */
-static void piece_of(const double *restrict p, double (*restrict a)[4], double (*restrict b)[4], double *restrict z)
+/* One coordinate of the control points over a smaller range, from the weights along u and along w. */
+static void restrict_net(const double *restrict p, double (*restrict a)[4], double (*restrict b)[4], double *restrict z)
 {
     double rows[16];
     for (int j = 0; j < 4; j++)
@@ -114,49 +116,53 @@ static void piece_of(const double *restrict p, double (*restrict a)[4], double (
             z[4 * j + i] = b[j][0] * rows[i] + b[j][1] * rows[4 + i] + b[j][2] * rows[8 + i] + b[j][3] * rows[12 + i];
 }
 
-static const double nothing[2] = {HUGE_VAL, -HUGE_VAL};
+/* The range of no number. */
+#define EMPTY                                                                                                          \
+    {                                                                                                                  \
+        HUGE_VAL, -HUGE_VAL                                                                                            \
+    }
 
-static void hold(double range[2], double x)
+static void extend(double range[2], double x)
 {
     range[0] = x < range[0] ? x : range[0];
     range[1] = x > range[1] ? x : range[1];
 }
 
-static void finish(double range[2], double k, double air)
+/* Widen by `air` and scale. */
+static void widen_and_scale(double range[2], double k, double air)
 {
     range[0] = k * (range[0] - air);
     range[1] = k * (range[1] + air);
 }
 
-/* Quu, Quw and Qww in the hulls of second differences, as below. */
-static void bezier_bends(const double p[16], double air, double du, double dw, expr_hessians *z)
+/* Quu, Quw and Qww are in the hulls of the second differences of the control points p. */
+static void bezier_hessians(const double p[16], double air, double du, double dw, expr_hessians *z)
 {
-    double uu[2] = {nothing[0], nothing[1]}, uw[2] = {nothing[0], nothing[1]}, ww[2] = {nothing[0], nothing[1]};
+    double uu[2] = EMPTY, uw[2] = EMPTY, ww[2] = EMPTY;
     for (int j = 0; j < 4; j++)
         for (int i = 0; i < 4; i++) {
             const double *q = p + 4 * j + i;
             if (i < 2)
-                hold(uu, q[2] - 2 * q[1] + q[0]);
+                extend(uu, q[2] - 2 * q[1] + q[0]);
             if (i < 3 && j < 3)
-                hold(uw, q[5] - q[4] - q[1] + q[0]);
+                extend(uw, q[5] - q[4] - q[1] + q[0]);
             if (j < 2)
-                hold(ww, q[8] - 2 * q[4] + q[0]);
+                extend(ww, q[8] - 2 * q[4] + q[0]);
         }
-    finish(uu, 6 / (du * du), 4 * air);
-    finish(uw, 9 / (du * dw), 4 * air);
-    finish(ww, 6 / (dw * dw), 4 * air);
+    widen_and_scale(uu, 6 / (du * du), 4 * air);
+    widen_and_scale(uw, 9 / (du * dw), 4 * air);
+    widen_and_scale(ww, 6 / (dw * dw), 4 * air);
     *z = (expr_hessians){{uu[0], uu[1]}, {uw[0], uw[1]}, {ww[0], ww[1]}};
 }
 
-/* Q is in the hull of the control points of the piece, Qu and Qw in those of their differences. The air is more than
- * what some thirty roundings come to. */
+/* Q is in the hull of the control points over the box, Qu and Qw in those of their differences. */
 static void bezier_bound(const patch *base, int part, const double u[2], const double w[2], patch_bounds *out,
                          patch_hessians *second)
 {
     const bezier *q = (const bezier *)base;
     double a[4][4], b[4][4];
-    stretch(u[0], u[1], a);
-    stretch(w[0], w[1], b);
+    restriction(u[0], u[1], a);
+    restriction(w[0], w[1], b);
     for (int k = 0; k < 3; k++) {
         expr_bounds *z = &out->axis[k];
         const double *all = q->axis[k][part];
@@ -164,24 +170,24 @@ static void bezier_bound(const patch *base, int part, const double u[2], const d
         double most = 0;
         for (int i = 0; i < 16; i++)
             most = fabs(all[i]) > most ? fabs(all[i]) : most;
-        piece_of(all, a, b, p);
-        const double air = 1e-14 * most, du = u[1] - u[0], dw = w[1] - w[0];
-        double qv[2] = {nothing[0], nothing[1]}, qu[2] = {nothing[0], nothing[1]}, qw[2] = {nothing[0], nothing[1]};
+        restrict_net(all, a, b, p);
+        const double air = ROUNDING * most, du = u[1] - u[0], dw = w[1] - w[0];
+        double qv[2] = EMPTY, qu[2] = EMPTY, qw[2] = EMPTY;
         for (int j = 0; j < 4; j++)
             for (int i = 0; i < 4; i++) {
                 const double here = p[4 * j + i];
-                hold(qv, here);
+                extend(qv, here);
                 if (i < 3)
-                    hold(qu, p[4 * j + i + 1] - here);
+                    extend(qu, p[4 * j + i + 1] - here);
                 if (j < 3)
-                    hold(qw, p[4 * j + i + 4] - here);
+                    extend(qw, p[4 * j + i + 4] - here);
             }
-        finish(qv, 1, air);
-        finish(qu, 3 / du, 2 * air);
-        finish(qw, 3 / dw, 2 * air);
+        widen_and_scale(qv, 1, air);
+        widen_and_scale(qu, 3 / du, 2 * air);
+        widen_and_scale(qw, 3 / dw, 2 * air);
         *z = (expr_bounds){{qv[0], qv[1]}, {qu[0], qu[1]}, {qw[0], qw[1]}};
         if (second)
-            bezier_bends(p, air, du, dw, &second->axis[k]);
+            bezier_hessians(p, air, du, dw, &second->axis[k]);
     }
 }
 
@@ -193,7 +199,7 @@ static void bezier_free(patch *base)
     free(q);
 }
 
-static const patch_ops bezier_methods = {bezier_eval, bezier_bound, bezier_free};
+static const patch_ops bezier_methods = {.eval = bezier_eval, .bound = bezier_bound, .free = bezier_free};
 
 patch *patch_bezier_new(int patches, const vec3 *point)
 {
@@ -213,6 +219,6 @@ patch *patch_bezier_new(int patches, const vec3 *point)
             q->axis[1][i][k] = p.y;
             q->axis[2][i][k] = p.z;
         }
-    q->base = (patch){&bezier_methods, "patches", patches, {0, 1}, {0, 1}};
+    q->base = (patch){&bezier_methods, "patches", patches, {0, 1}, {0, 1}, 0};
     return &q->base;
 }

@@ -37,7 +37,7 @@ static void function_free(patch *base)
     free(q);
 }
 
-static const patch_ops function_methods = {function_eval, function_bound, function_free};
+static const patch_ops function_methods = {.eval = function_eval, .bound = function_bound, .free = function_free};
 
 patch *patch_function_new(const char *kind, expr *const xyz[3], const double u[2], const double w[2])
 {
@@ -50,6 +50,6 @@ patch *patch_function_new(const char *kind, expr *const xyz[3], const double u[2
     }
     if (!q)
         return NULL;
-    q->base = (patch){&function_methods, kind, 1, {u[0], u[1]}, {w[0], w[1]}};
+    q->base = (patch){&function_methods, kind, 1, {u[0], u[1]}, {w[0], w[1]}, 0};
     return &q->base;
 }

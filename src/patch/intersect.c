@@ -1,14 +1,14 @@
-/* Where a ray meets a sheet: Q(u,w) = r + s t.
+/* Where a ray meets a patch: Q(u,w) = r + s t.
  *
- * The hierarchy tells which leaves the ray may meet, and for each pair of ray and leaf there is a proof that they miss
- * each other, or that they meet once at the most (piece_intersect); otherwise, where the ray grazes, the leaf is
- * halved. So no hit is lost, and none depends on how fine the leaves are. What is left are pairs with one root each,
- * which Newton's iteration finds in three or four steps, many pairs side by side.
+ * The hierarchy names the pieces that the ray may meet. For each pair of ray and piece there is a proof that they miss
+ * each other, or that they meet at most once (piece_intersect). Where neither is proved, as where the ray grazes, the
+ * piece is subdivided for this ray. So no hit is lost, and none depends on how small the pieces are. Each pair that is
+ * left has one root. Newton's iteration finds it in three or four steps, many pairs side by side.
  *
- * The first of a ray's roots does not depend on the order in which the hierarchy tells leaves, nor on what it tells too
- * many: the pictures are the same on every processor.
+ * A ray's first root depends neither on the order in which the hierarchy names pieces nor on the pieces that it names
+ * in vain: the pictures are the same on every processor.
  */
-#include "patch/surface.h"
+#include "patch/query.h"
 
 #include "base/real.h"
 
@@ -16,30 +16,34 @@
 #include <stdlib.h>
 
 enum {
-    STEPS = 24,      /* of Newton's iteration */
-    DEPTH = 128,     /* of halvings; each takes one place of the stack */
-    HALVINGS = 4096, /* of one leaf for one ray: what has not been told apart then is tried, or no hit */
-    QUEUE = 1024,    /* leaves that wait to be halved */
+    STEPS = 24,      /* of Newton's iteration; four are usual, and those that begin far off need more */
+    DEPTH = 128,     /* of the stack of halves; each halving adds one, and 64 in u and in w leave no digit to halve */
+    HALVINGS = 4096, /* of one piece for one ray: then a patch with jumps is tried as it is, and others have no root */
+    QUEUE = 1024,    /* undecided pieces that wait: 8 for each ray of a wave */
 };
 
-#define SETTLED 1e-6   /* a step of this share of the range: the next would be of its square */
-#define BESIDE 1e-5    /* by how much of its range a leaf's root may lie beside it: the neighbour finds the same one */
-#define BEYOND 1e-9    /* and at the end of the sheet, where there is no neighbour, or the seam; of the sheet's range */
-#define ROUNDING 1e-14 /* of u and w, likewise: pieces can be so small that it counts */
-#define SHRED (1 / 4096.) /* a piece of this share of the range, of which nothing is proved, is tried */
-#define TINY 1e-10 /* a piece of this share of the sheet's size and place is not halved any more: it is a point */
+/* Shares of the width of a piece's range in u or w. */
+#define CONVERGED 1e-6 /* the last step: the next one would be about its square, below double's rounding */
+#define OUTSIDE 1e-5   /* a root this far outside still counts: the neighbour finds the same root, so none is lost */
 
-/* Pairs of a ray and a range that are waiting to be solved, side by side. */
+/* Shares of the width of the patch's range in u or w. */
+#define BEYOND_END 1e-9       /* the same at the patch's ends, and at a seam, where there is no neighbour */
+#define ROUNDING 1e-14        /* of u and w: pieces can be so small that it counts */
+#define UNPROVED (1 / 4096.0) /* a patch with jumps: a piece this small is tried although nothing is proved of it */
+
+#define POINT 1e-10 /* a piece of this share of the patch's size and place is a point and is not halved any more */
+
+/* Pairs of a ray and a piece that wait to be solved, side by side. */
 typedef struct pairs {
     int n;
     int32_t lane[PATCH_BATCH], part[PATCH_BATCH];
     double u[PATCH_BATCH], w[PATCH_BATCH], t[PATCH_BATCH];
     double mu[PATCH_BATCH], mw[PATCH_BATCH], hu[PATCH_BATCH],
         hw[PATCH_BATCH];     /* the range: its middle and half its width */
-    double close_u, close_w; /* steps that are none but for rounding */
+    double close_u, close_w; /* smaller steps are rounding */
     double rx[PATCH_BATCH], ry[PATCH_BATCH], rz[PATCH_BATCH], sx[PATCH_BATCH], sy[PATCH_BATCH], sz[PATCH_BATCH];
-    double open[PATCH_BATCH]; /* 1: under way; 0: settled; -1: has left its range for good */
-    bool tried[PATCH_BATCH];  /* that the root is the only one is not proved */
+    double open[PATCH_BATCH]; /* 1: not converged yet; 0: converged; -1: has left its range for good */
+    bool tried[PATCH_BATCH];  /* it is not proved that there is one root at most */
 } pairs;
 
 /* One step of Newton's iteration for each: Qu du + Qw dw - s dt = r + s t - Q, by Cramer's rule. */
@@ -61,9 +65,10 @@ STAGE static void newton_step(pairs *restrict p, const patch_jets *restrict q)
         const double dt = -k * (dx * nx + dy * ny + dz * nz);
         const double on = p->open[i] > 0 ? 1 : 0, u = p->u[i] + du, w = p->w[i] + dw;
         const double far_u = fabs(u - p->mu[i]) / p->hu[i], far_w = fabs(w - p->mw[i]) / p->hw[i];
-        const int settled = (fabs(du) <= SETTLED * p->hu[i] + close_u) & (fabs(dw) <= SETTLED * p->hw[i] + close_w);
-        const int in = (far_u < 4) & (far_w < 4); /* not NaN either */
-        double state = settled ? 0 : 1;
+        const int converged =
+            (fabs(du) <= CONVERGED * p->hu[i] + close_u) & (fabs(dw) <= CONVERGED * p->hw[i] + close_w);
+        const int in = (far_u < 4) & (far_w < 4); /* false for NaN */
+        double state = converged ? 0 : 1;
         state = in ? state : -1;
         p->u[i] = on > 0 ? u : p->u[i];
         p->w[i] = on > 0 ? w : p->w[i];
@@ -80,29 +85,31 @@ static bool any_open(const pairs *p)
     return false;
 }
 
-/* Whether a root at x counts for a range, which may end where the sheet does. */
-static bool within(double x, double middle, double half, const double sheet_range[2])
+/* Whether a root at x, u or w, counts for a piece, which may end where the patch does. */
+static bool within(double x, double middle, double half, const double patch_range[2])
 {
-    const double out = fabs(x - middle) - half, beyond = fmax(sheet_range[0] - x, x - sheet_range[1]);
-    const double all = sheet_range[1] - sheet_range[0];
-    return out <= BESIDE * half + ROUNDING * all && beyond <= BEYOND * all;
+    const double out = fabs(x - middle) - half, beyond = fmax(patch_range[0] - x, x - patch_range[1]);
+    const double all = patch_range[1] - patch_range[0];
+    return out <= OUTSIDE * half + ROUNDING * all && beyond <= BEYOND_END * all;
 }
 
-/* A leaf that a ray may meet more than once. */
-typedef struct doubtful {
+/* A piece that a ray may meet more than once. */
+typedef struct undecided {
     int32_t lane, index;
-    double near; /* t from where on it can be met */
-} doubtful;
+    double near; /* the ray does not meet it at a smaller t */
+} undecided;
 
-typedef struct hunt {
+/* The state of a query that runs. */
+typedef struct search {
     patch_query *k;
     pairs p;
     int lane; /* whose ray is in the hierarchy */
     int waiting;
-    doubtful queue[QUEUE];
-} hunt;
+    undecided queue[QUEUE];
+} search;
 
-static void solve(hunt *h)
+/* Solve the pairs that wait, and keep each ray's first root. */
+static void solve(search *h)
 {
     const patch *q = h->k->f->q;
     pairs *p = &h->p;
@@ -120,14 +127,15 @@ static void solve(hunt *h)
             k->to[lane] = p->t[i];
             k->found[lane] = true;
             k->unsure[lane] = p->tried[i];
-            if (k->any) /* nothing else needs to be met */
+            if (k->any) /* one root is enough */
                 k->to[lane] = -HUGE_VAL;
         }
     }
     p->n = 0;
 }
 
-static void wait(hunt *h, int lane, const piece *f, double a, double b, bool tried)
+/* A pair to solve; Newton's iteration begins at (a,b) in the piece. */
+static void add_pair(search *h, int lane, const piece *f, double a, double b, bool tried)
 {
     pairs *p = &h->p;
     const int i = p->n++;
@@ -149,9 +157,9 @@ static void wait(hunt *h, int lane, const piece *f, double a, double b, bool tri
         solve(h);
 }
 
-/* A piece that is a point, and still does not tell: at a pole, on an edge, where a ray just touches. It is met. What is
- * no farther than its own size from where the ray begins to count may be just the start. */
-static void take_point(patch_query *k, int lane, const piece *f)
+/* A piece that is a point and still undecided: at a pole, on an edge, or where a ray just touches. It counts as met,
+ * unless it may be the ray's own start: it is no farther than its size from where roots begin to count. */
+static void accept_point(patch_query *k, int lane, const piece *f)
 {
     const vec3 s = k->s[lane];
     const double s2 = vec3_dot(s, s), t = vec3_dot(vec3_sub(f->c, k->r[lane]), s) / s2;
@@ -162,19 +170,19 @@ static void take_point(patch_query *k, int lane, const piece *f)
     }
 }
 
-/* Nothing is known of a piece that is so small. */
-static bool is_broken(const patch_surface *f, const piece *p)
+/* Whether nothing can be proved of a piece because P or Q jumps there. */
+static bool is_unprovable(const patch_surface *f, const piece *p)
 {
-    return f->broken && p->ea + p->eb == HUGE_VAL && p->u[1] - p->u[0] < SHRED * (f->q->u[1] - f->q->u[0]) &&
-           p->w[1] - p->w[0] < SHRED * (f->q->w[1] - f->q->w[0]);
+    return f->broken && p->ea + p->eb == HUGE_VAL && p->u[1] - p->u[0] < UNPROVED * (f->q->u[1] - f->q->u[0]) &&
+           p->w[1] - p->w[0] < UNPROVED * (f->q->w[1] - f->q->w[0]);
 }
 
-/* A leaf that the ray may meet more than once: its halves, until each tells. */
-static void descend(hunt *h, int lane, const piece *whole)
+/* Subdivide a piece for one ray until each half is decided. */
+static void subdivide(search *h, int lane, const piece *whole)
 {
     const patch_surface *f = h->k->f;
     patch_query *k = h->k;
-    const double point = TINY * (f->l.radius + 0.1 * vec3_length(f->l.centre));
+    const double point = POINT * (f->l.space.radius + 0.1 * vec3_length(f->l.space.centre));
     piece open[DEPTH];
     int n = 1;
     open[0] = *whole;
@@ -186,29 +194,29 @@ static void descend(hunt *h, int lane, const piece *whole)
             const piece_answer answer =
                 piece_intersect(&half, k->r[lane], k->s[lane], k->from[lane], k->to[lane], &a, &b);
             if (answer == PIECE_ONCE)
-                wait(h, lane, &half, a, b, false);
-            else if (answer == PIECE_OPEN && is_broken(f, &half))
-                wait(h, lane, &half, 0, 0, true);
+                add_pair(h, lane, &half, a, b, false);
+            else if (answer == PIECE_OPEN && is_unprovable(f, &half))
+                add_pair(h, lane, &half, 0, 0, true);
             else if (answer == PIECE_OPEN && n < DEPTH - 1 && piece_radius(&half) > point)
                 open[n++] = half;
             else if (answer == PIECE_OPEN)
-                take_point(k, lane, &half);
+                accept_point(k, lane, &half);
         }
     }
     while (f->broken && n)
-        wait(h, lane, &open[--n], 0, 0, true);
+        add_pair(h, lane, &open[--n], 0, 0, true);
 }
 
 static int by_lane_and_near(const void *a, const void *b)
 {
-    const doubtful *x = a, *y = b;
+    const undecided *x = a, *y = b;
     if (x->lane != y->lane)
         return x->lane < y->lane ? -1 : 1;
     return x->near < y->near ? -1 : x->near > y->near;
 }
 
-/* The leaves that wait: of each ray the nearest first, then the next ones as far as no root is nearer. */
-static void halve_all(hunt *h)
+/* The undecided pieces: in each round the next nearest one of every ray, unless a root is nearer. */
+static void subdivide_all(search *h)
 {
     const patch_query *k = h->k;
     const int n = h->waiting;
@@ -222,10 +230,10 @@ static void halve_all(hunt *h)
     for (int round = 0, left = n; left; round++) {
         left = 0;
         for (int i = 0; i < lanes; i++) {
-            const doubtful *d = &h->queue[start[i] + round];
+            const undecided *d = &h->queue[start[i] + round];
             if (start[i] + round >= start[i + 1] || !(d->near < k->to[d->lane]))
                 continue;
-            descend(h, d->lane, &k->f->l.piece[d->index]);
+            subdivide(h, d->lane, &k->f->l.piece[d->index]);
             left++;
         }
         solve(h);
@@ -233,6 +241,7 @@ static void halve_all(hunt *h)
     h->waiting = 0;
 }
 
+/* The least t at which the ray can meet a piece. */
 static double near_end(const piece *f, vec3 r, vec3 s)
 {
     const double s2 = vec3_dot(s, s), reach = fabs(vec3_dot(f->A, s)) + fabs(vec3_dot(f->B, s)) + f->e * sqrt(s2);
@@ -241,18 +250,18 @@ static double near_end(const piece *f, vec3 r, vec3 s)
 
 static void visit(void *user, int32_t index)
 {
-    hunt *h = user;
+    search *h = user;
     const patch_query *k = h->k;
     const piece *f = &k->f->l.piece[index];
     double a, b;
     switch (piece_intersect(f, k->r[h->lane], k->s[h->lane], k->from[h->lane], k->to[h->lane], &a, &b)) {
     case PIECE_ONCE:
-        wait(h, h->lane, f, a, b, false);
+        add_pair(h, h->lane, f, a, b, false);
         break;
     case PIECE_OPEN:
-        h->queue[h->waiting++] = (doubtful){h->lane, index, near_end(f, k->r[h->lane], k->s[h->lane])};
+        h->queue[h->waiting++] = (undecided){h->lane, index, near_end(f, k->r[h->lane], k->s[h->lane])};
         if (h->waiting == QUEUE)
-            halve_all(h);
+            subdivide_all(h);
         break;
     case PIECE_MISSED:
         break;
@@ -268,7 +277,7 @@ void patch_query_begin(patch_query *k, const patch_surface *f, bool any)
 
 void patch_query_add(patch_query *k, int i, vec3 r, vec3 s, double from, double to)
 {
-    const vec3 o = vec3_sub(r, k->f->l.centre);
+    const vec3 o = vec3_sub(r, k->f->l.space.centre);
     const double start = -vec3_dot(o, s) / vec3_dot(s, s);
     k->r[i] = vec3_add(r, vec3_scale(s, start));
     k->s[i] = s;
@@ -281,8 +290,8 @@ void patch_query_add(patch_query *k, int i, vec3 r, vec3 s, double from, double 
 void patch_query_run(patch_query *k, int n)
 {
     const patch_surface *f = k->f;
-    const bvh_space space = {f->l.centre, f->l.radius};
-    hunt h;
+    const bvh_space *space = &f->l.space;
+    search h;
     h.k = k;
     h.p.n = h.waiting = 0;
     h.p.close_u = ROUNDING * (f->q->u[1] - f->q->u[0]);
@@ -291,8 +300,8 @@ void patch_query_run(patch_query *k, int n)
         float r[3], s[3], end;
         double from = k->from[i], to = k->to[i];
         h.lane = i;
-        if (bvh_enter(&space, space.radius, k->r[i], k->s[i], &from, &to, r, s, &end))
+        if (bvh_enter(space, space->radius, k->r[i], k->s[i], &from, &to, r, s, &end))
             bvh_along(f->tree, r, s, end, visit, &h);
     }
-    halve_all(&h);
+    subdivide_all(&h);
 }

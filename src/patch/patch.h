@@ -1,5 +1,6 @@
-/* A surface that is known by its points alone: Q(u,w) over a range of (u,w), in one or several parts. It can be
- * evaluated, and bounded over a box of (u,w); searched.c finds where rays meet it. All in double, whatever `real` is.
+/* A parametric patch: Q(u,w) over a range of (u,w), in one or several parts. A patch is evaluated at points and bounded
+ * over boxes of (u,w), nothing more; patch/surface.c makes a surface of it. All in double, whatever `real` is. A patch
+ * does not change once it is made, and any number of threads may use it.
  */
 #ifndef KAGE_PATCH_PATCH_H
 #define KAGE_PATCH_PATCH_H
@@ -12,17 +13,27 @@
 
 enum { PATCH_BATCH = EXPR_BATCH };
 
-/* Q and its partials at up to PATCH_BATCH places: x, y and z each as an expression has them. */
+/* Q and its partials at up to PATCH_BATCH places, for x, y and z. */
 typedef struct patch_jets {
     expr_jets axis[3];
 } patch_jets;
 
-/* Bounds of Q, Qu and Qw over a box of (u,w), for x, y and z. Infinite where none is known. */
+/* Qu and Qw at place i. */
+static inline vec3 patch_jets_u(const patch_jets *j, int i)
+{
+    return (vec3){j->axis[0].u[i], j->axis[1].u[i], j->axis[2].u[i]};
+}
+static inline vec3 patch_jets_w(const patch_jets *j, int i)
+{
+    return (vec3){j->axis[0].w[i], j->axis[1].w[i], j->axis[2].w[i]};
+}
+
+/* Bounds of Q, Qu and Qw over a box of (u,w), for x, y and z. Infinite where no bound is known. */
 typedef struct patch_bounds {
     expr_bounds axis[3];
 } patch_bounds;
 
-/* The same of Quu, Quw and Qww. */
+/* The same of Quu, Quw and Qww: the Hessian bounds. */
 typedef struct patch_hessians {
     expr_hessians axis[3];
 } patch_hessians;
@@ -30,17 +41,17 @@ typedef struct patch_hessians {
 typedef struct patch patch;
 
 typedef struct patch_ops {
-    /* order 0: Q; 1: also Qu and Qw; 2: also Quu, Quw and Qww. Reentrant, no allocation; each lane by itself. (u,w) may
-     * lie beyond the range: what holds there is the same formula. */
+    /* Q at n places; order 1: also Qu and Qw; order 2: also Quu, Quw and Qww. No place affects another. (u,w) may lie
+     * beyond the range, where the same formula holds. No allocation. */
     void (*eval)(const patch *q, int n, const int32_t *part, const double *u, const double *w, int order,
                  patch_jets *out);
 
-    /* All that Q, Qu and Qw can be over the box; and, unless it is NULL, in *second what Quu, Quw and Qww can. The
+    /* Bounds of Q, Qu and Qw over the box, and in *second those of Quu, Quw and Qww unless it is NULL. The bounds of
      * partials are Lipschitz bounds, as expr_bound_gradient's. */
     void (*bound)(const patch *q, int part, const double u[2], const double w[2], patch_bounds *out,
                   patch_hessians *second);
 
-    void (*free)(patch *q);
+    void (*free)(patch *q); /* of the patch and all that it owns */
 } patch_ops;
 
 struct patch {
@@ -51,20 +62,20 @@ struct patch {
     int threads;       /* that share making it ready (piece.c); 0: all processors */
 };
 
-/* Q from three expressions over u[0]..u[1], w[0]..w[1]. Owns them, also on failure. kind: a constant. NULL: out of
- * memory. */
+/* Q from three expressions over u[0]..u[1], w[0]..w[1]. Owns them, also on failure. `kind` must outlive it. NULL: out
+ * of memory. */
 patch *patch_function_new(const char *kind, expr *const xyz[3], const double u[2], const double w[2]);
 
 /* Bicubic Bezier patches, each a part over 0..1 in u and in w, from 16 control points each: point 4 j + i goes with the
  * i-th Bernstein polynomial in u and the j-th in w. Copies them. NULL: out of memory. */
 patch *patch_bezier_new(int patches, const vec3 *point);
 
-/* The rough surface Q + P n/|n| of a sheet, n = Qu x Qw; both must outlive it. It is evaluated to order 1 only, and has
- * no second bounds. NULL: out of memory. */
+/* The offset surface Q + P n/|n| of a patch, n = Qu x Qw; both must outlive it. It is evaluated to order 1 only, and
+ * has no Hessian bounds. NULL: out of memory. */
 struct bump;
 patch *patch_offset_new(const patch *q, const struct bump *P);
 
-/* The image of a sheet by an affine map. `from` must outlive it. Where the map mirrors, u runs the other way, so that
+/* The image of a patch by an affine map. `from` must outlive it. Where the map mirrors, u runs the other way, so that
  * Qu x Qw is the image of that of `from`. NULL: out of memory. */
 patch *patch_affine_new(const patch *from, const affine *m);
 

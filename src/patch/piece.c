@@ -1,3 +1,4 @@
+/* Pieces of a patch: their bounds, the subdivision of a whole patch, and a ray against a piece. */
 #include "patch/piece.h"
 
 #include "base/threads.h"
@@ -5,14 +6,17 @@
 #include <math.h>
 #include <stdlib.h>
 
+/* How far a patch is subdivided before rendering: these numbers trade time before rendering and memory against time for
+ * each ray, and decide nothing else. */
 enum {
-    AT_FIRST = 64,     /* leaves of any sheet, before its size is known well */
-    AT_MOST = 1 << 16, /* and in all, but for one halving each of the last */
+    FEWEST = 64,    /* pieces, of any patch: below that the bounding sphere is still too wide to judge sizes by */
+    MOST = 1 << 16, /* no round of halving begins beyond this; one round at most doubles the number */
 };
+#define LARGEST (1 / 20.)   /* larger pieces, in radii of the patch's sphere, are halved however flat they are */
+#define SMALLEST (1 / 300.) /* smaller ones are not halved however bent they are */
 
-#define LARGEST (1 / 20.) /* of the sheet's radius */
-#define SMALLEST (1 / 300.)
-#define AIR 1e-12 /* more than the roundings in e, as a share of the leaf's place and size */
+#define ROUNDING 1e-12 /* more than the roundings in e, as a share of the piece's place and size */
+#define POINT 1e-10 /* a patch this small, as a share of its distance from the origin, is a point and its roundings */
 
 static double length3(const double v[3]) { return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
 
@@ -44,7 +48,7 @@ piece piece_of(const patch *q, int32_t part, const double u[2], const double w[2
     f.ea = length3(ra);
     f.eb = length3(rb);
     f.e = lesser(f.ea + f.eb, length3(far));
-    f.e += AIR * (vec3_length(f.c) + vec3_length(f.A) + vec3_length(f.B));
+    f.e += ROUNDING * (vec3_length(f.c) + vec3_length(f.A) + vec3_length(f.B));
     return f;
 }
 
@@ -63,31 +67,30 @@ piece piece_half(const patch *q, const piece *f, int which)
 
 double piece_radius(const piece *f) { return vec3_length(f->A) + vec3_length(f->B) + f->e; }
 
-/* ---- the whole sheet ---- */
+/* ---- the whole patch ---- */
 
 static void measure(pieces *l)
 {
-    double lo[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, hi[3] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}, size[3];
-    for (int i = 0; i < l->n; i++)
-        for (int k = 0; k < 3; k++) {
-            lo[k] = lesser(lo[k], l->piece[i].box[0][k]);
-            hi[k] = greater(hi[k], l->piece[i].box[1][k]);
+    for (int k = 0; k < 3; k++) {
+        l->lo[k] = HUGE_VAL;
+        l->hi[k] = -HUGE_VAL;
+        for (int i = 0; i < l->n; i++) {
+            l->lo[k] = lesser(l->lo[k], l->piece[i].box[0][k]);
+            l->hi[k] = greater(l->hi[k], l->piece[i].box[1][k]);
         }
-    for (int k = 0; k < 3; k++)
-        size[k] = 0.5 * (hi[k] - lo[k]);
-    l->centre = (vec3){lo[0] + size[0], lo[1] + size[1], lo[2] + size[2]};
-    l->radius = length3(size);
+    }
+    l->space = bvh_space_about(l->lo, l->hi);
 }
 
-static bool wants_halving(const pieces *l, double flat, const piece *f)
+static bool needs_halving(const pieces *l, double flat, const piece *f)
 {
     const double size = piece_radius(f);
-    if (l->n < AT_FIRST || !(size <= LARGEST * l->radius))
+    if (l->n < FEWEST || !(size <= LARGEST * l->space.radius))
         return true;
-    return size > SMALLEST * l->radius && (f->ea > flat * vec3_length(f->A) || f->eb > flat * vec3_length(f->B));
+    return size > SMALLEST * l->space.radius && (f->ea > flat * vec3_length(f->A) || f->eb > flat * vec3_length(f->B));
 }
 
-/* One halving for each leaf that wants it. False: out of memory; *any: there was one. */
+/* One round: each piece that needs it is halved. False: out of memory. *any: whether one was. */
 static bool halve(const patch *q, double flat, pieces *l, bool *any)
 {
     const int n = l->n;
@@ -96,22 +99,22 @@ static bool halve(const patch *q, double flat, pieces *l, bool *any)
     if (!more)
         return false;
     l->piece = more;
-    int32_t *whose = malloc(sizeof *whose * (size_t)n); /* which leaf is halved */
-    if (!whose)
+    int32_t *parent = malloc(sizeof *parent * (size_t)n); /* the pieces that are halved */
+    if (!parent)
         return false;
     int halved = 0;
     for (int i = 0; i < n; i++)
-        if (wants_halving(l, flat, &more[i]))
-            whose[halved++] = i;
+        if (needs_halving(l, flat, &more[i]))
+            parent[halved++] = i;
     const int threads = threads_of(q->threads);
     (void)threads; /* without OpenMP */
-#pragma omp parallel for num_threads(threads) schedule(static) if (halved > AT_FIRST)
+#pragma omp parallel for num_threads(threads) schedule(static) if (halved > FEWEST)
     for (int k = 0; k < halved; k++) {
-        const piece whole = more[whose[k]];
-        more[whose[k]] = piece_half(q, &whole, 0);
+        const piece whole = more[parent[k]];
+        more[parent[k]] = piece_half(q, &whole, 0);
         more[n + k] = piece_half(q, &whole, 1);
     }
-    free(whose);
+    free(parent);
     l->n = n + halved;
     *any = halved > 0;
     return true;
@@ -122,8 +125,7 @@ static bool has_bounds(const pieces *l)
     for (int i = 0; i < l->n; i++)
         if (!(vec3_length(l->piece[i].c) < HUGE_VAL))
             return false;
-    /* what is all in one place has but its roundings for a size */
-    return l->radius > 1e-10 * vec3_length(l->centre) && l->radius < HUGE_VAL;
+    return l->space.radius > POINT * vec3_length(l->space.centre) && l->space.radius < HUGE_VAL;
 }
 
 bool pieces_of(const patch *q, double flat, pieces *l)
@@ -132,7 +134,7 @@ bool pieces_of(const patch *q, double flat, pieces *l)
     bool good = l->piece, any = true;
     for (int part = 0; good && part < q->parts; part++)
         l->piece[l->n++] = piece_of(q, part, q->u, q->w);
-    while (good && any && l->n < AT_MOST) {
+    while (good && any && l->n < MOST) {
         measure(l);
         good = halve(q, flat, l, &any);
     }
@@ -154,7 +156,7 @@ void pieces_free(pieces *l)
 
 piece_answer piece_intersect(const piece *f, vec3 r, vec3 s, double lo, double hi, double *a, double *b)
 {
-    /* Where it meets the parallelogram moved by some d, |d| <= e: c + a A + b B + d = r + s t. Cramer's rule. */
+    /* Q is on the parallelogram moved by some d, |d| <= e: c + a A + b B + d = r + s t, solved by Cramer's rule. */
     const vec3 o = vec3_sub(r, f->c), Bs = vec3_cross(f->B, s), sA = vec3_cross(s, f->A);
     const double det = vec3_dot(f->A, Bs), lBs = vec3_length(Bs), lsA = vec3_length(sA), s2 = vec3_dot(s, s);
     const double across = vec3_dot(o, Bs), down = vec3_dot(o, sA);

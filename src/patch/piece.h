@@ -1,54 +1,59 @@
-/* A sheet in pieces that are so small, and so flat, that a ray meets most of them once at the most, and can be told to
- * miss them. Each is a parallelogram with a bound of how far the surface is from it:
+/* A patch subdivided into pieces, each nearly a parallelogram with a proven error. A ray misses a piece, or meets it at
+ * most once, or is undecided; which of the three is proved for each ray. The error of a piece is such that
  *
  *     | Q(u,w) - (c + a A + b B) | <= e,   a and b the place in the piece's range, -1..1 from end to end,
  *     | Qu half - A | <= ea, | Qw half - B | <= eb,   half the range's width in u, in w.
+ *
+ * What a ray meets does not depend on how small the pieces are; only speed does.
  */
 #ifndef KAGE_PATCH_PIECE_H
 #define KAGE_PATCH_PIECE_H
 
 #include <stdbool.h>
 
+#include "bvh/bvh.h"
 #include "patch/patch.h"
 
+/* All lengths in scene units. Where a partial has no bound A and B are 0, and e, ea or eb may be infinite. */
 typedef struct piece {
-    int32_t part;
+    int32_t part;      /* of the patch */
     double u[2], w[2]; /* the range */
-    vec3 c, A, B;
-    double e, ea, eb;
-    double box[2][3]; /* Q is in it */
+    vec3 c, A, B;      /* the parallelogram: its middle, and half its sides */
+    double e, ea, eb;  /* the errors, as above */
+    double box[2][3];  /* the least and the greatest coordinates of Q */
 } piece;
 
-/* The leaf over a range. */
+/* The piece over a range of (u,w), within the patch's own. */
 piece piece_of(const patch *q, int32_t part, const double u[2], const double w[2]);
 
-/* Its half, of two: `which` is 0 or 1; across the direction in which it is longer, or, where that
- * is not known, in which it has more of the sheet's range. */
+/* One of its two halves: `which` is 0 or 1. It is cut across the direction in which it is longer. Where no length is
+ * known, it is cut across the one in which it has the larger share of the patch's range. */
 piece piece_half(const patch *q, const piece *f, int which);
 
-/* How far from its middle it reaches at most. */
+/* All of the piece is within this distance of its middle c. */
 double piece_radius(const piece *f);
 
-/* A sheet as leaves. */
+/* A whole patch as pieces. */
 typedef struct pieces {
     int n;
-    piece *piece; /* owned */
-    vec3 centre;  /* all of Q is within `radius` of it */
-    double radius;
+    piece *piece;        /* owned */
+    double lo[3], hi[3]; /* the bounding box of all */
+    bvh_space space;     /* the sphere about that box: all of Q is in it */
 } pieces;
 
-/* flat: by how much, in radians or as a share, Qu and Qw may change within a leaf that is not very small. False: out of
- * memory, or Q has no bounds, when n is 0. pieces_free in either case. */
+/* Subdivide a patch, with several threads. flat: by how much, in radians or as a share, Qu and Qw may change within a
+ * piece that is not very small. False: out of memory, or Q has no bounds, when n is 0. pieces_free in either case. */
 bool pieces_of(const patch *q, double flat, pieces *out);
 void pieces_free(pieces *l);
 
-/* A ray against a leaf. The ray is r + s t, lo <= t <= hi. */
 typedef enum piece_answer {
-    PIECE_MISSED, /* it does not meet it: proved */
-    PIECE_ONCE,   /* once at the most, and Newton's iteration finds it: a and b are about where */
-    PIECE_OPEN,   /* not known */
+    PIECE_MISSED, /* proved: the ray does not meet the piece */
+    PIECE_ONCE,   /* proved: the ray meets it at most once, and Newton's iteration finds the root */
+    PIECE_OPEN,   /* neither is proved */
 } piece_answer;
 
+/* The ray r + s t with lo <= t <= hi against a piece. PIECE_ONCE: (*a, *b) is about where in the piece it is met, from
+ * -1 to 1; PIECE_OPEN: both are 0. */
 piece_answer piece_intersect(const piece *f, vec3 r, vec3 s, double lo, double hi, double *a, double *b);
 
 #endif

@@ -1,36 +1,44 @@
-/* The place of a sheet that is nearest to a place in space: Gauss and Newton's iteration on each leaf that is near, the
- * best of them taken. The places are on the sheet but for a rounding, so that the iteration converges as Newton's does.
+/* Projection: the point of a patch that is closest to a point in space. The Gauss-Newton iteration runs on each piece
+ * that is near, and the closest result counts. The points lie on the patch up to a rounding, so that the iteration
+ * converges as fast as Newton's.
  */
-#include "patch/surface.h"
+#include "patch/query.h"
 
 #include "base/real.h"
 
 #include <math.h>
 
-enum { STEPS = 16 };
+enum { STEPS = 16 }; /* of the iteration; three or four are usual */
 
-#define SETTLED 1e-9
-#define DAMPING 1e-14 /* where Qu or Qw is 0, as at the pole of a sphere, u or w stays as it is */
+#define CONVERGED 1e-9 /* a step, as a share of the piece's range: the next one is of double's rounding */
+#define DAMPING 1e-14  /* keeps u or w in place where Qu or Qw is 0, as at a sphere's pole; else it is below rounding  \
+                        */
+#define MARGIN 1e-6f   /* of the search in the hierarchy, in radii: more than float's rounding there */
+#define FARTHEST2 4    /* the square of the largest distance from the centre, in radii, that is looked up */
 
+/* Pairs of a point and a piece that wait to be solved, side by side. */
 typedef struct pairs {
     int n;
     int32_t lane[PATCH_BATCH], part[PATCH_BATCH];
-    double u[PATCH_BATCH], w[PATCH_BATCH], step[PATCH_BATCH];
-    double u0[PATCH_BATCH], u1[PATCH_BATCH], w0[PATCH_BATCH], w1[PATCH_BATCH];
-    double x[PATCH_BATCH], y[PATCH_BATCH], z[PATCH_BATCH], off[PATCH_BATCH];
+    double u[PATCH_BATCH], w[PATCH_BATCH];
+    double step[PATCH_BATCH]; /* the last one, as a share of the piece's range */
+    double u0[PATCH_BATCH], u1[PATCH_BATCH], w0[PATCH_BATCH], w1[PATCH_BATCH]; /* the range */
+    double x[PATCH_BATCH], y[PATCH_BATCH], z[PATCH_BATCH];
+    double off[PATCH_BATCH]; /* the squared distance of (x, y, z) to Q(u,w) */
 } pairs;
 
-typedef struct errand {
+/* The state of a projection that runs. */
+typedef struct search {
     const patch_surface *f;
-    const int32_t *only;
+    const int32_t *only; /* the part of each lane; NULL: any */
     projections *s;
-    double best[LANES]; /* how far off, squared */
-    int lane;
+    double best[LANES]; /* the least squared distance so far */
+    int lane;           /* whose point is in the hierarchy */
     pairs p;
-} errand;
+} search;
 
-/* One step within each range, and how far the place was off before it, squared. */
-STAGE static void settle_step(pairs *restrict p, const patch_jets *restrict q)
+/* One step for each pair, kept within its range, and the squared distance before it. */
+STAGE static void gauss_newton_step(pairs *restrict p, const patch_jets *restrict q)
 {
     for (int i = 0; i < p->n; i++) {
         const double ux = q->axis[0].u[i], uy = q->axis[1].u[i], uz = q->axis[2].u[i];
@@ -58,13 +66,13 @@ STAGE static void settle_step(pairs *restrict p, const patch_jets *restrict q)
 static bool any_open(const pairs *p)
 {
     for (int i = 0; i < p->n; i++)
-        if (p->step[i] > SETTLED)
+        if (p->step[i] > CONVERGED)
             return true;
     return false;
 }
 
-/* Of two that are as near, the lower: what the hierarchy's order was must not tell. */
-static bool better(const errand *e, int i, int lane)
+/* Of two that are as close, the lower part, u or w wins, so that the hierarchy's order does not matter. */
+static bool better(const search *e, int i, int lane)
 {
     const pairs *p = &e->p;
     const projections *s = e->s;
@@ -75,14 +83,14 @@ static bool better(const errand *e, int i, int lane)
     return p->u[i] != s->u[lane] ? p->u[i] < s->u[lane] : p->w[i] < s->w[lane];
 }
 
-static void solve(errand *e)
+static void solve(search *e)
 {
     const patch *q = e->f->q;
     pairs *p = &e->p;
     patch_jets j;
     for (int step = 0; step < STEPS && any_open(p); step++) {
         q->ops->eval(q, p->n, p->part, p->u, p->w, 1, &j);
-        settle_step(p, &j);
+        gauss_newton_step(p, &j);
     }
     for (int i = 0; i < p->n; i++) {
         const int lane = p->lane[i];
@@ -98,7 +106,7 @@ static void solve(errand *e)
 
 static void visit(void *user, int32_t index)
 {
-    errand *e = user;
+    search *e = user;
     const piece *f = &e->f->l.piece[index];
     const int lane = e->lane;
     const vec3 at = e->s->place[lane], d = vec3_sub(at, f->c);
@@ -124,7 +132,7 @@ static void visit(void *user, int32_t index)
 
 void patch_project(const patch_surface *f, int n, const int32_t *only, projections *s)
 {
-    errand e;
+    search e;
     e.f = f;
     e.only = only;
     e.s = s;
@@ -134,11 +142,11 @@ void patch_project(const patch_surface *f, int n, const int32_t *only, projectio
         s->part[i] = only ? only[i] : 0;
         s->u[i] = 0.5 * (f->q->u[0] + f->q->u[1]);
         s->w[i] = 0.5 * (f->q->w[0] + f->q->w[1]);
-        const vec3 at = vec3_scale(vec3_sub(s->place[i], f->l.centre), 1 / f->l.radius);
+        const vec3 at = vec3_scale(vec3_sub(s->place[i], f->l.space.centre), 1 / f->l.space.radius);
         const float p[3] = {(float)at.x, (float)at.y, (float)at.z};
         e.lane = i;
-        if (vec3_dot(at, at) < 4) /* what is nowhere near, or NaN, has no place there */
-            bvh_around(f->tree, p, (float)(s->off[i] / f->l.radius) + 1e-6f, visit, &e);
+        if (vec3_dot(at, at) < FARTHEST2) /* false for NaN, too */
+            bvh_around(f->tree, p, (float)(s->off[i] / f->l.space.radius) + MARGIN, visit, &e);
     }
     solve(&e);
 }

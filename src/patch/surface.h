@@ -1,5 +1,4 @@
-/* What the files of searched surfaces share: a sheet in leaves, and which of them a ray may meet. Private to
- * searched*.c. */
+/* A patch as a surface: the patch in pieces, and a hierarchy over them. */
 #ifndef KAGE_PATCH_SURFACE_H
 #define KAGE_PATCH_SURFACE_H
 
@@ -9,11 +8,11 @@
 
 typedef struct patch_surface {
     surface base;
-    surface_ops *methods; /* its own, as `parts` is */
-    patch *q;
+    surface_ops *methods; /* owned: `kind` and `parts` are the patch's */
+    patch *q;             /* owned */
     pieces l;
-    bvh *tree;   /* over the leaves; its unit is the sheet's radius, its origin the sheet's centre */
-    bool broken; /* it may jump, or turn at once: then nothing is proved of some pieces, however small */
+    bvh *tree;   /* over the pieces, in l.space */
+    bool broken; /* Q or its normal may jump: nothing can be proved of pieces there, however small they are */
     struct displaced_form *rough; /* its rough surfaces so far */
 } patch_surface;
 
@@ -25,7 +24,17 @@ struct displaced_form {
     displaced_form *next;
 };
 
-/* As patch_surface_new, with leaves as flat as that. */
+/* Q(u,w) from its points alone (patch.h): three expressions, or Bezier patches, each a part. n = Qu x Qw is outward by
+ * definition. Owns q, also on failure. NULL where Q has no bounds over its range, or is all in one place (then only: or
+ * out of memory). */
+surface *patch_surface_new(patch *q);
+
+/* The image of such a surface by an affine map, in pieces of its own: what surface_transformed makes of it has no true
+ * displacement. `from` must outlive it; as there, where the map mirrors u runs the other way. NULL: as
+ * patch_surface_new. */
+surface *patch_surface_affine(const surface *from, const affine *m);
+
+/* As patch_surface_new, with pieces as flat as that (pieces_of). */
 patch_surface *patch_surface_make(patch *q, double flat);
 
 void patch_surface_free_displaced(displaced_form *first);
@@ -33,50 +42,22 @@ void patch_surface_free_displaced(displaced_form *first);
 /* For true displacement. */
 extern const struct displaced_ops patch_surface_displaced;
 
-/* The rays that are searched, each from the place of it that is nearest to the sheet's centre on, so that no digit is
- * lost to a far eye: r + s (t - start) is where the ray is at t. */
-typedef struct patch_query {
-    const patch_surface *f;
-    vec3 r[LANES], s[LANES];
-    double start[LANES];
-    double from[LANES],
-        to[LANES]; /* the roots that count are between these, as t - start; `to` becomes the first one found */
-    bool found[LANES], unsure[LANES]; /* unsure: that it is the first one is not proved */
-    bool any;                         /* any root will do */
-    long evaluations;                 /* how often the sheet was evaluated */
-} patch_query;
-
-/* An empty one. */
-void patch_query_begin(patch_query *k, const patch_surface *f, bool any);
-
-/* The surface's methods, with what they have counted. looks: as above; unsure: hits. */
+/* Counts of work: evaluations of the patch, and hits that are not proved to be the first. */
 typedef struct patch_counts {
     long evaluations, unsure;
 } patch_counts;
 
+/* The methods of a patch surface that count: work is added to *c. */
 void patch_surface_intersect(const patch_surface *f, int n, const rays *x, int32_t id, hits *h, patch_counts *c);
 void patch_surface_intersect_own(const patch_surface *f, int n, const rays *x, const ray_origins *from, int32_t id,
                                  hits *h, patch_counts *c);
 void patch_surface_occlude(const patch_surface *f, int n, const rays *x, real *lit, patch_counts *c);
-/* part: NULL: on any */
+/* part: of each start; NULL: any part. */
 void patch_surface_occlude_own(const patch_surface *f, int n, const rays *x, const int32_t *part, real *lit,
                                patch_counts *c);
 
-/* Put ray i into the quest: r + s t, from < t < to. */
-void patch_query_add(patch_query *k, int i, vec3 r, vec3 s, double from, double to);
-
-/* Find the first root of each of n rays. */
-void patch_query_run(patch_query *k, int n);
-
-/* Places that are on the surface but for `off`, and where on it each is: the nearest place. */
-typedef struct projections {
-    vec3 place[LANES];
-    double off[LANES];
-    int32_t part[LANES];
-    double u[LANES], w[LANES];
-} projections;
-
-/* Find part, u and w of n places. only: on this part alone; NULL: on any. */
-void patch_project(const patch_surface *f, int n, const int32_t *only, projections *s);
+/* In partials.c: as the member of surface_ops. */
+void patch_surface_eval(const surface *base, int n, const int32_t *part, const real *u, const real *w, int order,
+                        partials *q);
 
 #endif

@@ -6,6 +6,7 @@
 
 #include "base/frame.h"
 
+#include <stdio.h>
 #include <string.h>
 
 #define PI 3.14159265358979323846

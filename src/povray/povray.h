@@ -11,8 +11,8 @@ typedef struct pov_options {
 
 /* What the writer has to say besides. */
 typedef struct pov_report {
-    const char *coarse; /* the first object whose mesh had to be coarser than it should; NULL: none */
-    double pixels;      /* the side of its facets on the screen */
+    const char *coarse;    /* the object whose mesh is the worst of those that had to be coarse; NULL: none */
+    double height, pixels; /* what its heights are off at most: in scene units, on the screen */
 } pov_report;
 
 /* Whether POV-Ray has all that is in the scene. */

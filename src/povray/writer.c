@@ -4,6 +4,7 @@
 
 #include "base/frame.h"
 
+#include <stdio.h>
 #include <string.h>
 
 pov_identifier pov_identify(const char *kind, const char *name, int index)

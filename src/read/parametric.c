@@ -2,7 +2,7 @@
 #include "read/reader.h"
 
 #include "read/patch_file.h"
-#include "patch/patch.h"
+#include "patch/surface.h"
 
 #include <errno.h>
 #include <stdio.h>

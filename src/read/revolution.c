@@ -3,7 +3,7 @@
  */
 #include "base/frame.h"
 #include "read/reader.h"
-#include "patch/patch.h"
+#include "patch/surface.h"
 
 #include <stdio.h>
 

@@ -1,6 +1,7 @@
 /* The scene reader's transforms, as POV-Ray has them: one step after the other, about the scene's origin and axes. */
 #include "math/kmath.h"
 #include "mesh/mesh.h"
+#include "patch/surface.h"
 #include "read/reader.h"
 
 #define STRETCH 1e4 /* one way more than another: float has 7 digits, and needs some for itself */

@@ -77,7 +77,8 @@ static void function_free(bump *base)
     free(base);
 }
 
-static const bump_ops function_methods = {"function", function_eval, function_jets, function_bound, function_free};
+static const bump_ops function_methods = {
+    .kind = "function", .eval = function_eval, .jets = function_jets, .bound = function_bound, .free = function_free};
 
 static double widest(const double range[2], double so_far)
 {

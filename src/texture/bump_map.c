@@ -154,7 +154,8 @@ static void map_free(bump *base)
     free(m);
 }
 
-static const bump_ops map_methods = {"map", map_eval, map_jets, map_bound, map_free};
+static const bump_ops map_methods = {
+    .kind = "map", .eval = map_eval, .jets = map_jets, .bound = map_bound, .free = map_free};
 
 /* The tables. ku, kw: samples per u and per w, for the chain rule. */
 static void map_differences(map *m, const image *s, const map_layout *l, double ku, double kw)

@@ -23,14 +23,7 @@ STAGE static void checker_eval(const color_texture *base, int n, const real *res
     }
 }
 
-static const color_texture_ops checker_methods = {"checker", checker_eval, NULL};
-
-static void store(real to[3], vec3 v)
-{
-    to[0] = (real)v.x;
-    to[1] = (real)v.y;
-    to[2] = (real)v.z;
-}
+static const color_texture_ops checker_methods = {.kind = "checker", .eval = checker_eval};
 
 color_texture *color_checker_new(const vec3 color[2], const double size[2], const double offset[2])
 {
@@ -38,8 +31,8 @@ color_texture *color_checker_new(const vec3 color[2], const double size[2], cons
     if (!c)
         return NULL;
     c->base.ops = &checker_methods;
-    store(c->even, color[0]);
-    store(c->odd, color[1]);
+    vec3_round(c->even, color[0]);
+    vec3_round(c->odd, color[1]);
     c->ku = (real)(1 / size[0]);
     c->kw = (real)(1 / size[1]);
     c->ou = (real)(-offset[0] / size[0]);
@@ -111,8 +104,8 @@ static void nearest_eval(const color_texture *base, int n, const real *u, const 
     table_three(&p->grid, p->texels->v, n, at, a, b, color->x, color->y, color->z);
 }
 
-static const color_texture_ops bilinear_methods = {"image", bilinear_eval, NULL},
-                               nearest_methods = {"image", nearest_eval, NULL};
+static const color_texture_ops bilinear_methods = {.kind = "image", .eval = bilinear_eval};
+static const color_texture_ops nearest_methods = {.kind = "image", .eval = nearest_eval};
 
 color_texture *color_image_new(const texels *t, const map_layout *l, bool nearest)
 {

@@ -9,6 +9,7 @@
 #include <stdint.h>
 
 #include "base/real.h"
+#include "base/vec3.h"
 
 enum { LANES = 128 }; /* a tile of 16 x 8 pixels; all that one wave touches stays in a first-level cache */
 
@@ -23,6 +24,27 @@ static inline void vec3s_fill(vec3s *v, int n, real x, real y, real z)
         v->y[i] = y;
         v->z[i] = z;
     }
+}
+
+/* One lane as a vector in double, and back. */
+static inline vec3 vec3s_get(const vec3s *v, int i)
+{
+    return (vec3){(double)v->x[i], (double)v->y[i], (double)v->z[i]};
+}
+
+static inline void vec3s_set(vec3s *v, int i, vec3 x)
+{
+    v->x[i] = (real)x.x;
+    v->y[i] = (real)x.y;
+    v->z[i] = (real)x.z;
+}
+
+/* A vector that is the same for all lanes, rounded to `real`. */
+static inline void vec3_round(real to[3], vec3 v)
+{
+    to[0] = (real)v.x;
+    to[1] = (real)v.y;
+    to[2] = (real)v.z;
 }
 
 /* The rays r + s t. s need not be a unit vector. */

@@ -81,35 +81,6 @@ static char *read_all(const char *path, const char *from, size_t *size, errors *
 
 /* ---- the document ---- */
 
-/* libfyaml's words where they leave a person wondering. */
-static const char *reworded(const char *message)
-{
-    static const char *const words[][2] = {
-        {"invalid tab as indendation in a mapping", "a tab as indentation, expected spaces"},
-        {"did not find expected node content", "no value here, expected one, or the bracket that closes"},
-        {"could not find expected ':'", "a line without ':', expected 'key: value'"},
-        {"Max depth (64) exceeded", "nested too deep, expected at most 64 levels"},
-        {"flow sequence without a closing bracket", "a list that is not closed, expected ']'"},
-        {"flow mapping without a closing brace", "a map that is not closed, expected '}'"},
-    };
-    for (size_t k = 0; k < sizeof words / sizeof *words; k++)
-        if (strcmp(message, words[k][0]) == 0)
-            return words[k][1];
-    return message;
-}
-
-bool yaml_syntax_errors(yaml *y, const origin *o)
-{
-    struct fy_diag_error *k;
-    bool told = false;
-    while ((k = yaml_report(y)))
-        if (k->line >= 1 && !told) {
-            yaml_tell(y, o, k->line, k->column, reworded(k->msg));
-            told = true;
-        }
-    return told ? false : yaml_tell(y, o, 1, 1, o ? "no value here" : "no scene here, only comments");
-}
-
 static struct fy_diag *new_diag(void)
 {
     struct fy_diag_cfg cfg;

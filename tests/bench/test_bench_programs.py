@@ -7,6 +7,8 @@ import platform
 import shutil
 import sys
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -14,7 +16,7 @@ from conftest import PROGRAM, TOP
 from PIL import Image
 
 
-from bench import programs  # noqa: E402
+from bench import cost, programs  # noqa: E402
 
 needs_povray = pytest.mark.skipif(not shutil.which("povray"), reason="no povray")
 
@@ -146,6 +148,17 @@ def test_peak_memory_is_the_commands_own() -> None:
         programs.peak_memory(["sh", "-c", "exit 1"])
 
 
+@pytest.mark.skipif(not shutil.which("valgrind"), reason="no valgrind")
+def test_instructions_do_not_depend_on_the_environment(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """A longer environment moves the stack, and memset takes other steps by the place of an array."""
+    command = [PROGRAM, "render", "scenes/waves.yaml", "--shadow", "exact", "--size", "16x16", "--threads", "1", "--quiet"]
+    counts = set()
+    for length in (0, 16, 32, 48):
+        monkeypatch.setenv("LONG", "x" * length)
+        counts.add(programs.count_instructions([*command, "-o", tmp_path / "a.png"]))
+    assert len(counts) == 1
+
+
 @pytest.mark.skipif(not hasattr(os, "sched_getaffinity"), reason="this system pins no process")
 def test_pinned() -> None:
     before = os.sched_getaffinity(0)
@@ -183,3 +196,14 @@ def test_height_field_is_the_displaced_surface(tmp_path: Path) -> None:
     difference = np.abs(a - b).max(axis=2)
     assert difference.mean() < 1  # of 255
     assert np.mean(difference > 30) < 0.005
+
+
+def test_a_coarse_mesh_is_not_measured(tmp_path: Path) -> None:
+    """POV-Ray would show another surface than the scene's."""
+    kage, made = tmp_path / "kage", tmp_path / "out" / "a.pov"
+    kage.write_text(f"#!/bin/sh\ntouch {made}\necho 'kage: object ground: coarse mesh: heights are off by up to 0.1, 9 pixels' >&2\n")
+    kage.chmod(0o755)
+    bench, scene = SimpleNamespace(kage=kage), SimpleNamespace(name="cube", file=Path("cube.yaml"))
+    with pytest.raises(programs.MeasureError, match="cube: POV-Ray would show another surface: .*coarse mesh"):
+        cost.export(cast("Any", bench), cast("Any", scene), (4, 3), True, made)
+    assert not made.exists()

@@ -15,7 +15,7 @@ import models
 import numpy as np
 import OpenEXR
 import pytest
-from conftest import PROGRAM, SCENE, TOP, Kage
+from conftest import PROGRAM, SCENE, TOP, Kage, start
 from PIL import Image
 
 DATA = TOP / "tests" / "data"
@@ -442,7 +442,7 @@ def test_full_disk(kage: Kage, ending: str) -> None:
 def test_interrupt_leaves_no_half_file(kage: Kage, wait: float) -> None:
     """Ctrl-C at several times, some of them while files are written."""
     command = [PROGRAM, "render", CUBE, "--size", "1600x1200", "-o", "a.exr", "-o", "b.png", "-o", "c.exr", "-o", "d.png"]
-    process = subprocess.Popen(command, cwd=kage.folder, stderr=subprocess.PIPE)
+    process = start(command, cwd=kage.folder, stderr=subprocess.PIPE)
     time.sleep(wait)
     process.send_signal(signal.SIGINT)
     process.communicate(timeout=60)

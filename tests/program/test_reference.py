@@ -19,11 +19,9 @@ from types import ModuleType
 
 import numpy as np
 import pytest
-from conftest import PROGRAM, TOP
+import references
+from conftest import PROGRAM, TOP, start
 from PIL import Image
-
-
-import references  # noqa: E402
 
 RENDER = TOP / "reference" / "render.py"
 
@@ -256,6 +254,17 @@ def test_failures(studio: Studio, mode: str, capsys: pytest.CaptureFixture[str])
     assert studio.files() == before
 
 
+def test_a_coarse_mesh_is_no_truth(studio: Studio, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """kage writes a file all the same, and says so on stderr alone."""
+    kage = tmp_path / "kage"
+    kage.write_text(f'#!/bin/sh\n{PROGRAM} "$@" || exit\n'
+                    '[ "$1" != pov ] || echo "kage: object ground: coarse mesh: heights are off by up to 0.1, 9 pixels" >&2\n')
+    kage.chmod(0o755)
+    assert studio.make("good", "--kage", str(kage)) == 1
+    assert "no truth comes of it: kage: object ground: coarse mesh" in capsys.readouterr().err
+    assert not studio.files() and not list(render.WORK.glob("*.pov"))
+
+
 def test_old_picture_does_not_pass_for_a_new_one(studio: Studio) -> None:
     studio.make("good")
     assert studio.make("nothing", "--all") == 1
@@ -306,8 +315,8 @@ def runs(pid: int) -> bool:
 def test_interrupted(studio: Studio, how: signal.Signals) -> None:
     """POV-Ray ends with the program, and nothing is left."""
     env = os.environ | {"FAKE_POVRAY": "sleeps"}
-    process = subprocess.Popen([sys.executable, RENDER, *studio.arguments()], env=env, stdout=subprocess.PIPE,
-                               stderr=subprocess.PIPE, text=True)
+    process = start([sys.executable, RENDER, *studio.arguments()], env=env, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                    text=True)
     pid = studio.log.with_name("pid")
     for _ in range(300):
         if pid.exists() and pid.read_text():

@@ -18,7 +18,7 @@
 #include "displaced/offset.h"
 #include "read/patch_file.h"
 #include "support/random_rays.h"
-#include "patch/patch.h"
+#include "patch/surface.h"
 #include "geometry/surface.h"
 
 #ifdef KAGE_DOUBLE

@@ -1,0 +1,12 @@
+/* What all surfaces share: how one ends. */
+#include "geometry/surface.h"
+
+#include <stdlib.h>
+
+void surface_free(surface *f)
+{
+    if (f && f->free)
+        f->free(f);
+    else
+        free(f);
+}

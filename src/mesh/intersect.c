@@ -1,0 +1,164 @@
+/* Rays against a mesh: hits and shadows. A ray against a triangle is Woop, Benthin and Wald's test of 2013, in double:
+ * the ray becomes an axis, and the sign of a sum says on which side of it each edge is. Two triangles that share an
+ * edge compute the same sum with opposite signs, so that no ray passes between them. Embree's hierarchy (bvh.h) names
+ * the triangles to try; of hits at one place the triangle of the lowest index counts, so that their order does not.
+ */
+#include "mesh/mesh.h"
+
+#define MARGIN 4e-6f /* of where a ray ends in the tree's units, against float, as the boxes have it */
+
+/* ---- a ray and a triangle ---- */
+
+/* A ray as an axis: coordinate `z` is the one along which it goes most, and the others are sheared so that it goes
+ * along that alone. */
+typedef struct shear {
+    int x, y, z;
+    double r[3], sx, sy, sz;
+} shear;
+
+static shear shear_of(vec3 r, vec3 s)
+{
+    const double S[3] = {s.x, s.y, s.z};
+    shear k = {.r = {r.x, r.y, r.z}};
+    k.z = fabs(s.x) > fabs(s.y) ? (fabs(s.x) > fabs(s.z) ? 0 : 2) : (fabs(s.y) > fabs(s.z) ? 1 : 2);
+    k.x = (k.z + 1) % 3;
+    k.y = (k.z + 2) % 3;
+    k.sz = 1 / S[k.z];
+    k.sx = S[k.x] * k.sz;
+    k.sy = S[k.y] * k.sz;
+    return k;
+}
+
+static bool meets(const float at[3][3], const shear *k, double *t)
+{
+    double x[3], y[3], z[3];
+    for (int i = 0; i < 3; i++) {
+        z[i] = (double)at[i][k->z] - k->r[k->z];
+        x[i] = (double)at[i][k->x] - k->r[k->x] - k->sx * z[i];
+        y[i] = (double)at[i][k->y] - k->r[k->y] - k->sy * z[i];
+    }
+    const double U = x[2] * y[1] - y[2] * x[1], V = x[0] * y[2] - y[0] * x[2], W = x[1] * y[0] - y[1] * x[0],
+                 all = U + V + W;
+    if (((U < 0) | (V < 0) | (W < 0)) & ((U > 0) | (V > 0) | (W > 0)))
+        return false;
+    *t = (U * z[0] + V * z[1] + W * z[2]) * k->sz / all;
+    return all != 0;
+}
+
+/* ---- walks ---- */
+
+/* A ray on its way through the tree. Hits are looked for in from < t < to; `to` becomes that of the first one. */
+typedef struct mesh_query {
+    const mesh *f;
+    shear k;
+    int32_t but, index; /* a triangle that does not count; the one that was met, -1: none */
+    double from, to;
+    double enter, unit; /* t where the ray in the tree begins, and how long it is there for one of t */
+    bool any;           /* whichever hit comes first will do */
+} mesh_query;
+
+static float visit(void *user, int32_t index, float end)
+{
+    mesh_query *q = user;
+    double t;
+    if (index == q->but || !meets((const float(*)[3])q->f->d.at[index], &q->k, &t) || !(t > q->from))
+        return end;
+    if (!(t < q->to || (t == q->to && q->index >= 0 && index < q->index)))
+        return end;
+    q->to = t;
+    q->index = index;
+    if (q->any)
+        return -1;
+    const float now = (float)((t - q->enter) * q->unit) * (1 + 1e-6f) + MARGIN;
+    return now < end ? now : end;
+}
+
+/* The first hit of r + s t in from < t < to, but for one triangle; in q->to and q->index. */
+static void seek(mesh_query *q, vec3 r, vec3 s, double from, double to, int32_t but)
+{
+    float at[3], way[3], end;
+    double enter = from > 0 ? from : 0, leave = to;
+    q->but = but;
+    q->index = -1;
+    q->from = from;
+    q->to = to;
+    if (!(from < to) || !bvh_enter(&q->f->space, q->f->space.radius, r, s, &enter, &leave, at, way, &end))
+        return;
+    q->k = shear_of(r, s);
+    q->enter = enter;
+    q->unit = vec3_length(s) / q->f->space.radius;
+    bvh_toward(q->f->tree, at, way, end, visit, q);
+}
+
+static void take(const mesh_query *q, int i, int32_t id, hits *h)
+{
+    const real t = (real)q->to;
+    if (q->index >= 0 && t > 0 && t < h->t[i]) {
+        h->t[i] = t;
+        h->id[i] = id;
+        h->part[i] = q->index;
+    }
+}
+
+void mesh_hit(const surface *base, int n, const rays *x, int32_t id, hits *h)
+{
+    mesh_query q = {.f = (const mesh *)base};
+    for (int i = 0; i < n; i++) {
+        seek(&q, vec3s_get(&x->r, i), vec3s_get(&x->s, i), 0, (double)h->t[i], -1);
+        take(&q, i, id, h);
+    }
+}
+
+void mesh_occlude(const surface *base, int n, const rays *x, real *lit)
+{
+    mesh_query q = {.f = (const mesh *)base, .any = true};
+    for (int i = 0; i < n; i++) {
+        seek(&q, vec3s_get(&x->r, i), vec3s_get(&x->s, i), 0, lit[i] > 0 ? 1 : -1, -1);
+        lit[i] = q.index >= 0 ? 0 : lit[i];
+    }
+}
+
+/* ---- rays from the mesh itself ---- */
+
+/* Where on its triangle a ray starts, as double has it: the triangle itself is left out by its index, and a neighbour
+ * at whose edge that is by `beyond`, where other hits begin: double's error over the sine of the ray's angle to it,
+ * down to 1e-4. */
+static vec3 departure(const mesh *f, int32_t index, vec3 at, vec3 s, double *beyond)
+{
+    const mesh_triangle x = mesh_triangle_of(f, index);
+    double b, c;
+    mesh_foot_shares(&x, at, &b, &c);
+    mesh_keep_inside(&b, &c);
+    const vec3 from = mesh_mix(x.at, b, c);
+    *beyond = 1e-12 * (vec3_length(from) + f->space.radius) / vec3_length(s);
+    return from;
+}
+
+void mesh_hit_own(const surface *base, int n, const rays *x, const ray_origins *from, int32_t id, hits *h)
+{
+    mesh_query q = {.f = (const mesh *)base};
+    for (int i = 0; i < n; i++) {
+        const bool own = from->id[i] == id;
+        vec3 r = vec3s_get(&x->r, i);
+        const vec3 s = vec3s_get(&x->s, i);
+        double beyond = 0;
+        if (own)
+            r = departure(q.f, from->part[i], vec3s_get(&from->at, i), s, &beyond);
+        seek(&q, r, s, beyond, (double)h->t[i], own ? from->part[i] : -1);
+        take(&q, i, id, h);
+    }
+}
+
+void mesh_occlude_own(const surface *base, int n, const rays *x, const int32_t *part, real *lit)
+{
+    mesh_query q = {.f = (const mesh *)base, .any = true};
+    for (int i = 0; i < n; i++) {
+        if (!(lit[i] > 0))
+            continue;
+        double beyond;
+        const vec3 r = vec3s_get(&x->r, i), to = vec3_add(r, vec3s_get(&x->s, i)),
+                   from = departure(q.f, part[i], r, vec3s_get(&x->s, i), &beyond);
+        seek(&q, from, vec3_sub(to, from), beyond, 1, part[i]);
+        lit[i] = q.index >= 0 ? 0 : lit[i];
+    }
+}
