@@ -204,6 +204,9 @@ $(UNITS:%=$(BUILD)/%): $(BUILD)/%: $(BUILD)/%.o $(BUILD)/internal.a
 	@echo '  LD  $@'
 	$(Q)$(CC) $(LDFLAGS) -o $@ $^ -lcmocka $(LIBS)
 
+# A test in which memory runs out: our own objects ask its functions.
+$(BUILD)/unit/api/test_memory: override LDFLAGS += $(foreach f,malloc calloc realloc posix_memalign strdup free,-Wl$(comma)--wrap=$(f))
+
 # ---- tests ----
 
 # The units in C, in float and in double; then the program and the scripts, in Python.
