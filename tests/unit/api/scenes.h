@@ -35,7 +35,7 @@
     HEAD "  ball:\n"                                                                                                   \
          "    sphere: {center: [0, 0, 0], radius: 1.4}\n"                                                              \
          "    material: clay\n"                                                                                        \
-         "    bump: {map: {file: bumps.png}, repeat: [2, 1], scale: 0.1, zero: 0.5}\n"
+         "    bump: {map: {file: bumps.png}, repeat: [2, 1], scale: 0.1, zero: 0.5, sign: up}\n"
 
 #define PARAMETRIC                                                                                                     \
     HEAD "  dome:\n"                                                                                                   \
