@@ -243,7 +243,7 @@ reference: all
 
 accept: all
 	@CC='$(CC)' scripts/bootstrap python
-	@KAGE=$(BUILD)/kage scripts/venv python tests/regression/accept.py
+	@KAGE=$(BUILD)/kage scripts/venv python -m tests.regression.accept
 
 # LIBDIR, LIBEXEC: of the library, and of kage-import, where they are not in PREFIX/lib and PREFIX/libexec/kage.
 install: all $(BUILD)/kage.pc

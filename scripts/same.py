@@ -1,11 +1,12 @@
-"""Compare kage with itself at another commit: are all pictures the same, byte by byte, and does it take as many instructions?
+"""Compare kage with itself at another commit: are all pictures the same, byte by byte, and does it take as many
+instructions?
 
-    scripts/venv python scripts/same.py REVISION [--real float|double] [--only TEXT] [--instructions]
+    scripts/venv python -m scripts.same REVISION [--real float|double] [--only TEXT] [--instructions]
 
-Both programs are built, each from its own sources, in build/same/. They render the pictures of `make render`, of the gallery,
-of the regression tests and of a normal bench's quality table, and write the exports to POV-Ray, from this tree's scenes.
-With --instructions, valgrind counts what a pixel of figure 5's scene costs by each method: the difference of two sizes, so
-that the start of the program and of its libraries does not count.
+Both programs are built, each from its own sources, in build/same/. They render the pictures of `make render`, of the
+gallery, of the regression tests and of a normal bench's quality table, and write the exports to POV-Ray, from this
+tree's scenes. With --instructions, valgrind counts what a pixel of figure 5's scene costs by each method: the
+difference of two sizes, so that the start of the program and of its libraries does not count.
 
 Exit status: 0 all alike (instructions within 1 %), 1 something differs, 2 wrong usage.
 """
@@ -22,10 +23,9 @@ import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
-TOP = Path(__file__).resolve().parent.parent
-sys.path[:0] = [str(TOP), str(TOP / "tests"), str(TOP / "tests" / "support"), str(TOP / "tests" / "regression")]
+from bench import plan
 
-from bench import plan  # noqa: E402
+TOP = Path(__file__).resolve().parent.parent
 
 SMALL, LARGE = (160, 120), (320, 240)
 WITHIN = 0.01  # of the instructions
@@ -41,7 +41,8 @@ def options(method: str) -> tuple[str, ...]:
 
 def commands() -> Commands:
     """Names, and the words after `kage`; {} is the output without its ending."""
-    figures = [("cube", m) for m in "none 0 1 2".split()] + [(s, m) for s in ("sphere", "terrain") for m in ("none", "0")]
+    figures = [("cube", m) for m in "none 0 1 2".split()] + [(s, m) for s in ("sphere", "terrain")
+                                                             for m in ("none", "0")]
     both = ("-o", "{}.png", "-o", "{}.exr")
     found = [(f"render {s} {m}", ("render", f"scenes/{s}.yaml", "--shadow", m, "--aa", "3", *both)) for s, m in figures]
     for scene in sorted((TOP / "scenes" / "gallery").glob("*.yaml")):
@@ -56,7 +57,8 @@ def commands() -> Commands:
                       (f"regression {scene} {method}", ("render", name, *options(method), "--size", "128x96", *both))]
         found += [(f"cast {scene}", ("render", name, "--surface", "displaced", "--no-self-shadow", *both)),
                   (f"pov {scene}", ("pov", name, "-o", "{}.pov")),
-                  (f"pov {scene} displaced", ("pov", name, "--surface", "displaced", "--size", "64x48", "-o", "{}.pov"))]
+                  (f"pov {scene} displaced",
+                   ("pov", name, "--surface", "displaced", "--size", "64x48", "-o", "{}.pov"))]
     for scene in sorted((TOP / "tests" / "regression").glob("*.yaml")):
         found += [(f"regression {scene.stem}", ("render", f"tests/regression/{scene.name}", "--size", "80x60", *both))]
     return [(name, (*words, "--quiet") if words[0] == "render" else words) for name, words in found]
@@ -67,7 +69,8 @@ def build(revision: str | None, real: str) -> Path:
     if revision is None:
         tree, target = TOP, f"build/{real}"
     else:
-        commit = subprocess.run(["git", "rev-parse", "--verify", revision + "^{commit}"], cwd=TOP, check=True, capture_output=True,
+        commit = subprocess.run(["git", "rev-parse", "--verify", revision + "^{commit}"], cwd=TOP, check=True,
+                                capture_output=True,
                                 text=True).stdout.strip()
         tree, target = TOP / "build" / "same" / commit[:12], f"build/{real}"
         if not tree.exists():
@@ -105,8 +108,10 @@ def instructions(program: Path, method: str) -> float:
     for width, height in (SMALL, LARGE):
         with tempfile.TemporaryDirectory() as folder:
             done = subprocess.run(
-                ["valgrind", "--tool=callgrind", f"--callgrind-out-file={folder}/out", program, "render", "scenes/cube.yaml",
-                 *options(method), "--size", f"{width}x{height}", "--threads", "1", "--quiet", "-o", f"{folder}/cube.png"],
+                ["valgrind", "--tool=callgrind", f"--callgrind-out-file={folder}/out", program, "render",
+                 "scenes/cube.yaml",
+                 *options(method), "--size", f"{width}x{height}", "--threads", "1", "--quiet", "-o",
+                 f"{folder}/cube.png"],
                 cwd=TOP, check=True, capture_output=True, text=True)
         counts.append(int(re.search(r"Collected : (\d+)", done.stderr)[1]))  # type: ignore[index]
     return (counts[1] - counts[0]) / (LARGE[0] * LARGE[1] - SMALL[0] * SMALL[1])
@@ -127,7 +132,8 @@ def main() -> int:
     parser.add_argument("--real", choices=("float", "double"), default="float")
     parser.add_argument("--only", default="", metavar="TEXT", help="only the names that hold this text")
     parser.add_argument("--instructions", action="store_true")
-    parser.add_argument("--old", type=Path, metavar="PROGRAM", help="a build of that commit, which is then not built again")
+    parser.add_argument("--old", type=Path, metavar="PROGRAM",
+                        help="a build of that commit, which is then not built again")
     asked = parser.parse_args()
     old, new = asked.old or build(asked.revision, asked.real), build(None, asked.real)
     if asked.instructions:

@@ -23,7 +23,8 @@ PROGRAM = Path(os.environ.get("KAGE", TOP / "build" / "float" / "kage")).resolve
 needs_povray = pytest.mark.skipif(not shutil.which("povray") and not os.environ.get("CI"), reason="no povray")
 
 #: The files that take longest, which begin first, so that two workers end together.
-LONG = ("test_parity.py", "test_bench_run.py", "test_images.py", "test_regression.py", "test_input.py", "test_mesh.py", "test_pov.py")
+LONG = ("test_parity.py", "test_bench_run.py", "test_images.py", "test_regression.py", "test_input.py", "test_mesh.py",
+        "test_pov.py")
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
@@ -74,7 +75,8 @@ class Kage:
     folder: Path
     environment: dict[str, str] = field(default_factory=lambda: dict(os.environ))
 
-    def __call__(self, *arguments: object, cwd: Path | None = None, timeout: float = 120) -> subprocess.CompletedProcess[str]:
+    def __call__(self, *arguments: object, cwd: Path | None = None,
+                 timeout: float = 120) -> subprocess.CompletedProcess[str]:
         return subprocess.run(
             [str(PROGRAM), *map(str, arguments)],
             cwd=cwd or self.folder,

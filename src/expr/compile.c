@@ -1,4 +1,5 @@
-#include "expr/compile.h"
+/* From operations to a program: slots, which parts of a result can differ from 0, constants folded. */
+#include "expr/operation.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -32,34 +33,19 @@ static int cross(int i, int j)
     return has;
 }
 
-/* The parts of a result that can differ from 0. */
-static int parts_of(enum expr_op op, const uint8_t *has)
+/* The parts of a result that can differ from 0: those of the operands, and where f_ij is not 0 for two operands, those
+ * of products of their first partials. */
+static int parts_of(const expr_op *op, const uint8_t *has)
 {
-    int a = has[0], b = has[1], c = has[2];
-    switch (op) {
-    case OP_CONST:
-    case OP_FLOOR:
-        return HAS_V;
-    case OP_ADDK:
-    case OP_MULK:
-    case OP_ABS:
-        return a;
-    case OP_ADD:
-    case OP_SUB:
-    case OP_MOD:
-    case OP_MIN:
-    case OP_MAX:
-        return a | b;
-    case OP_MUL:
-        return a | b | cross(a, b);
-    case OP_DIV:
-        return a | b | cross(a, b) | cross(b, b);
-    case OP_SELECT:
-    case OP_SELECT4: /* has[3] is 0 where there is no fourth */
-        return b | c | has[3];
-    default: /* curved in every direction */
-        return a | b | cross(a | b, a | b);
-    }
+    int z = HAS_V;
+    if (op->steps)
+        return z;
+    for (int k = op->deciding; k < op->operands; k++)
+        z |= has[k];
+    for (int m = 0; m < EXPR_PAIRS; m++)
+        if (op->curved >> m & 1)
+            z |= cross(has[expr_pairs[m].i], has[expr_pairs[m].j]);
+    return z;
 }
 
 static int new_slot(emitter *e)
@@ -73,13 +59,13 @@ static int new_slot(emitter *e)
     return EXPR_SLOTS - 1;
 }
 
-static operand append(emitter *e, enum expr_op op, int n, const operand *arg, double k)
+static operand append(emitter *e, const expr_op *op, int n, const operand *arg, double k)
 {
     if (e->count == EXPR_MAX_CODE) {
         e->problem = "expression too long, expected at most 1024 operations";
         return expr_emit_constant(0);
     }
-    expr_code c = {.op = (uint8_t)op, .k = k};
+    expr_code c = {.op = op, .k = k};
     for (int i = 0; i < n; i++) {
         c.arg[i] = (uint8_t)arg[i].slot;
         c.has[i] = e->has[arg[i].slot];
@@ -95,39 +81,26 @@ static operand append(emitter *e, enum expr_op op, int n, const operand *arg, do
 }
 
 /* Constants are folded by the evaluator itself, so that folding changes no byte of a result. */
-static operand fold(enum expr_op op, int n, const operand *arg)
+static operand fold(const expr_op *op, int n, const operand *arg)
 {
-    expr_code code[5];
-    for (int i = 0; i < n; i++)
-        code[i] = (expr_code){.op = OP_CONST, .z = (uint8_t)(2 + i), .has_z = HAS_V, .k = arg[i].k};
-    code[n] = (expr_code){
-        .op = (uint8_t)op, .z = 2 + 4, .arg = {2, 3, 4, 5}, .has = {HAS_V, HAS_V, HAS_V, HAS_V}, .has_z = HAS_V};
-    expr e = {.count = n + 1, .result = 2 + 4, .has = HAS_V, .code = code};
+    enum { FIRST = 2, RESULT = FIRST + EXPR_OPERANDS }; /* slots */
+    expr_code code[EXPR_OPERANDS + 1];
+    code[n] = (expr_code){.op = op, .z = RESULT, .has_z = HAS_V};
+    for (int i = 0; i < n; i++) {
+        code[i] = (expr_code){.op = &expr_constant, .z = (uint8_t)(FIRST + i), .has_z = HAS_V, .k = arg[i].k};
+        code[n].arg[i] = code[i].z;
+        code[n].has[i] = HAS_V;
+    }
+    expr e = {.count = n + 1, .result = RESULT, .has = HAS_V, .code = code};
     const double none = 0;
     expr_jets out;
     expr_eval(&e, 1, &none, &none, 0, &out);
     return expr_emit_constant(out.v[0]);
 }
 
-static operand with_constant(emitter *e, enum expr_op op, operand a, double k) { return append(e, op, 1, &a, k); }
+operand expr_emit_with(emitter *e, const expr_op *op, operand a, double k) { return append(e, op, 1, &a, k); }
 
-/* a^k for those k that are cheaper, and more exact, without logarithm. False: for another k. */
-static bool simple_power(emitter *e, operand a, double k, operand *z)
-{
-    if (k == 0)
-        *z = expr_emit_constant(1);
-    else if (k == 0.5)
-        *z = append(e, OP_SQRT, 1, &a, 0);
-    else if (k == floor(k) && fabs(k) <= EXPR_MAX_POWER) {
-        *z = fabs(k) == 1 ? a : with_constant(e, OP_POWI, a, fabs(k));
-        if (k < 0)
-            *z = expr_emit(e, OP_DIV, 2, (operand[]){expr_emit_constant(1), *z});
-    } else
-        return false;
-    return true;
-}
-
-operand expr_emit(emitter *e, enum expr_op op, int n, const operand *arg)
+operand expr_emit(emitter *e, const expr_op *op, int n, const operand *arg)
 {
     bool constant = true;
     for (int i = 0; i < n; i++)
@@ -136,30 +109,28 @@ operand expr_emit(emitter *e, enum expr_op op, int n, const operand *arg)
         return fold(op, n, arg);
 
     operand a = arg[0], b = n > 1 ? arg[1] : a;
-    if (op == OP_ADD && a.constant)
-        return with_constant(e, OP_ADDK, b, a.k);
-    if (op == OP_ADD && b.constant)
-        return with_constant(e, OP_ADDK, a, b.k);
-    if (op == OP_SUB && a.constant)
-        return with_constant(e, OP_ADDK, with_constant(e, OP_MULK, b, -1), a.k);
-    if (op == OP_SUB && b.constant)
-        return with_constant(e, OP_ADDK, a, -b.k);
-    if (op == OP_MUL && a.constant)
-        return with_constant(e, OP_MULK, b, a.k);
-    if (op == OP_MUL && b.constant)
-        return with_constant(e, OP_MULK, a, b.k);
-    operand z, in[4];
-    if (op == OP_POW && b.constant && simple_power(e, a, b.k, &z))
-        return z;
+    if (op == &expr_add && a.constant)
+        return expr_emit_with(e, &expr_add_k, b, a.k);
+    if (op == &expr_add && b.constant)
+        return expr_emit_with(e, &expr_add_k, a, b.k);
+    if (op == &expr_subtract && a.constant)
+        return expr_emit_with(e, &expr_add_k, expr_emit_with(e, &expr_multiply_k, b, -1), a.k);
+    if (op == &expr_subtract && b.constant)
+        return expr_emit_with(e, &expr_add_k, a, -b.k);
+    if (op == &expr_multiply && a.constant)
+        return expr_emit_with(e, &expr_multiply_k, b, a.k);
+    if (op == &expr_multiply && b.constant)
+        return expr_emit_with(e, &expr_multiply_k, a, b.k);
+    operand in[EXPR_OPERANDS];
     for (int i = 0; i < n; i++)
-        in[i] = arg[i].constant ? append(e, OP_CONST, 0, NULL, arg[i].k) : arg[i];
+        in[i] = arg[i].constant ? append(e, &expr_constant, 0, NULL, arg[i].k) : arg[i];
     return append(e, op, n, in, 0);
 }
 
 expr *emitter_end(emitter *e, operand result)
 {
     if (result.constant)
-        result = append(e, OP_CONST, 0, NULL, result.k);
+        result = append(e, &expr_constant, 0, NULL, result.k);
     size_t bytes = (size_t)e->count * sizeof *e->code;
     expr *x = malloc(sizeof *x);
     expr_code *code = malloc(bytes ? bytes : 1); /* none: the expression is u or w */

@@ -1,12 +1,12 @@
-/* Compiling: the parser states operations, this turns them into a program, folding constants and choosing
- * the cheapest form. Private to expr.c and expr_emit.c.
+/* Compiling: the parser states operations, this turns them into a program, folding constants and choosing the cheapest
+ * form.
  */
 #ifndef KAGE_EXPR_COMPILE_H
 #define KAGE_EXPR_COMPILE_H
 
 #include "expr/program.h"
 
-/* A constant, or a result in a slot. Each operand is used once. */
+/* A constant, or a result in a slot. Each result is an operand once. */
 typedef struct operand {
     bool constant;
     double k;
@@ -27,9 +27,11 @@ operand expr_emit_constant(double k);
 operand expr_emit_u(void);
 operand expr_emit_w(void);
 
-/* The result of op on n operands: one of enum expr_op that takes no constant. After a problem the results
- * have no meaning. */
-operand expr_emit(emitter *e, enum expr_op op, int n, const operand *arg);
+/* The result of an operation on n operands. After a problem the results have no meaning. */
+operand expr_emit(emitter *e, const struct expr_op *op, int n, const operand *arg);
+
+/* The result of an operation on one operand, not a constant, and a constant. */
+operand expr_emit_with(emitter *e, const struct expr_op *op, operand a, double k);
 
 /* The program that computes `result`; NULL: out of memory. */
 expr *emitter_end(emitter *e, operand result);

@@ -1,10 +1,8 @@
-/* Functions of u and w, given as text: parsed once, then evaluated with their exact first and second
- * partial derivatives, a batch of points at a time.
+/* Functions of u and w, given as text (docs/scene.md has the language): parsed once, then evaluated with their exact
+ * first and second partial derivatives, a batch of points at a time.
  *
- * The language (docs/scene.md): + - * / ^ and parentheses, the numbers, u, w, pi, and
- * sin cos tan asin acos atan atan2 sinh cosh tanh exp log sqrt abs min max floor mod pow clamp select
- * noise. Numbers are double in either build of kage: a perturbation is small against the scene, and one
- * set of elementary functions (kmath.h) then serves both.
+ * Numbers are double in either build of kage: a perturbation is small against the scene, and one set of elementary
+ * functions (kmath.h) then serves both.
  */
 #ifndef KAGE_EXPR_EXPR_H
 #define KAGE_EXPR_EXPR_H
@@ -27,7 +25,7 @@ typedef struct expr_error {
     char message[160]; /* what is wrong, what was expected; without place or newline */
 } expr_error;
 
-/* The expression that `text` states; owned by the caller, expr_free. NULL on error, told in *error. */
+/* The expression that `text` states; owned by the caller, expr_free. NULL on error, with the reason in *error. */
 expr *expr_parse(const char *text, expr_error *error);
 
 /* Evaluate at n <= EXPR_BATCH points (u[i], w[i]). order 0 writes out->v, order 1 also u and w, order 2
@@ -36,8 +34,7 @@ expr *expr_parse(const char *text, expr_error *error);
 void expr_eval(const expr *e, int n, const double *u, const double *w, int order, expr_jets *out);
 
 /* Bounds of the value over u0 <= u <= u1, w0 <= w <= w1 (infinite ends allowed), by interval arithmetic:
- * lo <= e(u,w) <= hi wherever e is defined. The bounds hold always; they are not the tightest. Either may
- * be infinite. */
+ * lo <= e(u,w) <= hi wherever e is defined. The bounds always hold, and may be wider than needed or infinite. */
 void expr_bound_value(const expr *e, double u0, double u1, double w0, double w1, double *lo, double *hi);
 
 /* Least and greatest value, and partials along u and along w. */

@@ -13,27 +13,13 @@
 #include <string.h>
 
 #include "base/errors.h"
-#include "expr/compile.h"
+#include "expr/operation.h"
 
-enum { ANY_NUMBER = 1000, LONGEST_NAME = 24 };
+enum { LONGEST_NAME = 24 };
 
-typedef struct function {
-    const char *name;
-    int least, most; /* arguments */
-    enum expr_op op; /* clamp is made of two */
-} function;
-
-static const function functions[] = {
-    {"sin", 1, 1, OP_SIN},          {"cos", 1, 1, OP_COS},          {"tan", 1, 1, OP_TAN},
-    {"asin", 1, 1, OP_ASIN},        {"acos", 1, 1, OP_ACOS},        {"atan", 1, 1, OP_ATAN},
-    {"sinh", 1, 1, OP_SINH},        {"cosh", 1, 1, OP_COSH},        {"tanh", 1, 1, OP_TANH},
-    {"exp", 1, 1, OP_EXP},          {"log", 1, 1, OP_LOG},          {"sqrt", 1, 1, OP_SQRT},
-    {"abs", 1, 1, OP_ABS},          {"floor", 1, 1, OP_FLOOR},      {"noise", 2, 2, OP_NOISE},
-    {"atan2", 2, 2, OP_ATAN2},      {"mod", 2, 2, OP_MOD},          {"pow", 2, 2, OP_POW},
-    {"min", 2, ANY_NUMBER, OP_MIN}, {"max", 2, ANY_NUMBER, OP_MAX}, {"clamp", 3, 3, OP_MIN},
-    {"select", 3, 4, OP_SELECT},
-};
-enum { FUNCTIONS = sizeof functions / sizeof functions[0] };
+/* All functions of the language. */
+static const expr_op *const *const tables[] = {expr_elementary, expr_functions, expr_choices};
+enum { TABLES = sizeof tables / sizeof *tables };
 
 typedef struct parser {
     const char *text, *at; /* at: the first byte not yet read, never a blank between two calls */
@@ -96,11 +82,11 @@ static found found_at(const char *at)
     return f;
 }
 
-static operand emit_op(parser *p, const char *where, enum expr_op op, int n, const operand *arg)
+static operand emit_op(parser *p, const char *where, const expr_op *op, int n, const operand *arg)
 {
     if (p->failed)
         return expr_emit_constant(0);
-    operand z = expr_emit(&p->emitter, op, n, arg);
+    operand z = op->build ? op->build(&p->emitter, n, arg) : expr_emit(&p->emitter, op, n, arg);
     return p->emitter.problem ? fail(p, where, "%s", p->emitter.problem) : z;
 }
 
@@ -150,17 +136,27 @@ static int distance(const char *a, const char *b)
     return row[columns];
 }
 
+static const expr_op *function_named(const char *name)
+{
+    for (int t = 0; t < TABLES; t++)
+        for (const expr_op *const *f = tables[t]; *f; f++)
+            if (strcmp(name, (*f)->name) == 0)
+                return *f;
+    return NULL;
+}
+
 static operand unknown_name(parser *p, const char *where, const char *name, bool called)
 {
     const char *nearest = NULL;
     int best = 3; /* more than two slips are another word */
-    for (int i = 0; i < FUNCTIONS; i++) {
-        int d = distance(name, functions[i].name);
-        if (d < best && d < (int)strlen(name) - 1) {
-            best = d;
-            nearest = functions[i].name;
+    for (int t = 0; t < TABLES; t++)
+        for (const expr_op *const *f = tables[t]; *f; f++) {
+            int d = distance(name, (*f)->name);
+            if (d < best && d < (int)strlen(name) - 1) {
+                best = d;
+                nearest = (*f)->name;
+            }
         }
-    }
     const char *kind = called ? "function" : "name";
     if (nearest)
         return fail(p, where, "unknown %s '%s', did you mean '%s'?", kind, name, nearest);
@@ -169,7 +165,7 @@ static operand unknown_name(parser *p, const char *where, const char *name, bool
     return fail(p, where, "unknown name '%s', expected u, w, pi or a function", name);
 }
 
-static const char *arguments_of(const function *f)
+static const char *arguments_of(const expr_op *f)
 {
     switch (f->most) {
     case 1:
@@ -198,17 +194,17 @@ static operand unexpected(parser *p, const char *expected)
 
 /* f(...) after the name, with p->at on the parenthesis. Chains such as min(a,b,c,...) are folded as they
  * are read. */
-static operand parse_call(parser *p, const char *where, const function *f)
+static operand parse_call(parser *p, const char *where, const expr_op *f)
 {
-    operand arg[4] = {{0}};
+    operand arg[EXPR_OPERANDS] = {{0}};
     int n = 0;
     accept(p, '(');
     if (*p->at != ')')
         do {
             operand next = parse_sum(p);
-            if (n > 0 && f->most == ANY_NUMBER)
-                arg[0] = emit_op(p, where, f->op, 2, (operand[]){arg[0], next});
-            else if (n < 4)
+            if (n > 0 && f->most == EXPR_ANY_NUMBER)
+                arg[0] = emit_op(p, where, f, 2, (operand[]){arg[0], next});
+            else if (n < EXPR_OPERANDS)
                 arg[n] = next;
             n++;
         } while (accept(p, ','));
@@ -216,13 +212,9 @@ static operand parse_call(parser *p, const char *where, const function *f)
         return unexpected(p, "an operator, ',' or ')'");
     if (n < f->least || n > f->most)
         return fail(p, where, "'%s' takes %s, found %d", f->name, arguments_of(f), n);
-    if (f->most == ANY_NUMBER)
+    if (f->most == EXPR_ANY_NUMBER)
         return arg[0];
-    if (strcmp(f->name, "clamp") == 0) {
-        operand raised = emit_op(p, where, OP_MAX, 2, arg);
-        return emit_op(p, where, OP_MIN, 2, (operand[]){raised, arg[2]});
-    }
-    return emit_op(p, where, n == 4 ? OP_SELECT4 : f->op, n, arg);
+    return emit_op(p, where, f, n, arg);
 }
 
 static operand parse_name(parser *p)
@@ -241,14 +233,11 @@ static operand parse_name(parser *p)
     if (strcmp(name, "w") == 0)
         return expr_emit_w();
     if (strcmp(name, "pi") == 0)
-        return expr_emit_constant(3.14159265358979323846);
-    for (int i = 0; i < FUNCTIONS; i++)
-        if (strcmp(name, functions[i].name) == 0) {
-            if (*p->at != '(')
-                return fail(p, p->at, "found %s, expected '(' after the function '%s'", found_at(p->at).text, name);
-            return parse_call(p, where, &functions[i]);
-        }
-    return unknown_name(p, where, name, *p->at == '(');
+        return expr_emit_constant(KM_PI);
+    const expr_op *f = function_named(name);
+    if (f && *p->at != '(')
+        return fail(p, p->at, "found %s, expected '(' after the function '%s'", found_at(p->at).text, name);
+    return f ? parse_call(p, where, f) : unknown_name(p, where, name, *p->at == '(');
 }
 
 static operand parse_primary(parser *p)
@@ -278,10 +267,10 @@ static operand parse_signed(parser *p)
     const char *caret = p->at;
     if (accept(p, '^')) {
         operand exponent = parse_signed(p);
-        a = emit_op(p, caret, OP_POW, 2, (operand[]){a, exponent});
+        a = emit_op(p, caret, &expr_pow, 2, (operand[]){a, exponent});
     }
     p->depth--;
-    return minus ? emit_op(p, where, OP_MUL, 2, (operand[]){expr_emit_constant(-1), a}) : a;
+    return minus ? emit_op(p, where, &expr_multiply, 2, (operand[]){expr_emit_constant(-1), a}) : a;
 }
 
 static operand parse_product(parser *p)
@@ -291,7 +280,7 @@ static operand parse_product(parser *p)
         const char *where = p->at;
         accept(p, *where);
         operand b = parse_signed(p);
-        a = emit_op(p, where, *where == '*' ? OP_MUL : OP_DIV, 2, (operand[]){a, b});
+        a = emit_op(p, where, *where == '*' ? &expr_multiply : &expr_divide, 2, (operand[]){a, b});
     }
     return a;
 }
@@ -303,7 +292,7 @@ static operand parse_sum(parser *p)
         const char *where = p->at;
         accept(p, *where);
         operand b = parse_product(p);
-        a = emit_op(p, where, *where == '+' ? OP_ADD : OP_SUB, 2, (operand[]){a, b});
+        a = emit_op(p, where, *where == '+' ? &expr_add : &expr_subtract, 2, (operand[]){a, b});
     }
     return a;
 }

@@ -1,9 +1,9 @@
-/* What an expression is compiled to: a list of operations on slots, without jumps. Private to the expr_*
- * files.
+/* What an expression is compiled to: a list of operations on slots, without jumps. Private to the room expr and to
+ * exports.
  *
- * A slot holds the value and the partials of an intermediate result. Slots 0 and 1 are u and w; an
- * operation writes a slot that none of its operands uses. Which partials of a result can differ from 0 is
- * known when it is compiled (6*u has no w, uu, uw, ww): only those are ever computed or read.
+ * A slot holds the value and the partials of an intermediate result. Slots 0 and 1 are u and w; an operation writes a
+ * slot that none of its operands uses. Which partials of a result can differ from 0 is known when it is compiled (6*u
+ * has no w, uu, uw, ww): only those are ever computed or read.
  */
 #ifndef KAGE_EXPR_PROGRAM_H
 #define KAGE_EXPR_PROGRAM_H
@@ -17,44 +17,8 @@ enum {
     EXPR_MAX_CODE = 1024, /* operations */
     EXPR_MAX_DEPTH = 64,  /* of nesting, which is that of the parser's recursion */
     EXPR_SLOTS = 32,      /* u, w, and 30 intermediate results at a time */
+    EXPR_OPERANDS = 4,    /* of one operation at the most */
     EXPR_MAX_POWER = 16   /* the largest exponent that is multiplied out */
-};
-
-enum expr_op {
-    OP_CONST, /* k */
-    /* one operand and a constant */
-    OP_ADDK,
-    OP_MULK,
-    OP_POWI, /* a^k, k an integer in 2..EXPR_MAX_POWER */
-    /* one operand */
-    OP_SIN,
-    OP_COS,
-    OP_TAN,
-    OP_ASIN,
-    OP_ACOS,
-    OP_ATAN,
-    OP_SINH,
-    OP_COSH,
-    OP_TANH,
-    OP_EXP,
-    OP_LOG,
-    OP_SQRT,
-    OP_ABS,
-    OP_FLOOR,
-    /* two */
-    OP_ADD,
-    OP_SUB,
-    OP_MUL,
-    OP_DIV,
-    OP_MOD,
-    OP_ATAN2,
-    OP_POW,
-    OP_NOISE,
-    OP_MIN,
-    OP_MAX,
-    /* three, four */
-    OP_SELECT, /* b where a < 0, else c */
-    OP_SELECT4 /* b where a < 0, c where a = 0, d where a > 0 */
 };
 
 /* The parts of a jet, and sets of them. */
@@ -69,13 +33,15 @@ enum {
     HAS_FIRST = HAS_U | HAS_W
 };
 
+struct expr_op; /* operation.h */
+
 typedef struct expr_code {
-    uint8_t op;     /* enum expr_op */
-    uint8_t z;      /* slot of the result */
-    uint8_t arg[4]; /* slots of the operands */
-    uint8_t has[4]; /* their parts */
+    const struct expr_op *op;
+    uint8_t z;                  /* slot of the result */
+    uint8_t arg[EXPR_OPERANDS]; /* slots of the operands */
+    uint8_t has[EXPR_OPERANDS]; /* their parts */
     uint8_t has_z;
-    double k;
+    double k; /* the constant of an operation that has one */
 } expr_code;
 
 struct expr {

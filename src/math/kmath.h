@@ -41,6 +41,7 @@
 #define KM_SIGN ((uint64_t)1 << 63)
 #define KM_TWO52 4503599627370496.0
 #define KM_ROUND (1.5 * KM_TWO52) /* x + KM_ROUND has no bit below 1: its low bits are round(x) as an integer */
+#define KM_PI 3.14159265358979323846
 #define KM_PI_2 1.57079632679489655800e+00
 #define KM_PI_2_LO 6.12323399573676603587e-17
 

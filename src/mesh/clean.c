@@ -1,19 +1,24 @@
-/* From what a file says to triangles that can be relied on. */
+/* From what a file says to triangles that can be relied on: finite numbers, an area, and a unit normal at each corner
+ * that does not face away. */
 #include "mesh/mesh_data.h"
 
-#include "math/kmath.h"
 #include "base/vec3.h"
+#include "math/kmath.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define FLAT 1e-10  /* a triangle that is lower than this share of its longest side has no direction */
-#define FACING 0.05 /* a corner's normal is on the triangle's side by this at least */
-#define TEXTURE 1e6 /* no texture coordinate is farther */
-enum {
-    FAN = 512
-}; /* triangles about a vertex; beyond that the mean over all stands for every corner, so that time stays linear */
+#define FLAT 1e-10      /* a triangle that is lower than this share of its longest side has no direction */
+#define FACING 0.05     /* the least cosine between a corner's normal and its triangle's: 87 degrees */
+#define TEXTURE 1e6     /* the largest texture coordinate: float leaves it a digit after the point */
+#define SHORTEST 1e-6   /* a normal, or a sum of unit normals, that is shorter has no direction in float */
+#define LONGEST 1e6     /* and a longer normal is no normal */
+#define SAME_ANGLE 1e-6 /* of cosines: float's coordinates determine them no better */
+
+/* Triangles about a vertex that are compared with each other. Beyond that the mean over all of them stands for every
+ * corner, so that time stays linear. */
+enum { FAN = 512 };
 
 /* (b - a) x (c - a) */
 static vec3 area_of(const float at[3][3])
@@ -47,7 +52,7 @@ static bool check_numbers(const mesh_data *d, double most, char why[MESH_WHY])
     for (int k = 0; k < d->n; k++)
         for (int i = 0; i < 6; i++) {
             const double x = (double)d->skin[k].uv[i / 2][i % 2];
-            if (fabs(x) > TEXTURE) { /* NaN: none is given */
+            if (fabs(x) > TEXTURE) { /* false for NaN: none in the file */
                 snprintf(why, MESH_WHY, "a texture coordinate is %g, expected -%g to %g", x, TEXTURE, TEXTURE);
                 return false;
             }
@@ -80,9 +85,9 @@ static void count_bare(mesh_data *d)
 
 /* ---- normals ---- */
 
-/* Which corners are at one place: corner[first[k]] to corner[first[k + 1] - 1] for each place k. */
+/* The corners by their place: corner[first[k]] to corner[first[k + 1] - 1] are at place k. All arrays are owned. */
 typedef struct places {
-    int32_t *of; /* of each corner */
+    int32_t *of; /* the place of each corner */
     int32_t *first, *corner;
     int n;
 } places;
@@ -94,6 +99,7 @@ static void free_places(places *p)
     free(p->corner);
 }
 
+/* FNV-1a; -0 is 0. */
 static uint32_t hash_of(const float at[3])
 {
     uint32_t h = 2166136261u, word[3];
@@ -111,7 +117,7 @@ static bool find_places(const mesh_data *d, places *p)
     uint32_t size = 16;
     while (size < 2 * (uint32_t)corners)
         size *= 2;
-    int32_t *table = malloc(sizeof *table * size); /* a corner of each place, -1: free */
+    int32_t *table = malloc(sizeof *table * size); /* open addressing: a corner of each place, -1: free */
     *p = (places){malloc(sizeof(int32_t) * (size_t)corners), NULL, malloc(sizeof(int32_t) * (size_t)corners), 0};
     if (table && p->of)
         memset(table, 0xff, sizeof *table * size);
@@ -134,13 +140,13 @@ static bool find_places(const mesh_data *d, places *p)
         p->first[p->of[i] + 2]++;
     for (int k = 0; k < p->n; k++)
         p->first[k + 2] += p->first[k + 1];
-    for (int i = 0; i < corners; i++) /* first[k + 1] goes to where it belongs */
+    for (int i = 0; i < corners; i++) /* each first[k + 1] ends as the first of place k + 1 */
         p->corner[p->first[p->of[i] + 1]++] = i;
     return true;
 }
 
-/* The triangle's unit normal times the angle at that corner: what does not depend on how a flat face is cut. */
-static vec3 weighed(const mesh_data *d, int corner)
+/* The triangle's unit normal times its angle at that corner: sums do not depend on how a flat face is triangulated. */
+static vec3 weighted_normal(const mesh_data *d, int corner)
 {
     const float(*at)[3] = (const float(*)[3])d->at[corner / 3];
     const vec3 a = mesh_get(at[corner % 3]);
@@ -149,11 +155,12 @@ static vec3 weighed(const mesh_data *d, int corner)
     return vec3_scale(vec3_unit(area_of(at)), km_acos(fmin(1, fmax(-1, cosine))));
 }
 
+/* Give the corners at one place that have no normal theirs. least: the cosine of the crease angle. */
 static void smooth_place(mesh_data *d, const int32_t *corner, int n, double least)
 {
     vec3 all = {0, 0, 0};
     for (int i = 0; n > FAN && i < n; i++)
-        all = vec3_add(all, weighed(d, corner[i]));
+        all = vec3_add(all, weighted_normal(d, corner[i]));
     for (int i = 0; i < n; i++) {
         const vec3 own = vec3_unit(area_of((const float(*)[3])d->at[corner[i] / 3]));
         vec3 sum = all;
@@ -163,10 +170,10 @@ static void smooth_place(mesh_data *d, const int32_t *corner, int n, double leas
         for (int j = 0; n <= FAN && j < n; j++) {
             const vec3 one = vec3_unit(area_of((const float(*)[3])d->at[corner[j] / 3]));
             if (i == j || vec3_dot(own, one) >= least)
-                sum = vec3_add(sum, weighed(d, corner[j]));
+                sum = vec3_add(sum, weighted_normal(d, corner[j]));
         }
         const double length = vec3_length(sum);
-        mesh_set(to, length > 1e-6 ? vec3_scale(sum, 1 / length) : own);
+        mesh_set(to, length > SHORTEST ? vec3_scale(sum, 1 / length) : own);
     }
 }
 
@@ -174,16 +181,15 @@ static bool smooth(mesh_data *d, double crease)
 {
     places p;
     const bool good = find_places(d, &p);
-    const double least =
-        km_cos(crease * (3.14159265358979323846 / 180)) - 1e-6; /* float's coordinates do not tell it closer */
+    const double least = km_cos(crease * (3.14159265358979323846 / 180)) - SAME_ANGLE;
     for (int k = 0; good && k < p.n; k++)
         smooth_place(d, p.corner + p.first[k], p.first[k + 1] - p.first[k], least);
     free_places(&p);
     return good;
 }
 
-/* Unit length, or none where there is no direction. */
-static bool take_given(mesh_data *d, mesh_normals normals)
+/* Keep the normals of the file that have a direction, as unit vectors. Whether all have. */
+static bool keep_given(mesh_data *d, mesh_normals normals)
 {
     bool all = true;
     for (int k = 0; k < d->n; k++)
@@ -191,7 +197,7 @@ static bool take_given(mesh_data *d, mesh_normals normals)
             float *to = d->skin[k].normal[i];
             const vec3 n = mesh_get(to);
             const double length = vec3_length(n);
-            const bool good = normals == MESH_NORMALS_FILE && length > 1e-6 && length < 1e6;
+            const bool good = normals == MESH_NORMALS_FILE && length > SHORTEST && length < LONGEST;
             mesh_set(to, good ? vec3_scale(n, 1 / length) : (vec3){0, 0, 0});
             all &= good;
         }
@@ -206,9 +212,9 @@ static void exchange(float *a, float *b, size_t bytes)
     memcpy(b, x, bytes);
 }
 
-/* Where the file's normals are all on the other side of a triangle, they are right and the order of its corners is not.
- */
-static void turn_round(mesh_data *d)
+/* Where all three normals of a triangle are on its other side, the normals are right and the order of the corners is
+ * wrong. */
+static void flip_by_normals(mesh_data *d)
 {
     for (int k = 0; k < d->n; k++) {
         const vec3 n = area_of((const float(*)[3])d->at[k]);
@@ -223,8 +229,8 @@ static void turn_round(mesh_data *d)
     }
 }
 
-/* No normal is turned away from its triangle: what is in between is not either, then. */
-static void bend_back(mesh_data *d)
+/* No normal may face away from its triangle. Then those interpolated between them do not either. */
+static void replace_averted(mesh_data *d)
 {
     for (int k = 0; k < d->n; k++) {
         const vec3 n = vec3_unit(area_of((const float(*)[3])d->at[k]));
@@ -247,14 +253,14 @@ bool mesh_clean(mesh_data *d, mesh_normals normals, double crease, double most, 
         return false;
     }
     count_bare(d);
-    const bool given = take_given(d, normals);
-    turn_round(d);
+    const bool given = keep_given(d, normals);
+    flip_by_normals(d);
     if (!given && normals != MESH_NORMALS_FLAT && !smooth(d, crease)) {
         snprintf(why, MESH_WHY, "out of memory");
         return false;
     }
-    bend_back(d);
-    if (normals == MESH_NORMALS_FLAT) /* none was there */
+    replace_averted(d);
+    if (normals == MESH_NORMALS_FLAT) /* all were missing, not wrong */
         d->notes.bent = 0;
     return true;
 }

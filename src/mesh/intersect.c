@@ -5,15 +5,16 @@
  */
 #include "mesh/mesh.h"
 
-#define MARGIN 4e-6f /* of where a ray ends in the tree's units, against float, as the boxes have it */
+#define MARGIN 4e-6f      /* more than float's rounding of where a ray ends, in radii; the boxes have the same */
+#define WIDER (1 + 1e-6f) /* float's rounding of t, as a share */
+#define OWN_ERROR 1e-12   /* 1e-16, of double, over a sine of 1e-4; of the size and place of the mesh */
 
-/* ---- a ray and a triangle ---- */
-
-/* A ray as an axis: coordinate `z` is the one along which it goes most, and the others are sheared so that it goes
- * along that alone. */
+/* A ray as an axis: z is the coordinate in which its direction is largest. x and y are sheared so that the ray runs
+ * along z. */
 typedef struct shear {
-    int x, y, z;
-    double r[3], sx, sy, sz;
+    int x, y, z;       /* indices of coordinates */
+    double r[3];       /* the origin */
+    double sx, sy, sz; /* the shear of x and y per z, and t per z */
 } shear;
 
 static shear shear_of(vec3 r, vec3 s)
@@ -29,6 +30,7 @@ static shear shear_of(vec3 r, vec3 s)
     return k;
 }
 
+/* Whether the ray meets a triangle, and t there, also below 0. */
 static bool meets(const float at[3][3], const shear *k, double *t)
 {
     double x[3], y[3], z[3];
@@ -45,23 +47,21 @@ static bool meets(const float at[3][3], const shear *k, double *t)
     return all != 0;
 }
 
-/* ---- walks ---- */
-
-/* A ray on its way through the tree. Hits are looked for in from < t < to; `to` becomes that of the first one. */
+/* A ray on its way through the hierarchy. Hits with from < t < to count; `to` becomes t of the first one. */
 typedef struct mesh_query {
     const mesh *f;
     shear k;
-    int32_t but, index; /* a triangle that does not count; the one that was met, -1: none */
+    int32_t own, index; /* a triangle that does not count, -1: none; the triangle that is met, -1: none so far */
     double from, to;
-    double enter, unit; /* t where the ray in the tree begins, and how long it is there for one of t */
-    bool any;           /* whichever hit comes first will do */
+    double enter, unit; /* t where the ray enters the hierarchy's sphere, and its length in radii for each t */
+    bool any;           /* any hit will do, as for shadows */
 } mesh_query;
 
 static float visit(void *user, int32_t index, float end)
 {
     mesh_query *q = user;
     double t;
-    if (index == q->but || !meets((const float(*)[3])q->f->d.at[index], &q->k, &t) || !(t > q->from))
+    if (index == q->own || !meets((const float(*)[3])q->f->d.at[index], &q->k, &t) || !(t > q->from))
         return end;
     if (!(t < q->to || (t == q->to && q->index >= 0 && index < q->index)))
         return end;
@@ -69,16 +69,16 @@ static float visit(void *user, int32_t index, float end)
     q->index = index;
     if (q->any)
         return -1;
-    const float now = (float)((t - q->enter) * q->unit) * (1 + 1e-6f) + MARGIN;
+    const float now = (float)((t - q->enter) * q->unit) * WIDER + MARGIN;
     return now < end ? now : end;
 }
 
-/* The first hit of r + s t in from < t < to, but for one triangle; in q->to and q->index. */
-static void seek(mesh_query *q, vec3 r, vec3 s, double from, double to, int32_t but)
+/* The first hit of r + s t with from < t < to, on any triangle other than `own`: into q->to and q->index. */
+static void intersect(mesh_query *q, vec3 r, vec3 s, double from, double to, int32_t own)
 {
     float at[3], way[3], end;
     double enter = from > 0 ? from : 0, leave = to;
-    q->but = but;
+    q->own = own;
     q->index = -1;
     q->from = from;
     q->to = to;
@@ -90,7 +90,7 @@ static void seek(mesh_query *q, vec3 r, vec3 s, double from, double to, int32_t 
     bvh_toward(q->f->tree, at, way, end, visit, q);
 }
 
-static void take(const mesh_query *q, int i, int32_t id, hits *h)
+static void store_hit(const mesh_query *q, int i, int32_t id, hits *h)
 {
     const real t = (real)q->to;
     if (q->index >= 0 && t > 0 && t < h->t[i]) {
@@ -104,8 +104,8 @@ void mesh_hit(const surface *base, int n, const rays *x, int32_t id, hits *h)
 {
     mesh_query q = {.f = (const mesh *)base};
     for (int i = 0; i < n; i++) {
-        seek(&q, vec3s_get(&x->r, i), vec3s_get(&x->s, i), 0, (double)h->t[i], -1);
-        take(&q, i, id, h);
+        intersect(&q, vec3s_get(&x->r, i), vec3s_get(&x->s, i), 0, (double)h->t[i], -1);
+        store_hit(&q, i, id, h);
     }
 }
 
@@ -113,24 +113,24 @@ void mesh_occlude(const surface *base, int n, const rays *x, real *lit)
 {
     mesh_query q = {.f = (const mesh *)base, .any = true};
     for (int i = 0; i < n; i++) {
-        seek(&q, vec3s_get(&x->r, i), vec3s_get(&x->s, i), 0, lit[i] > 0 ? 1 : -1, -1);
+        intersect(&q, vec3s_get(&x->r, i), vec3s_get(&x->s, i), 0, lit[i] > 0 ? 1 : -1, -1);
         lit[i] = q.index >= 0 ? 0 : lit[i];
     }
 }
 
 /* ---- rays from the mesh itself ---- */
 
-/* Where on its triangle a ray starts, as double has it: the triangle itself is left out by its index, and a neighbour
- * at whose edge that is by `beyond`, where other hits begin: double's error over the sine of the ray's angle to it,
- * down to 1e-4. */
-static vec3 departure(const mesh *f, int32_t index, vec3 at, vec3 s, double *beyond)
+/* Where on its triangle a ray starts, in double. The triangle itself is left out by its index. A neighbour whose edge
+ * the start is on is left out by *beyond, where other hits begin: the rounding of double, over a sine of the ray's
+ * angle to the neighbour of at least 1e-4. */
+static vec3 own_start(const mesh *f, int32_t index, vec3 at, vec3 s, double *beyond)
 {
     const mesh_triangle x = mesh_triangle_of(f, index);
     double b, c;
     mesh_foot_shares(&x, at, &b, &c);
     mesh_keep_inside(&b, &c);
     const vec3 from = mesh_mix(x.at, b, c);
-    *beyond = 1e-12 * (vec3_length(from) + f->space.radius) / vec3_length(s);
+    *beyond = OWN_ERROR * (vec3_length(from) + f->space.radius) / vec3_length(s);
     return from;
 }
 
@@ -143,9 +143,9 @@ void mesh_hit_own(const surface *base, int n, const rays *x, const ray_origins *
         const vec3 s = vec3s_get(&x->s, i);
         double beyond = 0;
         if (own)
-            r = departure(q.f, from->part[i], vec3s_get(&from->at, i), s, &beyond);
-        seek(&q, r, s, beyond, (double)h->t[i], own ? from->part[i] : -1);
-        take(&q, i, id, h);
+            r = own_start(q.f, from->part[i], vec3s_get(&from->at, i), s, &beyond);
+        intersect(&q, r, s, beyond, (double)h->t[i], own ? from->part[i] : -1);
+        store_hit(&q, i, id, h);
     }
 }
 
@@ -157,8 +157,8 @@ void mesh_occlude_own(const surface *base, int n, const rays *x, const int32_t *
             continue;
         double beyond;
         const vec3 r = vec3s_get(&x->r, i), to = vec3_add(r, vec3s_get(&x->s, i)),
-                   from = departure(q.f, part[i], r, vec3s_get(&x->s, i), &beyond);
-        seek(&q, from, vec3_sub(to, from), beyond, 1, part[i]);
+                   from = own_start(q.f, part[i], r, vec3s_get(&x->s, i), &beyond);
+        intersect(&q, from, vec3_sub(to, from), beyond, 1, part[i]);
         lit[i] = q.index >= 0 ? 0 : lit[i];
     }
 }

@@ -1,17 +1,10 @@
-/* Triangle meshes: hits, places, Q and its partials, shadows. A ray against a triangle is Woop, Benthin and Wald's test
- * of 2013, in double: the ray becomes an axis, and each edge is on one side of it, told by a sum that is the same, but
- * for its sign, for the two triangles that share the edge. So no ray passes between them. Which triangles are tried,
- * Embree tells (bvh.h); of hits at one place the triangle of the lowest index counts, so that the order in which they
- * come does not.
- */
+/* A mesh as a surface: (u,w) of a hit, Q and its partials, and how a mesh is made. The rays are in intersect.c. */
 #include "mesh/mesh.h"
 
 #include "wave/lane.h"
 
 #include <stdlib.h>
 #include <string.h>
-
-/* ---- places ---- */
 
 static void mesh_locate(const surface *base, int n, const rays *x, const real *t, int32_t *part, real *u, real *w)
 {
@@ -36,9 +29,10 @@ void mesh_shares(const mesh_triangle *x, double u, double w, double *b, double *
     *c = k * (bu * w - bw * u);
 }
 
+/* v without its part along N. */
 static vec3 across(vec3 v, vec3 N) { return vec3_sub(v, vec3_scale(N, vec3_dot(v, N))); }
 
-/* The change of `v` along u or along w, from those along the edges. */
+/* A partial of the linear function with values v at the corners, from those of b and c. */
 static vec3 along(const vec3 v[3], double b, double c)
 {
     return vec3_add(vec3_scale(vec3_sub(v[1], v[0]), b), vec3_scale(vec3_sub(v[2], v[0]), c));
@@ -136,10 +130,10 @@ static const surface_ops methods = {
     .occlude_own = mesh_occlude_own,
     .extent = mesh_extent,
     .box = mesh_box,
-    .parts = 1, /* all the same to who goes over them: part is the triangle */
+    .parts = 1, /* `part` is the triangle; nothing that is asked by part alone differs between them */
 };
 
-/* Range and texture are known. */
+/* All that follows from triangles and texture coordinates. */
 static surface *finish(mesh *f, const progress *w)
 {
     f->base.ops = &methods;
@@ -171,8 +165,8 @@ surface *mesh_new(mesh_data *d, const progress *w)
     return finish(f, w);
 }
 
-/* A map that mirrors exchanges what is outward, so corners follow the other way, and u is turned about the middle of
- * its range. */
+/* A map that mirrors swaps inside and outside. So the corners get the opposite order, and u is reflected about the
+ * middle of its range. */
 surface *mesh_moved(const surface *base, const affine *m)
 {
     const mesh *from = (const mesh *)base;
@@ -190,8 +184,7 @@ surface *mesh_moved(const surface *base, const affine *m)
         for (int i = 0; i < 3; i++) {
             const int to = mirrors && i ? 3 - i : i;
             const vec3 n = mesh_get(from->d.skin[k].normal[i]);
-            const vec3 to_n =
-                vec3_add(vec3_add(vec3_scale(back.x, n.x), vec3_scale(back.y, n.y)), vec3_scale(back.z, n.z));
+            const vec3 to_n = affine_vector(&back, n); /* normals go by the transpose of the inverse */
             mesh_set(f->d.at[k][to], affine_point(m, mesh_get(from->d.at[k][i])));
             mesh_set(f->d.skin[k].normal[to], vec3_unit(to_n));
             f->d.skin[k].uv[to][0] = mirrors ? (float)(from->u[0] + from->u[1] - (double)from->d.skin[k].uv[i][0])

@@ -1,13 +1,14 @@
-/* Triangle meshes as surfaces. Private to mesh*.c and to what makes and exports meshes.
+/* Triangle meshes as surfaces.
  *
  * On a triangle Q(u,w) is linear, and (u,w) are its texture coordinates. n is along the normal N that is interpolated
- * between the corners: Qu and Qw are the triangle's own without their parts along N. Then a and b of the method are
- * exactly how (u,w) change along a ray where places are Q + h N. Quu, Quw and Qww are along N and such that the
- * curvature is that by which N turns.
+ * between the corners: Qu and Qw are the triangle's own without their parts along N. Then a and b of the method say
+ * exactly how (u,w) change along a ray near the points Q + h N. Quu, Quw and Qww are along N, with the curvature of a
+ * surface whose normal is N.
  *
- * A triangle whose texture is mirrored would have n inward. Its u is laid beyond the end of the range, mirrored: u -> 2
- * fold - u, `fold` one range beyond the end, so that what looks (u,w) up folds it back (fold.h). Where the texture has
- * no area on a triangle, its corners are moved apart by 1/4096 of the range.
+ * A triangle whose texture is mirrored would have n inward. So its u is reflected to beyond the end of the range:
+ * u -> 2 axis - u, the axis one range beyond the end. Whoever looks (u,w) up in a texture reflects it back
+ * (texture/mirrored_uv.h). Where the texture has no area on a triangle, its texture coordinates are moved apart by
+ * 1/4096 of the range.
  */
 #ifndef KAGE_MESH_MESH_H
 #define KAGE_MESH_MESH_H
@@ -18,26 +19,27 @@
 
 typedef struct mesh {
     surface base;
-    mesh_data d;
-    bool textured;
+    mesh_data d;       /* owned; its notes on textures are counted here */
+    bool textured;     /* the file has texture coordinates on every triangle */
     double u[2], w[2]; /* the range of the texture coordinates; 0..1 where there are none */
-    bvh_space space;
-    bvh *tree;  /* over the triangles */
-    bvh *rough; /* the same over what their rough surfaces may be in, with any P so far; NULL: not prepared */
+    bvh_space space;   /* the sphere about all vertices */
+    bvh *tree;         /* over the triangles, in `space` */
+    bvh *rough;        /* the same over what their rough surfaces may be in, with any P so far; NULL: not prepared */
     double lowest, highest, height; /* of those P, 0 among them: least, greatest, and the larger magnitude */
 } mesh;
 
-/* Owns *d, also on failure. It must have been through mesh_clean, and have a triangle. NULL: out of memory. */
+/* Owns *d, also on failure. *d has been through mesh_clean. w: shows how far the hierarchy is; may be NULL. NULL: out
+ * of memory, or all vertices are in one place. */
 surface *mesh_new(mesh_data *d, const progress *w);
 
-/* The image of a mesh by an affine map, with arrays of its own: what surface_transformed makes of it has no true
- * displacement. Where the map mirrors, u runs the other way in its range, as there. NULL: out of memory. */
+/* The image of a mesh by an affine map, with arrays of its own (an image by surface_transformed has no true
+ * displacement). Where the map mirrors, u runs the other way in its range, as there. NULL: out of memory. */
 surface *mesh_moved(const surface *from, const affine *m);
 
 /* For true displacement. */
 extern const struct displaced_ops mesh_displaced;
 
-/* A triangle in double: corners, what its normals are, and (u,w). */
+/* A triangle in double: its corners, their unit normals, and their (u,w). */
 typedef struct mesh_triangle {
     vec3 at[3], normal[3];
     double u[3], w[3];
@@ -55,16 +57,17 @@ static inline mesh_triangle mesh_triangle_of(const mesh *f, int32_t index)
     return x;
 }
 
+/* A vector between those of the three corners, at barycentric coordinates b and c. */
 static inline vec3 mesh_mix(const vec3 v[3], double b, double c)
 {
     return vec3_add(v[0], vec3_add(vec3_scale(vec3_sub(v[1], v[0]), b), vec3_scale(vec3_sub(v[2], v[0]), c)));
 }
 
-/* How much of b and c, the shares of the second and the third corner, there is at (u,w); not kept within the triangle.
- */
+/* The barycentric coordinates b and c of (u,w), those of the second and the third corner. Outside the triangle they are
+ * below 0, or above 1 in sum. */
 void mesh_shares(const mesh_triangle *x, double u, double w, double *b, double *c);
 
-/* The shares of the second and the third corner at the foot of p on the triangle, kept within it. */
+/* The same of the point of the triangle's plane that is closest to p. */
 static inline void mesh_foot_shares(const mesh_triangle *x, vec3 p, double *b, double *c)
 {
     const vec3 B = vec3_sub(x->at[1], x->at[0]), C = vec3_sub(x->at[2], x->at[0]), d = vec3_sub(p, x->at[0]),
@@ -74,6 +77,7 @@ static inline void mesh_foot_shares(const mesh_triangle *x, vec3 p, double *b, d
     *c = k * vec3_dot(n, vec3_cross(B, d));
 }
 
+/* Move b and c to inside the triangle. */
 static inline void mesh_keep_inside(double *b, double *c)
 {
     *b = *b > 0 ? *b : 0;
@@ -83,15 +87,14 @@ static inline void mesh_keep_inside(double *b, double *c)
     *c *= k;
 }
 
-/* What is known at the shares b and c of a triangle and at the height h: the place Q + h N, N, and how the place
- * changes with b and with c. */
+/* The offset point Q + h N at b and c of a triangle, N there, and the point's partials by b and by c. */
 typedef struct mesh_prism {
     vec3 place, N, Xb, Xc;
 } mesh_prism;
 
 mesh_prism mesh_prism_at(const mesh_triangle *x, double b, double c, double h);
 
-/* How u and w change in space there. det: Xb x Xc . N, or what stands for it where normals meet. */
+/* The gradients of u and w in space there. det: Xb x Xc . N, or a substitute where that is 0 as normals meet. */
 void mesh_gradients(const mesh_triangle *x, const mesh_prism *p, double det, vec3 *gu, vec3 *gw);
 
 /* In intersect.c; as the members of surface_ops of the same names. */

@@ -1,4 +1,5 @@
-/* A mesh as plain arrays of triangles, and how it gets from a file to what the surface (mesh.h) can rely on.
+/* A mesh as plain arrays of triangles, from the file (load.c, import_assimp.c) through the checks (clean.c) to the
+ * surface (mesh.h).
  *
  * Coordinates are kage's, left-handed; a triangle's corners follow each other so that (b - a) x (c - a) points outward.
  */
@@ -12,28 +13,31 @@
 #include "base/progress.h"
 #include "base/vec3.h"
 
-enum { MESH_MOST = 1 << 24, MESH_WHY = 400 }; /* triangles; bytes of a message */
+enum {
+    MESH_MOST = 1 << 24, /* triangles; more are refused */
+    MESH_WHY = 400,      /* bytes of a message */
+};
 
-/* What of a triangle does not matter to whether a ray meets it. */
+/* What shading needs of a triangle; intersection needs only its corners. */
 typedef struct mesh_skin {
-    float normal[3][3]; /* of each corner, unit; 0: none is given */
-    float uv[3][2];     /* NaN: none are given */
+    float normal[3][3]; /* of each corner, a unit vector; 0: none in the file */
+    float uv[3][2];     /* NaN: none in the file */
 } mesh_skin;
 
-/* What was found in a file and what was done about it. */
+/* What was found in a file and changed. */
 typedef struct mesh_notes {
-    int flat;   /* triangles without an area, left out */
-    int turned; /* triangles whose normals all said that they face the other way, and which do so now */
-    int bent;   /* corners whose normal was turned away from the triangle, and is the triangle's own now */
+    int flat;   /* triangles without an area, removed */
+    int turned; /* triangles flipped, as all three normals were on the other side */
+    int bent;   /* corners whose normal faced away from the triangle; now it is the triangle's own */
     int bare;   /* triangles without texture coordinates */
     int folded; /* triangles whose texture is mirrored */
     int spread; /* triangles on which the texture has no area */
 } mesh_notes;
 
 typedef struct mesh_data {
-    int n;
-    float (*at)[3][3]; /* owned */
-    mesh_skin *skin;   /* owned */
+    int n;             /* triangles */
+    float (*at)[3][3]; /* the corners of each, in scene units; owned */
+    mesh_skin *skin;   /* of each; owned */
     mesh_notes notes;
 } mesh_data;
 
@@ -46,6 +50,7 @@ static inline void mesh_set(float to[3], vec3 v)
     to[2] = (float)v.z;
 }
 
+/* Free the arrays and empty *d. */
 void mesh_data_free(mesh_data *d);
 
 typedef enum mesh_normals { MESH_NORMALS_FILE, MESH_NORMALS_SMOOTH, MESH_NORMALS_FLAT } mesh_normals;
@@ -55,9 +60,9 @@ typedef enum mesh_normals { MESH_NORMALS_FILE, MESH_NORMALS_SMOOTH, MESH_NORMALS
 bool mesh_file_read(const char *path, const char *reader, const progress *w, files *opened, mesh_data *out,
                     char why[MESH_WHY]);
 
-/* Check the numbers, leave out triangles without an area, and find a normal for every corner: the file's where it is
- * usable, otherwise the mean over the triangles about the vertex that are within `crease` degrees of this one. `most`:
- * no coordinate is farther. (mesh_clean.c) */
+/* Check the numbers, remove triangles without an area, and find a normal for every corner: the file's where it is
+ * usable, otherwise the mean over the triangles about the vertex that are within `crease` degrees of this one. False,
+ * with the reason: a coordinate beyond `most`, no triangle left, or out of memory. (clean.c) */
 bool mesh_clean(mesh_data *d, mesh_normals normals, double crease, double most, char why[MESH_WHY]);
 
 #endif

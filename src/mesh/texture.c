@@ -1,14 +1,18 @@
-/* How the texture of a mesh lies on its triangles: see mesh.h.
- */
+/* The texture coordinates of a mesh: their range, mirrored triangles, and triangles on which the texture has no area
+ * (mesh.h). */
 #include "mesh/mesh.h"
 
 #include <string.h>
 
-#define SPREAD (1 / 4096.0)
-#define THIN                                                                                                           \
-    2e-5 /* a texture triangle that is lower than this share of the largest coordinate has no digits of float left */
+#define SPREAD (1 / 4096.0) /* of the range: one pixel of a large image, and still 12 bits of float */
 
-/* Without any, each triangle has its own, so that there is a Qu and a Qw. */
+/* A triangle of the texture that is lower than this share of the largest coordinate has no digits of float left:
+ * 170 times float's rounding, 1.2e-7. */
+#define THIN 2e-5
+
+#define LEAST_RANGE 1e-3 /* where u or w is the same on all triangles, so that there is a size to map a texture to */
+
+/* Each triangle is the lower left half of the unit square, so that there are Qu and Qw. */
 void mesh_lay_bare(mesh *f)
 {
     static const float own[3][2] = {{0, 0}, {1, 0}, {0, 1}};
@@ -30,11 +34,11 @@ static void find_range(mesh *f)
             f->w[0] = fmin(f->w[0], (double)uv[1]);
             f->w[1] = fmax(f->w[1], (double)uv[1]);
         }
-    /* all of it on one line */
-    f->u[1] = fmax(f->u[1], f->u[0] + 1e-3);
-    f->w[1] = fmax(f->w[1], f->w[0] + 1e-3);
+    f->u[1] = fmax(f->u[1], f->u[0] + LEAST_RANGE);
+    f->w[1] = fmax(f->w[1], f->w[0] + LEAST_RANGE);
 }
 
+/* Twice the area on the texture; below 0 where it is mirrored. */
 static double texture_area(const mesh_skin *x)
 {
     const double bu = (double)x->uv[1][0] - (double)x->uv[0][0], bw = (double)x->uv[1][1] - (double)x->uv[0][1];
@@ -42,7 +46,8 @@ static double texture_area(const mesh_skin *x)
     return bu * cw - cu * bw;
 }
 
-/* Move two corners by `step`, each along u or w, so that the most area comes out. */
+/* Move the second corner along u and the third along w, or the other way, by +-step: of the eight ways, the one with
+ * the largest area. */
 static void spread(mesh_skin *x, float step)
 {
     mesh_skin best = *x;
@@ -60,7 +65,7 @@ void mesh_lay_texture(mesh *f)
 {
     find_range(f);
     const double most = fmax(fmax(fabs(f->u[0]), fabs(f->u[1])), fmax(fabs(f->w[0]), fabs(f->w[1])));
-    const double range = f->u[1] - f->u[0], fold = f->u[1] + range,
+    const double range = f->u[1] - f->u[0], axis = f->u[1] + range,
                  step = SPREAD * fmax(most, fmax(range, f->w[1] - f->w[0]));
     f->d.notes.folded = f->d.notes.spread = 0;
     for (int k = 0; k < f->d.n; k++) {
@@ -75,7 +80,7 @@ void mesh_lay_texture(mesh *f)
         }
         if (texture_area(x) < 0) {
             for (int i = 0; i < 3; i++)
-                x->uv[i][0] = (float)(2 * fold - (double)x->uv[i][0]);
+                x->uv[i][0] = (float)(2 * axis - (double)x->uv[i][0]);
             f->d.notes.folded++;
         }
     }

@@ -13,8 +13,12 @@
 #include <string.h>
 
 #include "base/errors.h"
-#include "expr/program.h"
+#include "expr/operation.h"
 #include "povray/text.h"
+
+/* A formula that has an operand twice doubles its text, and so on for each that is nested in another. This is far more
+ * than any other expression of EXPR_MAX_TEXT bytes needs. */
+enum { LONGEST = 1 << 18 };
 
 enum binding { SUM, PRODUCT, ATOM };
 
@@ -22,14 +26,6 @@ typedef struct piece {
     char *text; /* owned; NULL: there is none */
     enum binding binds;
 } piece;
-
-static const char *const names[] = {
-    [OP_SIN] = "sin",        [OP_COS] = "cos",   [OP_TAN] = "tan",   [OP_ASIN] = "asin",   [OP_ACOS] = "acos",
-    [OP_ATAN] = "atan",      [OP_SINH] = "sinh", [OP_COSH] = "cosh", [OP_TANH] = "tanh",   [OP_EXP] = "exp",
-    [OP_LOG] = "ln",         [OP_SQRT] = "sqrt", [OP_ABS] = "abs",   [OP_FLOOR] = "floor", [OP_MOD] = "mod",
-    [OP_ATAN2] = "atan2",    [OP_POW] = "pow",   [OP_MIN] = "min",   [OP_MAX] = "max",     [OP_SELECT] = "select",
-    [OP_SELECT4] = "select",
-};
 
 static piece make(enum binding binds, const char *fmt, ...) KAGE_PRINTF(2, 3);
 static piece make(enum binding binds, const char *fmt, ...)
@@ -49,9 +45,7 @@ static piece make(enum binding binds, const char *fmt, ...)
 static piece number(double k)
 {
     pov_digits d = pov_exact(k);
-    return !isfinite(k)                  ? (piece){0}
-           : k == 3.14159265358979323846 ? make(ATOM, "pi")
-                                         : make(k < 0 ? SUM : ATOM, "%s", d.text);
+    return !isfinite(k) ? (piece){0} : k == KM_PI ? make(ATOM, "pi") : make(k < 0 ? SUM : ATOM, "%s", d.text);
 }
 
 /* `a op b`; on the right what does not bind closer, or begins with a sign, is put in parentheses. */
@@ -62,59 +56,75 @@ static piece infix(piece a, const char *op, piece b, enum binding binds)
                 right ? ")" : "");
 }
 
-static piece with_constant(enum expr_op op, piece a, double k)
+static piece multiply_k(double k, piece a)
 {
-    if (op == OP_MULK && k == -1)
+    if (k == -1)
         return a.binds < ATOM ? make(PRODUCT, "-(%s)", a.text) : make(PRODUCT, "-%s", a.text);
-    piece b = number(op == OP_ADDK ? fabs(k) : k), z = {0};
-    if (b.text && op == OP_ADDK)
-        z = infix(a, k < 0 ? " - " : " + ", b, SUM);
-    else if (b.text && op == OP_MULK) {
-        b.binds = ATOM; /* a leading sign needs no parentheses */
-        z = infix(b, "*", a, PRODUCT);
-    } else if (b.text)
-        z = make(ATOM, "pow(%s, %s)", a.text, b.text);
+    piece b = number(k);
+    b.binds = ATOM; /* a leading sign needs no parentheses */
+    piece z = b.text ? infix(b, "*", a, PRODUCT) : (piece){0};
+    free(b.text);
+    return z;
+}
+
+static piece add_k(piece a, double k)
+{
+    piece b = number(fabs(k)), z = b.text ? infix(a, k < 0 ? " - " : " + ", b, SUM) : (piece){0};
+    free(b.text);
+    return z;
+}
+
+/* The operands $1 to $4 put into a formula. */
+static piece formula(const char *text, const piece *x)
+{
+    piece z = make(ATOM, "(");
+    while (z.text && *text) {
+        const size_t n = strcspn(text, "$");
+        const char *put = text[n] ? x[text[n + 1] - '1'].text : "";
+        piece more = make(ATOM, text[n] ? "%s%.*s(%s)" : "%s%.*s%s", z.text, (int)n, text, put);
+        free(z.text);
+        z = more;
+        text += text[n] ? n + 2 : n;
+    }
+    piece closed = z.text ? make(ATOM, "%s)", z.text) : z;
+    free(z.text);
+    return closed;
+}
+
+static piece call(const char *name, int n, const piece *x)
+{
+    piece z = make(ATOM, "%s(%s", name, x[0].text);
+    for (int i = 1; z.text && i <= n; i++) {
+        piece more = i < n ? make(ATOM, "%s, %s", z.text, x[i].text) : make(ATOM, "%s)", z.text);
+        free(z.text);
+        z = more;
+    }
+    return z;
+}
+
+static piece power_k(piece a, double k)
+{
+    piece b = number(k), z = b.text ? call("pow", 2, (piece[]){a, b}) : (piece){0};
     free(b.text);
     return z;
 }
 
 static piece operation(const expr_code *c, const piece *x)
 {
-    switch ((enum expr_op)c->op) {
-    case OP_CONST:
+    const expr_op *op = c->op;
+    if (op == &expr_constant)
         return number(c->k);
-    case OP_ADDK:
-    case OP_MULK:
-    case OP_POWI:
-        return with_constant((enum expr_op)c->op, x[0], c->k);
-    case OP_ADD:
-        return infix(x[0], " + ", x[1], SUM);
-    case OP_SUB:
-        return infix(x[0], " - ", x[1], SUM);
-    case OP_MUL:
-        return infix(x[0], "*", x[1], PRODUCT);
-    case OP_DIV:
-        return infix(x[0], "/", x[1], PRODUCT);
-    case OP_NOISE:
+    if (op == &expr_add_k)
+        return add_k(x[0], c->k);
+    if (op == &expr_multiply_k)
+        return multiply_k(c->k, x[0]);
+    if (op == &expr_power_k)
+        return power_k(x[0], c->k);
+    if (!op->pov)
         return (piece){0};
-    case OP_MOD:
-    case OP_ATAN2:
-    case OP_POW:
-    case OP_MIN:
-    case OP_MAX:
-        return make(ATOM, "%s(%s, %s)", names[c->op], x[0].text, x[1].text);
-    case OP_SELECT:
-        return make(ATOM, "select(%s, %s, %s)", x[0].text, x[1].text, x[2].text);
-    case OP_SELECT4:
-        return make(ATOM, "select(%s, %s, %s, %s)", x[0].text, x[1].text, x[2].text, x[3].text);
-    default:
-        return make(ATOM, "%s(%s)", names[c->op], x[0].text);
-    }
-}
-
-static int operands(enum expr_op op)
-{
-    return op == OP_CONST ? 0 : op < OP_ADD ? 1 : op < OP_SELECT ? 2 : op == OP_SELECT ? 3 : 4;
+    if (op->binding != EXPR_CALL)
+        return infix(x[0], op->pov, x[1], op->binding == EXPR_SUM ? SUM : PRODUCT);
+    return strchr(op->pov, '$') ? formula(op->pov, x) : call(op->pov, op->operands, x);
 }
 
 char *expr_pov(const expr *e)
@@ -123,8 +133,8 @@ char *expr_pov(const expr *e)
     bool good = slot[0].text && slot[1].text;
     for (int k = 0; good && k < e->count; k++) {
         const expr_code *c = &e->code[k];
-        const int n = operands((enum expr_op)c->op);
-        piece x[4];
+        const int n = c->op->operands;
+        piece x[EXPR_OPERANDS];
         for (int i = 0; i < n; i++)
             x[i] = slot[c->arg[i]];
         piece z = operation(c, x);
@@ -134,7 +144,7 @@ char *expr_pov(const expr *e)
                 slot[c->arg[i]].text = NULL;
             }
         slot[c->z] = z;
-        good = z.text;
+        good = z.text && strlen(z.text) <= LONGEST;
     }
     char *text = good ? slot[e->result].text : NULL;
     for (int k = 0; k < EXPR_SLOTS; k++)

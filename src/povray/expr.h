@@ -5,7 +5,7 @@
 #include "expr/expr.h"
 
 /* The text, owned by the caller (free). NULL where there is none: POV-Ray has no such noise as ours, nor numbers that
- * are not finite; and where memory is out. */
+ * are not finite; where it would be longer than 256 KiB; and where memory is out. */
 char *expr_pov(const expr *e);
 
 #endif

@@ -1,5 +1,5 @@
-/* The perturbation P(u,w) of a surface: a height along its unit normal, in scene units. It knows nothing of surfaces,
- * scenes or light.
+/* Bumps: P(u,w), a height along a surface's unit normal in scene units, with its partials and bounds. Bumps know
+ * nothing of surfaces, scenes or light. A bump does not change once it is made, and any number of threads may use it.
  */
 #ifndef KAGE_TEXTURE_BUMP_H
 #define KAGE_TEXTURE_BUMP_H
@@ -19,11 +19,12 @@ typedef struct bump_ops {
      */
     void (*eval)(const bump *p, int n, const real *u, const real *w, int order, bump_values *h);
 
-    /* P, Pu and Pw at up to EXPR_BATCH places, in double: the rough surface as it is between any two places, so that a
-     * map's slopes are those of its bilinear cells. */
+    /* P, Pu and Pw at up to EXPR_BATCH places, in double. Unlike eval's, the partials are the derivatives of P itself:
+     * with a map those of its bilinear cells. NULL: not known. */
     void (*jets)(const bump *p, int n, const double *u, const double *w, expr_jets *out);
 
-    /* What these can be over a box of (u,w): Lipschitz bounds, as expr_bound_gradient's. */
+    /* Bounds of these over a box of (u,w); of the partials Lipschitz bounds, as expr_bound_gradient's. NULL: as jets.
+     */
     void (*bound)(const bump *p, const double u[2], const double w[2], expr_bounds *out);
 
     void (*free)(bump *p);
@@ -35,9 +36,9 @@ struct bump {
 
     /* Lipschitz constants of P as it is looked up: for any two places on the surface
      *     |P(u,w) - P(u',w')| <= Pu_max |u - u'| + Pw_max |w - w'|
-     * but for the rounding of the two P, and with a map that of the places among its samples. Rounded up; 0 where P
-     * does not depend on the coordinate; infinite where none is known, as with a function that jumps. |Pu| and |Pw| are
-     * within them, too; a map's are central differences, and can stay far below. */
+     * up to the rounding of the two P, and with a map of the places among its samples. Rounded up; 0 where P does not
+     * depend on the coordinate; infinite where none is known, as with a function that jumps. |Pu| and |Pw| stay within
+     * them, too; a map's are central differences and can stay far below. */
     real Pu_max, Pw_max;
 };
 

@@ -54,7 +54,7 @@ static void function_jets(const bump *base, int n, const double *u, const double
     }
 }
 
-/* scale times a range, 0 for a scale of 0 */
+/* scale times a range; 0 for a scale of 0, even where the range is infinite */
 static void scaled(double scale, double range[2])
 {
     const double a = scale == 0 ? 0 : scale * range[0], b = scale == 0 ? 0 : scale * range[1];
@@ -85,18 +85,18 @@ static double widest(const double range[2], double so_far)
     return greater(so_far, greater(fabs(range[0]), fabs(range[1])));
 }
 
-/* Where part i of n of an extent begins, which is where part i - 1 ends. */
+/* Where part i of n of an extent begins. It is the same number where part i - 1 ends. */
 static double part(const double extent[2], int i, int n)
 {
     return i == 0 ? extent[0] : i == n ? extent[1] : extent[0] + (extent[1] - extent[0]) * i / n;
 }
 
-/* Interval arithmetic takes each mention of u for another variable, so its bounds are wide over a wide extent. Over
- * CELLS x CELLS parts of it they are close. Slopes bounded in each part are bounded by the steepest in all: the parts
- * share their edges, so that no jump is between them. */
+/* Interval arithmetic takes each u in the expression for a variable of its own, so that its bounds are wide over a wide
+ * extent. Over CELLS x CELLS parts of it they are close. The steepest slope of all parts bounds the whole: parts share
+ * their edges, so that P cannot jump between them. */
 static void function_bounds(const expr *f, const double u[2], const double w[2], double P[2], double slope[2])
 {
-    enum { CELLS = 64 };
+    enum { CELLS = 64 }; /* along u and along w */
     int nu = u[1] - u[0] < HUGE_VAL ? CELLS : 1, nw = w[1] - w[0] < HUGE_VAL ? CELLS : 1;
     P[0] = HUGE_VAL;
     P[1] = -HUGE_VAL;
@@ -122,7 +122,7 @@ bump *bump_function_new(expr *f, double scale, const double u[2], const double w
     double P[2], slope[2];
     function_bounds(f, u, w, P, slope);
     p->base.ops = &function_methods;
-    if (scale != 0) { /* 0 times an infinite bound is no bound */
+    if (scale != 0) { /* 0 times an infinite bound would be NaN */
         p->base.Pmin = (real)(scale < 0 ? scale * P[1] : scale * P[0]);
         p->base.Pmax = (real)(scale < 0 ? scale * P[0] : scale * P[1]);
     }

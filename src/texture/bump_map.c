@@ -2,15 +2,18 @@
  * differences as approximate derivatives ... where the coordinates are real numbers, the derivatives at the
  * neighbouring points are interpolated bilinearly".
  *
- * The central differences are made once, at the samples, and already carry scale and chain rule. Interpolated, they are
- * those of P as it is looked up, a sample's distance to either side: (P(u + du, w) - P(u - du, w))/(2 du). But where a
- * clamped map is level, beyond its outermost samples (with `cells` that is half a cell before its edge), the
- * derivatives that way are 0: a difference would reach back to where it is not. On the outermost sample itself they are
- * the mean of both sides.
+ * The central differences are computed once, at the samples, with scale and chain rule applied. Interpolated, they are
+ * the differences of P over one sample to either side: (P(u + du, w) - P(u - du, w))/(2 du). A clamped map is level
+ * beyond its outermost samples (with `cells` from half a cell before its edge on). There the derivatives in that
+ * direction are 0, as a difference would reach back to where P is not level. On the outermost sample they are the mean
+ * of both sides.
  */
 #include "texture/bump.h"
 
 #include <stdlib.h>
+
+#define ROUNDING 1e-12    /* more than the roundings of a coordinate in cells, as a share */
+#define LARGEST_INDEX 1e9 /* a farther cell does not fit an int */
 
 enum { P_PU_PW, PUU_PUW_PWW, TABLES };
 
@@ -55,7 +58,21 @@ static void map_eval(const bump *base, int n, const real *u, const real *w, int 
         clamp_derivatives(&m->grid, n, u, w, order, h);
 }
 
-/* The cell of a coordinate x among n samples, and where in it. *k, samples a unit, becomes 0 beyond an end. */
+/* P at the corners of a cell: above p0 and p1, below q0 and q1, from left to right. */
+typedef struct corners {
+    double p0, p1, q0, q1;
+} corners;
+
+static corners corners_of(const map *m, int row, int column)
+{
+    const size_t columns = (size_t)m->grid.columns + 1;
+    const real *p = m->table[P_PU_PW] + ((size_t)row * columns + (size_t)column) * TABLE_VALUES;
+    const real *q = p + columns * TABLE_VALUES;
+    return (corners){(double)p[0], (double)p[TABLE_VALUES], (double)q[0], (double)q[TABLE_VALUES]};
+}
+
+/* The cell of a coordinate x among n samples, and where in it. *k, samples a unit, becomes 0 beyond an end. In double,
+ * where table.c has `real`. */
 static int cell(double x, int n, int repeat, double *fraction, double *k)
 {
     *k = repeat || (x >= 0 && x <= n) ? *k : 0;
@@ -73,18 +90,16 @@ static void map_jets(const bump *base, int n, const double *u, const double *w, 
         double a, b, ku = (double)g->ku, kw = (double)g->kw;
         const int column = cell(u[i] * ku + (double)g->ou, g->columns, g->repeat, &a, &ku);
         const int row = cell(w[i] * kw + (double)g->ow, g->rows, g->repeat, &b, &kw);
-        const real *p = m->table[P_PU_PW] + ((size_t)row * (size_t)(g->columns + 1) + (size_t)column) * TABLE_VALUES;
-        const real *q = p + (size_t)(g->columns + 1) * TABLE_VALUES;
-        const double p0 = (double)p[0], p1 = (double)p[TABLE_VALUES], q0 = (double)q[0], q1 = (double)q[TABLE_VALUES];
-        const double left = p0 + (q0 - p0) * b, right = p1 + (q1 - p1) * b;
+        const corners c = corners_of(m, row, column);
+        const double left = c.p0 + (c.q0 - c.p0) * b, right = c.p1 + (c.q1 - c.p1) * b;
         out->v[i] = left + (right - left) * a;
         out->u[i] = (right - left) * ku;
-        out->w[i] = ((q0 - p0) + ((q1 - p1) - (q0 - p0)) * a) * kw;
+        out->w[i] = ((c.q0 - c.p0) + ((c.q1 - c.p1) - (c.q0 - c.p0)) * a) * kw;
     }
 }
 
-/* The cells that a range of (u,w) comes to along one axis: `first` and how many, wrapped as they are looked up; all of
- * them where they are many, 0 where it may lie beyond an end and P be level there. */
+/* The cells that a range of u or of w touches: the first, wrapped, and how many; at most all of them. beyond: the range
+ * may reach beyond an end, where P is level. */
 typedef struct cells {
     int first, n;
     bool beyond;
@@ -93,10 +108,10 @@ typedef struct cells {
 static cells cells_over(const double x[2], double k, double o, int n, int repeat)
 {
     const double a = fmin(x[0] * k, x[1] * k) + o, b = fmax(x[0] * k, x[1] * k) + o,
-                 air = 1e-12 * (fabs(a) + fabs(b) + fabs(o));
+                 air = ROUNDING * (fabs(a) + fabs(b) + fabs(o));
     double lo = floor(a - air), hi = floor(b + air);
     cells c = {0, n, !repeat && (a - air < 0 || b + air > n)};
-    if (!(hi - lo < n) || !(fabs(lo) < 1e9))
+    if (!(hi - lo < n) || !(fabs(lo) < LARGEST_INDEX))
         return c;
     if (!repeat) {
         lo = fmin(fmax(lo, 0), n - 1);
@@ -113,10 +128,10 @@ static void widen(double range[2], double x)
     range[1] = fmax(range[1], x);
 }
 
-/* Over a few cells their samples tell; over many the bounds of the whole are close enough. */
+/* Over few cells the bounds come from their samples. Over many those of the whole map are close enough. */
 static void map_bound(const bump *base, const double u[2], const double w[2], expr_bounds *out)
 {
-    enum { FEW = 1024 };
+    enum { FEW = 1024 }; /* cells; for more the exact bounds are not worth their time */
     const map *m = (const map *)base;
     const table_grid *g = &m->grid;
     const double ku = (double)g->ku, kw = (double)g->kw, Pu = (double)base->Pu_max, Pw = (double)base->Pw_max;
@@ -128,17 +143,13 @@ static void map_bound(const bump *base, const double u[2], const double w[2], ex
     *out = (expr_bounds){{HUGE_VAL, -HUGE_VAL}, {HUGE_VAL, -HUGE_VAL}, {HUGE_VAL, -HUGE_VAL}};
     for (int j = 0; j < r.n; j++)
         for (int i = 0; i < c.n; i++) {
-            const size_t row = (size_t)((r.first + j) % g->rows), column = (size_t)((c.first + i) % g->columns);
-            const real *p = m->table[P_PU_PW] + (row * (size_t)(g->columns + 1) + column) * TABLE_VALUES;
-            const real *q = p + (size_t)(g->columns + 1) * TABLE_VALUES;
-            const double p0 = (double)p[0], p1 = (double)p[TABLE_VALUES], q0 = (double)q[0],
-                         q1 = (double)q[TABLE_VALUES];
-            widen(out->v, fmin(fmin(p0, p1), fmin(q0, q1)));
-            widen(out->v, fmax(fmax(p0, p1), fmax(q0, q1)));
-            widen(out->u, (p1 - p0) * ku);
-            widen(out->u, (q1 - q0) * ku);
-            widen(out->w, (q0 - p0) * kw);
-            widen(out->w, (q1 - p1) * kw);
+            const corners z = corners_of(m, (r.first + j) % g->rows, (c.first + i) % g->columns);
+            widen(out->v, fmin(fmin(z.p0, z.p1), fmin(z.q0, z.q1)));
+            widen(out->v, fmax(fmax(z.p0, z.p1), fmax(z.q0, z.q1)));
+            widen(out->u, (z.p1 - z.p0) * ku);
+            widen(out->u, (z.q1 - z.q0) * ku);
+            widen(out->w, (z.q0 - z.p0) * kw);
+            widen(out->w, (z.q1 - z.p1) * kw);
         }
     if (c.beyond)
         widen(out->u, 0);
@@ -157,7 +168,7 @@ static void map_free(bump *base)
 static const bump_ops map_methods = {
     .kind = "map", .eval = map_eval, .jets = map_jets, .bound = map_bound, .free = map_free};
 
-/* The tables. ku, kw: samples per u and per w, for the chain rule. */
+/* Fill the tables, and find the range of P. ku, kw: samples per u and per w, for the chain rule. */
 static void map_differences(map *m, const image *s, const map_layout *l, double ku, double kw)
 {
     m->base.Pmin = REAL_FAR;
@@ -185,14 +196,15 @@ static void map_differences(map *m, const image *s, const map_layout *l, double 
         }
 }
 
+/* The larger of |to - from| and `so_far`. */
 static double steepest(const real *from, const real *to, double so_far)
 {
     double d = fabs((double)*to - (double)*from);
-    return d <= so_far ? so_far : d == d ? d : HUGE_VAL; /* NaN: a sample is, or is infinite */
+    return d <= so_far ? so_far : d == d ? d : HUGE_VAL; /* NaN: from a sample that is NaN or infinite */
 }
 
-/* Bilinear between the samples, P is steepest along the edge of a cell: by the difference of two neighbours, not by the
- * central ones, which are means of two such. The extra column and row hold the neighbours across the wrap. */
+/* A bilinear P is steepest along an edge of a cell, where its slope is the difference of two neighbours; central
+ * differences are means of two such. The extra column and row hold the neighbours across the wrap. */
 static void map_slopes(map *m)
 {
     double du = 0, dw = 0;
@@ -203,7 +215,7 @@ static void map_slopes(map *m)
             du = i < m->grid.columns ? steepest(v, v + next, du) : du;
             dw = j < m->grid.rows ? steepest(v, v + below, dw) : dw;
         }
-    m->base.Pu_max = bump_slope(du, (double)m->grid.ku); /* as the stages have it */
+    m->base.Pu_max = bump_slope(du, (double)m->grid.ku); /* rounded, as the stages use it */
     m->base.Pw_max = bump_slope(dw, (double)m->grid.kw);
 }
 

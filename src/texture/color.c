@@ -1,3 +1,4 @@
+/* Checkers and images as colour textures. */
 #include "texture/color.h"
 
 #include <stdlib.h>
@@ -7,7 +8,7 @@
 typedef struct checker {
     color_texture base;
     real even[3], odd[3];
-    real ku, kw, ou, ow; /* fields per (u,w), and the place of (u,w) = 0 in them */
+    real ku, kw, ou, ow; /* fields per u and per w, and where (u,w) = 0 is, in fields */
 } checker;
 
 STAGE static void checker_eval(const color_texture *base, int n, const real *restrict u, const real *restrict w,
@@ -44,7 +45,7 @@ color_texture *color_checker_new(const vec3 color[2], const double size[2], cons
 
 struct texels {
     int width, height;
-    real v[]; /* a table of the image's period */
+    real v[]; /* as table.h has it */
 };
 
 texels *texels_new(const image *m, const map_layout *l)
@@ -70,23 +71,23 @@ texels *texels_new(const image *m, const map_layout *l)
 
 void texels_free(texels *t) { free(t); }
 
-typedef struct image_pigment {
+typedef struct image_texture {
     color_texture base;
     const texels *texels;
     table_grid grid;
-} image_pigment;
+} image_texture;
 
 static void bilinear_eval(const color_texture *base, int n, const real *u, const real *w, vec3s *color)
 {
-    const image_pigment *p = (const image_pigment *)base;
+    const image_texture *p = (const image_texture *)base;
     int32_t at[LANES];
     real a[LANES], b[LANES];
     table_cells(&p->grid, n, u, w, at, a, b);
     table_three(&p->grid, p->texels->v, n, at, a, b, color->x, color->y, color->z);
 }
 
-/* Each pixel is a cell here, and its colour that of the sample at its upper left corner. Where the table ends, place 1
- * in the last cell is the last sample. */
+/* Each pixel is a cell, with the colour of the sample at its upper left corner. At the end of the table, 1 in the last
+ * cell is the last sample. */
 STAGE static void to_corner(int n, real *restrict a)
 {
     for (int i = 0; i < n; i++)
@@ -95,7 +96,7 @@ STAGE static void to_corner(int n, real *restrict a)
 
 static void nearest_eval(const color_texture *base, int n, const real *u, const real *w, vec3s *color)
 {
-    const image_pigment *p = (const image_pigment *)base;
+    const image_texture *p = (const image_texture *)base;
     int32_t at[LANES];
     real a[LANES], b[LANES];
     table_cells(&p->grid, n, u, w, at, a, b);
@@ -109,13 +110,13 @@ static const color_texture_ops nearest_methods = {.kind = "image", .eval = neare
 
 color_texture *color_image_new(const texels *t, const map_layout *l, bool nearest)
 {
-    image_pigment *p = calloc(1, sizeof *p);
+    image_texture *p = calloc(1, sizeof *p);
     if (!p)
         return NULL;
     p->base.ops = nearest ? &nearest_methods : &bilinear_methods;
     p->texels = t;
     table_lay(&p->grid, t->width, t->height, l);
-    if (nearest) { /* half a pixel back: cells begin where their pixels do */
+    if (nearest) { /* half a pixel on, so that cells begin where their pixels do */
         p->grid.ou += R(0.5);
         p->grid.ow += R(0.5);
     }

@@ -1,5 +1,5 @@
-/* The colour of a surface where it is not the same everywhere: a function of (u,w). It knows nothing of surfaces or
- * light. */
+/* Colour textures: linear colours as a function of (u,w), a checker or an image. They know nothing of surfaces or
+ * light. A texture does not change once it is made, and any number of threads may use it. */
 #ifndef KAGE_TEXTURE_COLOR_H
 #define KAGE_TEXTURE_COLOR_H
 
@@ -22,19 +22,19 @@ struct color_texture {
     const color_texture_ops *ops;
 };
 
-/* The pixels of an image, ready to be looked up; several pigments can share them. */
+/* The pixels of an image as a table; several colour textures can share them. */
 typedef struct texels texels;
 
-/* From an image of four values a pixel; the wrap is the layout's. NULL: out of memory, fewer than 2 x 2 pixels, or more
- * than 2^29. */
+/* From an image of four values a pixel, which is copied. The wrap is the layout's. NULL: out of memory, fewer than 2 x
+ * 2 pixels, or more than 2^29. */
 texels *texels_new(const image *rgba, const map_layout *l);
 void texels_free(texels *t);
 
-/* Fields of the two colours in turn, of that size, one beginning at `offset`. NULL: out of memory. */
+/* Two colours in turn, in fields of size[0] x size[1] in (u,w), with a corner at `offset`. NULL: out of memory. */
 color_texture *color_checker_new(const vec3 color[2], const double size[2], const double offset[2]);
 
-/* The image on (u,w) by a layout of the same wrap; the nearest pixel, or bilinear between their middles. The texels
- * must outlive it. */
+/* The image on (u,w), by a layout of the same wrap as that of the texels, which must outlive the texture. Colours are
+ * those of the nearest pixel, or bilinear between the middles of pixels. NULL: out of memory. */
 color_texture *color_image_new(const texels *t, const map_layout *l, bool nearest);
 
 void color_texture_free(color_texture *p);

@@ -1,13 +1,15 @@
+/* P and colours with u reflected at the ends of a range: each wraps the texture that it looks up. */
 #include "texture/mirrored_uv.h"
 
 #include <stdlib.h>
 
+/* Where u is reflected. */
 typedef struct ends {
     real lo, hi;
 } ends;
 
-/* u where it is looked up, and the sign of du there. */
-STAGE static void fold(int n, const ends *k, const real *restrict u, real *restrict to, real *restrict sign)
+/* u as it is looked up, and its sign there. */
+STAGE static void reflect(int n, const ends *k, const real *restrict u, real *restrict to, real *restrict sign)
 {
     const real lo = k->lo, hi = k->hi;
     for (int i = 0; i < n; i++) {
@@ -17,79 +19,80 @@ STAGE static void fold(int n, const ends *k, const real *restrict u, real *restr
     }
 }
 
-STAGE static void turn(int n, const real *restrict sign, real *restrict x)
+STAGE static void apply_sign(int n, const real *restrict sign, real *restrict x)
 {
     for (int i = 0; i < n; i++)
         x[i] *= sign[i];
 }
 
-typedef struct folded_perturb {
+typedef struct mirrored_bump {
     bump base;
-    bump_ops methods; /* the kind is that of what is folded; without jets and bound, as meshes are no sheets */
-    bump *of;
+    bump_ops methods; /* of the original's kind; no jets and no bound, which only patches need */
+    bump *of;         /* the original; owned */
     ends k;
-} folded_perturb;
+} mirrored_bump;
 
-static void perturb_eval(const bump *base, int n, const real *u, const real *w, int order, bump_values *h)
+static void mirrored_bump_eval(const bump *base, int n, const real *u, const real *w, int order, bump_values *h)
 {
-    const folded_perturb *f = (const folded_perturb *)base;
+    const mirrored_bump *f = (const mirrored_bump *)base;
     real at[LANES], sign[LANES];
-    fold(n, &f->k, u, at, sign);
+    reflect(n, &f->k, u, at, sign);
     f->of->ops->eval(f->of, n, at, w, order, h);
     if (order >= 1)
-        turn(n, sign, h->Pu);
+        apply_sign(n, sign, h->Pu);
     if (order >= 2)
-        turn(n, sign, h->Puw);
+        apply_sign(n, sign, h->Puw);
 }
 
-static void perturb_end(bump *base)
+static void mirrored_bump_free(bump *base)
 {
-    bump_free(((folded_perturb *)base)->of);
+    bump_free(((mirrored_bump *)base)->of);
     free(base);
 }
 
 bump *bump_mirrored_uv(bump *p, double lo, double hi)
 {
-    folded_perturb *f = p ? malloc(sizeof *f) : NULL;
+    mirrored_bump *f = p ? malloc(sizeof *f) : NULL;
     if (!f) {
         bump_free(p);
         return NULL;
     }
-    *f = (folded_perturb){
-        *p, {.kind = p->ops->kind, .eval = perturb_eval, .free = perturb_end}, p, {(real)lo, (real)hi}};
+    *f = (mirrored_bump){
+        *p, {.kind = p->ops->kind, .eval = mirrored_bump_eval, .free = mirrored_bump_free}, p, {(real)lo, (real)hi}};
     f->base.ops = &f->methods;
     return &f->base;
 }
 
-typedef struct folded_pigment {
+typedef struct mirrored_color {
     color_texture base;
     color_texture_ops methods;
-    color_texture *of;
+    color_texture *of; /* owned */
     ends k;
-} folded_pigment;
+} mirrored_color;
 
-static void pigment_eval(const color_texture *base, int n, const real *u, const real *w, vec3s *color)
+static void mirrored_color_eval(const color_texture *base, int n, const real *u, const real *w, vec3s *color)
 {
-    const folded_pigment *f = (const folded_pigment *)base;
+    const mirrored_color *f = (const mirrored_color *)base;
     real at[LANES], sign[LANES];
-    fold(n, &f->k, u, at, sign);
+    reflect(n, &f->k, u, at, sign);
     f->of->ops->eval(f->of, n, at, w, color);
 }
 
-static void pigment_end(color_texture *base)
+static void mirrored_color_free(color_texture *base)
 {
-    color_texture_free(((folded_pigment *)base)->of);
+    color_texture_free(((mirrored_color *)base)->of);
     free(base);
 }
 
 color_texture *color_mirrored_uv(color_texture *p, double lo, double hi)
 {
-    folded_pigment *f = p ? malloc(sizeof *f) : NULL;
+    mirrored_color *f = p ? malloc(sizeof *f) : NULL;
     if (!f) {
         color_texture_free(p);
         return NULL;
     }
-    *f = (folded_pigment){*p, {p->ops->kind, pigment_eval, pigment_end}, p, {(real)lo, (real)hi}};
+    *f = (mirrored_color){
+        *p, {.kind = p->ops->kind, .eval = mirrored_color_eval, .free = mirrored_color_free}, p, {(real)lo, (real)hi}};
     f->base.ops = &f->methods;
     return &f->base;
 }

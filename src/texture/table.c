@@ -1,19 +1,20 @@
+/* Bilinear look-up in tables, and how tables are laid out. */
 #include "texture/table.h"
 
 #include <stddef.h>
 
-/* The place of a coordinate among n samples: i + fraction, 0 <= i < n, the fraction in 0..1, whatever x is. */
+/* Where a coordinate lies among n samples: at i + fraction, 0 <= i < n, the fraction in 0..1, for any x, NaN too. */
 static inline int cell_of(real x, int n, int repeat, real *fraction)
 {
     real N = (real)n, iN = 1 / N, y = repeat ? x - real_floor(x * iN) * N : x;
-    y = real_min(real_max(y, 0), N); /* far out, and for NaN, the line above gives anything */
+    y = real_min(real_max(y, 0), N); /* the line above gives anything for a distant x or NaN */
     int i = (int)y;                  /* y >= 0, so this is the floor */
     i = i < n ? i : n - 1;
     *fraction = y - (real)i;
     return i;
 }
 
-/* Call it with a constant `repeat`: a choice in the loop would keep it from being vectorised. */
+/* To be called with a constant `repeat`: a choice within the loop would prevent SIMD. */
 static inline void cells(const table_grid *t, int repeat, int n, const real *restrict u, const real *restrict w,
                          int32_t *restrict at, real *restrict a, real *restrict b)
 {
@@ -37,7 +38,7 @@ STAGE static void cells_clamp(const table_grid *t, int n, const real *u, const r
     cells(t, 0, n, u, w, at, a, b);
 }
 
-/* One value alone: a gather. */
+/* One value: a gather. */
 STAGE static void map_one(const table_grid *t, const real *restrict v, int n, const int32_t *restrict at,
                           const real *restrict a, const real *restrict b, real *restrict out)
 {
@@ -51,9 +52,9 @@ STAGE static void map_one(const table_grid *t, const real *restrict v, int n, co
     }
 }
 
-/* All three of a table: the two left corners and the two right ones as one vector each way. Twelve gathers would cost
- * about twice as much. The fourth value is padding, but must not look dead to the compiler: it would take the vector to
- * pieces. So this is a stage of its own, and the next one picks the arrays out. */
+/* All three values: the left corners of a cell are one vector of 8, and so are the right ones. Twelve gathers would
+ * cost about twice as much. The fourth value is padding, yet it must not look dead to the compiler, which would then
+ * split the vector. So this is a stage of its own, and the next one picks out the arrays. */
 STAGE static void map_interpolate(const table_grid *t, const real *restrict v, int n, const int32_t *restrict at,
                                   const real *restrict a, const real *restrict b, real (*restrict out)[TABLE_VALUES])
 {
@@ -68,8 +69,8 @@ STAGE static void map_interpolate(const table_grid *t, const real *restrict v, i
     }
 }
 
-STAGE static void map_turn(int n, const real (*restrict from)[TABLE_VALUES], real *restrict x, real *restrict y,
-                           real *restrict z)
+STAGE static void map_unpack(int n, const real (*restrict from)[TABLE_VALUES], real *restrict x, real *restrict y,
+                             real *restrict z)
 {
     for (int i = 0; i < n; i++) {
         x[i] = from[i][0];
@@ -93,39 +94,27 @@ void table_three(const table_grid *t, const real *v, int n, const int32_t *at, c
 {
     real out[LANES][TABLE_VALUES];
     map_interpolate(t, v, n, at, a, b, out);
-    map_turn(n, (const real(*)[TABLE_VALUES])out, x, y, z);
+    map_unpack(n, (const real(*)[TABLE_VALUES])out, x, y, z);
 }
 
 /* ---- layout ---- */
 
-/* The index that stands for i outside 0..n-1. */
-static int wrapped(int i, int n, map_wrap wrap)
-{
-    if (wrap == MAP_CLAMP)
-        return i < 0 ? 0 : i < n ? i : n - 1;
-    int period = wrap == MAP_MIRROR ? 2 * n : n;
-    i = (i % period + period) % period;
-    return i < n ? i : 2 * n - 1 - i;
-}
-
-/* With samples on the edges a mirror does not double the first and the last, and a copy's last is the next one's
- * first; wrapped is for samples in the middle of cells. */
-int table_sample(int i, int n, const map_layout *l)
-{
-    if (!l->corners || l->wrap == MAP_CLAMP)
-        return wrapped(i, n, l->wrap);
-    if (l->wrap == MAP_REPEAT)
-        return wrapped(i, n - 1, MAP_REPEAT);
-    int period = 2 * (n - 1);
-    i = (i % period + period) % period;
-    return i < n ? i : period - i;
-}
-
-/* Cells to step over before the map repeats, or ends. */
+/* Cells after which the map repeats, or ends. */
 static int period(int n, const map_layout *l)
 {
     int cells = n - (l->corners || l->wrap == MAP_CLAMP);
     return l->wrap == MAP_MIRROR ? 2 * cells : cells;
+}
+
+/* A mirror with samples in the middle of cells repeats the first and the last; with samples on the edges it does not.
+ */
+int table_sample(int i, int n, const map_layout *l)
+{
+    if (l->wrap == MAP_CLAMP)
+        return i < 0 ? 0 : i < n ? i : n - 1;
+    const int p = period(n, l);
+    i = (i % p + p) % p;
+    return i < n ? i : p - !l->corners - i;
 }
 
 bool table_lay(table_grid *t, int width, int height, const map_layout *l)
@@ -140,5 +129,5 @@ bool table_lay(table_grid *t, int width, int height, const map_layout *l)
                       .ou = (real)(-l->offset[0] * ku - half),
                       .ow = (real)(-l->offset[1] * kw - half)};
     return width > 1 && height > 1 &&
-           (t->columns + 1L) * (t->rows + 1L) <= INT32_MAX / TABLE_VALUES; /* places are counted in 32 bits */
+           (t->columns + 1L) * (t->rows + 1L) <= INT32_MAX / TABLE_VALUES; /* indices have 32 bits */
 }

@@ -5,15 +5,12 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import pytest
 
-TOP = Path(__file__).resolve().parents[2]
-
-from bench import claims  # noqa: E402
-from bench.claims import FAILS, HOLDS, IN_PART, UNDECIDED, UNMEASURED  # noqa: E402
+from bench import claims
+from bench.claims import FAILS, HOLDS, IN_PART, UNDECIDED, UNMEASURED
 
 Report = dict[str, Any]
 Path_ = tuple[Any, ...]  # keys and indices

@@ -12,11 +12,10 @@ from typing import Any, cast
 
 import numpy as np
 import pytest
-from conftest import PROGRAM, TOP
 from PIL import Image
 
-
-from bench import cost, programs  # noqa: E402
+from bench import cost, programs
+from tests.conftest import PROGRAM, TOP
 
 needs_povray = pytest.mark.skipif(not shutil.which("povray"), reason="no povray")
 
@@ -68,12 +67,14 @@ def test_kage_stats_need_not_come_first() -> None:
 
 
 def test_kage_counts() -> None:
-    assert programs.parse_counts(KAGE_TEXT) == {"rays": 2073600, "shadow_rays": 2073599, "lookups": 1705798, "bumped": 1705790,
+    assert programs.parse_counts(KAGE_TEXT) == {"rays": 2073600, "shadow_rays": 2073599, "lookups": 1705798,
+                                                "bumped": 1705790,
                                                 "fell_back": 12}
 
 
 def test_kage_check() -> None:
-    assert programs.parse_check(CHECK_TEXT) == {"light": "lamp", "at": (-4, 5, -2.5), "receiver": "ground", "slope_median": 0.145,
+    assert programs.parse_check(CHECK_TEXT) == {"light": "lamp", "at": (-4, 5, -2.5), "receiver": "ground",
+                                                "slope_median": 0.145,
                                                 "slope_95": 0.291}
 
 
@@ -86,7 +87,8 @@ def test_fused_kernel() -> None:
 
 
 def test_embree_loop() -> None:
-    assert programs.parse_embree("G=1 build 0.3 ms\nembree16 130.90 ms 63.13 ns/pixel mean 0.41\n") == {"ns": 63.13, "build_s": 0.0003}
+    told = "G=1 build 0.3 ms\nembree16 130.90 ms 63.13 ns/pixel mean 0.41\n"
+    assert programs.parse_embree(told) == {"ns": 63.13, "build_s": 0.0003}
 
 
 def test_callgrind() -> None:
@@ -151,7 +153,8 @@ def test_peak_memory_is_the_commands_own() -> None:
 @pytest.mark.skipif(not shutil.which("valgrind"), reason="no valgrind")
 def test_instructions_do_not_depend_on_the_environment(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     """A longer environment moves the stack, and memset takes other steps by the place of an array."""
-    command = [PROGRAM, "render", "scenes/waves.yaml", "--shadow", "exact", "--size", "16x16", "--threads", "1", "--quiet"]
+    command = [PROGRAM, "render", "scenes/waves.yaml", "--shadow", "exact", "--size", "16x16", "--threads", "1",
+               "--quiet"]
     counts = set()
     for length in (0, 16, 32, 48):
         monkeypatch.setenv("LONG", "x" * length)
@@ -178,7 +181,8 @@ def test_shown_commands_are_for_the_top() -> None:
 def test_both_renderers_show_the_same_scene(tmp_path: Path) -> None:
     """By `none`, which is what POV-Ray does, the pictures differ only in how the slopes between texels are taken."""
     kage, povray = tmp_path / "kage.png", tmp_path / "povray.png"
-    programs.run([PROGRAM, "render", "scenes/cube.yaml", "--shadow", "none", "--size", "320x180", "--quiet", "-o", kage])
+    programs.run([PROGRAM, "render", "scenes/cube.yaml", "--shadow", "none", "--size", "320x180", "--quiet", "-o",
+                  kage])
     programs.run(["povray", "+Ibench/cube_bump_map.pov", "+W320", "+H180", "-A", "-D", "-P", "-V", f"+O{povray}"])
     a, b = (np.asarray(Image.open(path).convert("RGB"), dtype=float) for path in (kage, povray))
     difference = np.abs(a - b).max(axis=2)
@@ -190,7 +194,8 @@ def test_both_renderers_show_the_same_scene(tmp_path: Path) -> None:
 def test_height_field_is_the_displaced_surface(tmp_path: Path) -> None:
     """POV-Ray's triangles between the samples are not kage's bilinear patches, and end at the map's edge."""
     kage, povray = tmp_path / "kage.png", tmp_path / "povray.png"
-    programs.run([PROGRAM, "render", "scenes/cube.yaml", "--surface", "displaced", "--size", "320x240", "--quiet", "-o", kage])
+    programs.run([PROGRAM, "render", "scenes/cube.yaml", "--surface", "displaced", "--size", "320x240", "--quiet", "-o",
+                  kage])
     programs.run(["povray", "+Ibench/cube_height_field.pov", "+W320", "+H240", "-A", "-D", "-P", "-V", f"+O{povray}"])
     a, b = (np.asarray(Image.open(path).convert("RGB"), dtype=float)[40:] for path in (kage, povray))
     difference = np.abs(a - b).max(axis=2)

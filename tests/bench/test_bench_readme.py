@@ -7,10 +7,9 @@ import json
 from pathlib import Path
 
 import pytest
-from conftest import TOP
 
-
-from bench import readme  # noqa: E402
+from bench import readme
+from tests.conftest import TOP
 
 
 @pytest.fixture
@@ -27,7 +26,8 @@ def test_readme_and_docs_agree_with_the_result(data: readme.Data) -> None:
     (("quality", "scenes", "cube", "0", "mask", "wrong"), {"README.md", "docs/method.md", "docs/cost-error.svg"}),
     (("quality", "scenes", "waves", "iter:2", "mask", "wrong"), {"docs/method.md"}),
     (("cost", "scenes", "cube", "methods", "0", "ns", "median"), {"README.md", "docs/design.md"}),
-    (("cost", "scenes", "cube", "methods", "1", "added", "median"), {"README.md", "docs/design.md", "docs/cost-error.svg"}),
+    (("cost", "scenes", "cube", "methods", "1", "added", "median"),
+     {"README.md", "docs/design.md", "docs/cost-error.svg"}),
     (("claims", 0, "verdict"), {"README.md"}),
     (("quality", "parity", "sphere", "mask_differs"), {"README.md"}),
     (("circumstances", "commit"), {"README.md", "docs/design.md"}),

@@ -8,11 +8,10 @@ import sys
 from copy import deepcopy
 from pathlib import Path
 
-import bench_sample
-import browser
 import pytest
 
 from bench import plots, report, tables
+from tests.support import bench_sample, browser
 
 FILES = {"index.html", "report.md", "cost.csv", "quality.csv", "sweeps.csv", "slopes.csv"}
 NO_PICTURES = {"size": [640, 480], "scenes": {}}
@@ -160,7 +159,8 @@ def test_without_povray_the_truth_is_exact(sample: tuple[dict, Path]) -> None:
 
 
 @pytest.mark.parametrize(("value", "expected"), [
-    (None, "–"), (0, "0"), (0.3, "0.3"), (31.65, "31.6"), (1449.0, "1449"), (5.2e-5, "5.2·10⁻⁵"), (-0.25, "−0.25"),
+    (None, "–"), (0, "0"), (0.3, "0.3"), (31.65, "31.6"), (1449.0, "1449"),
+    (5.2e-5, "5.2·10⁻⁵"), (-0.25, "−0.25"),
     (float("inf"), "∞")])
 def test_short(value: float | None, expected: str) -> None:
     assert tables.short(value) == expected

@@ -13,13 +13,13 @@ from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 
-import browser
 import pytest
-from conftest import PROGRAM, TOP, start
 
-from bench import runner, store, summary  # noqa: E402
-from bench.programs import MeasureError  # noqa: E402
-from bench.runner import Job, Stage  # noqa: E402
+from bench import runner, store, summary
+from bench.programs import MeasureError
+from bench.runner import Job, Stage
+from tests.conftest import PROGRAM, TOP, start
+from tests.support import browser
 
 # What is kept --------------------------------------------------------------------------------------
 
@@ -56,7 +56,8 @@ def test_a_torn_line_was_not_finished(tmp_path: Path, cut: int) -> None:
         assert kept.get("a", {}) == kept.get("c", {}) == {"x": 1}
 
 
-@pytest.mark.parametrize("line", ["", "[]", "7", "{}", '{"job": 1, "inputs": {}, "value": {}}', "\x00\xff", '{"job": "a"}'])
+@pytest.mark.parametrize("line", ["", "[]", "7", "{}", '{"job": 1, "inputs": {}, "value": {}}', "\x00\xff",
+                                  '{"job": "a"}'])
 def test_nonsense_is_passed_over(tmp_path: Path, line: str) -> None:
     path = tmp_path / "r.jsonl"
     path.write_text(line + "\n" + json.dumps(record("a")) + "\n")
@@ -80,7 +81,8 @@ class Work:
         self.done: list[str] = []
         self.store = store.Store(folder / "r.jsonl")
 
-    def job(self, name: str, stage: Stage = Stage.MEASURES, fault: Exception | None = None, files: tuple[Path, ...] = (),
+    def job(self, name: str, stage: Stage = Stage.MEASURES, fault: Exception | None = None,
+            files: tuple[Path, ...] = (),
             **inputs: object) -> Job:
         def work() -> store.Value:
             self.done.append(name)
@@ -160,8 +162,9 @@ for name in {missing}:
     sys.modules[name] = None
 if {tiny}:
     from bench import plan
-    plan.LEVELS["quick"] = dataclasses.replace(plan.LEVELS["quick"], methods=("none", "0", "exact", "displaced"), rounds=3,
-        cost_size=(96, 54), povray_size=(48, 27), count_size=(16, 16), slopes=(0.2, 1.0), angles=(30, 60))
+    plan.LEVELS["quick"] = dataclasses.replace(
+        plan.LEVELS["quick"], methods=("none", "0", "exact", "displaced"), rounds=3, cost_size=(96, 54),
+        povray_size=(48, 27), count_size=(16, 16), slopes=(0.2, 1.0), angles=(30, 60))
 sys.argv = ["bench", *{arguments}]
 runpy.run_module("bench", run_name="__main__", alter_sys=True)
 """
@@ -188,7 +191,8 @@ def report(out: Path) -> dict[str, object]:
 def stable(out: Path) -> dict[str, object]:
     """What may not differ from run to run."""
     data = report(out)
-    cost = {scene: {m: {k: c[k] for k in ("lookups", "shadow_rays", "instructions_added")} for m, c in found["methods"].items()}
+    cost = {scene: {m: {k: c[k] for k in ("lookups", "shadow_rays", "instructions_added")} for m,
+                    c in found["methods"].items()}
             for scene, found in data["cost"]["scenes"].items()}
     return {"quality": data["quality"], "sweeps": data["sweeps"], "slopes": data["slopes"], "cost": cost}
 
@@ -208,7 +212,8 @@ def test_a_small_bench_has_it_all(whole: Path) -> None:
     assert none["mask"]["wrong"] > 3 > 1 > zero["mask"]["wrong"] > 0.1
     assert none["edge_moved"] == {"mean": 0, "p95": 0, "hausdorff": 0} and zero["edge_moved"]["mean"] > 1
     assert zero["hybrid"]["flip"] < none["hybrid"]["flip"] < none["self"]["flip"]
-    assert zero["tau"]["median"] < none["tau"]["median"] and data["quality"]["scenes"]["waves"]["exact"]["tau"]["p95"] == 0
+    assert zero["tau"]["median"] < none["tau"]["median"]
+    assert data["quality"]["scenes"]["waves"]["exact"]["tau"]["p95"] == 0
     assert data["quality"]["parity"]["waves"]["cast"] > 99.8
     methods = data["cost"]["scenes"]["waves"]["methods"]
     assert methods["none"]["added"] is None and methods["displaced"]["added"]["median"] > 100
@@ -301,8 +306,10 @@ def test_without_povray(tmp_path: Path) -> None:
     assert data["cost"]["peers"] == [] and data["cost"]["scenes"]["waves"]["methods"]["0"]["ns"]["n"] == 3
 
 
-@pytest.mark.parametrize("arguments", [["--level", "huge"], ["--scene", "moon"], ["--only", "nothing"], ["--kage", "none"],
+@pytest.mark.parametrize("arguments",
+                         [["--level", "huge"], ["--scene", "moon"], ["--only", "nothing"], ["--kage", "none"],
                                        ["more"]])
 def test_wrong_usage(arguments: list[str]) -> None:
-    done = subprocess.run([sys.executable, "-m", "bench", *arguments], cwd=TOP, capture_output=True, text=True, timeout=60)
+    done = subprocess.run([sys.executable, "-m", "bench", *arguments], cwd=TOP, capture_output=True, text=True,
+                          timeout=60)
     assert done.returncode == 2 and "bench: error: " in done.stderr

@@ -7,14 +7,11 @@ import math
 import random
 import sys
 from collections.abc import Sequence
-from pathlib import Path
 
 import numpy as np
 import pytest
 
-TOP = Path(__file__).resolve().parents[2]
-
-from bench import images, masks, stats  # noqa: E402
+from bench import images, masks, stats
 
 # Intervals ------------------------------------------------------------------------------------------
 

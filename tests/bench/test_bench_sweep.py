@@ -1,4 +1,5 @@
-"""The sweeps' scenes: eye and light are where the axes say, the bumps are as steep, and the shadow is in the picture."""
+"""The sweeps' scenes: eye and light are where the axes say, the bumps are as steep, and the shadow is in the
+picture."""
 
 from __future__ import annotations
 
@@ -7,11 +8,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import PROGRAM, TOP
 
-
-from bench import plan, programs, sweep  # noqa: E402
-from bench.sweep import Place  # noqa: E402
+from bench import plan, programs, sweep
+from bench.sweep import Place
+from tests.conftest import PROGRAM
 
 
 @pytest.fixture(scope="module", params=["waves", "cube"])
@@ -47,11 +47,13 @@ def test_slopes_are_kept_at_other_frequencies(scene: plan.Facts, frequency: floa
 @pytest.mark.parametrize("level", ["quick", "normal"])
 def test_every_corner_shows_shadow(scene: plan.Facts, level: str, tmp_path: Path) -> None:
     """`none` alone is rendered: its shadow is about the true one's size."""
-    one = plan.Bench(PROGRAM, "tested", tmp_path, dataclasses.replace(plan.LEVELS[level], methods=("none",)), {scene.name: scene})
+    one = plan.Bench(PROGRAM, "tested", tmp_path, dataclasses.replace(plan.LEVELS[level], methods=("none",)),
+                     {scene.name: scene})
     angles, slopes = one.level.angles, one.level.slopes
     for view, light, slope in [(angles[0], 45, slopes[0]), (angles[-1], 45, slopes[-1]), (40, angles[0], slopes[-1]),
                                (40, angles[-1], slopes[0])]:
-        assert sweep.measure_cell(one, scene, Place(slope=slope, view=view, light=light))["shadow"] >= sweep.LEAST_SHADOW
+        assert sweep.measure_cell(one, scene,
+                                  Place(slope=slope, view=view, light=light))["shadow"] >= sweep.LEAST_SHADOW
 
 
 def test_cells_count_wrong_pixels(scene: plan.Facts, tmp_path: Path) -> None:

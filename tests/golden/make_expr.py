@@ -3,7 +3,7 @@
 
 Nothing here comes from kage: each text is evaluated as Python (with ** for ^, which binds and associates
 the same way) by mpmath with 50 digits, and its partials are mpmath's numerical ones at that precision, good
-to far more digits than a double has. Noise is written anew from its description in src/noise.h.
+to far more digits than a double has. Noise is written anew from its description in src/math/noise.h.
 
     python3 -m venv venv && venv/bin/pip install mpmath && venv/bin/python tests/golden/make_expr.py
 """

@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """Golden partials of surfaces that are known by their points alone: writes sheet.json beside this file.
 
-Nothing here comes from kage. Functions are evaluated as Python by mpmath with 50 digits, their partials are mpmath's numerical ones at
-that precision; Bezier patches by Bernstein's polynomials in fractions, differentiated term by term, without any rounding.
+Nothing here comes from kage. Functions are evaluated as Python by mpmath with 50 digits, their partials are mpmath's
+numerical ones at that precision; Bezier patches by Bernstein's polynomials in fractions, differentiated term by term,
+without any rounding.
 
     python3 -m venv venv && venv/bin/pip install mpmath && venv/bin/python tests/golden/make_sheet.py
 """
@@ -77,7 +78,8 @@ def main():
     for k in range(3):
         points = [[dyadic(rng, -2, 2) for _ in range(3)] for _ in range(16)]
         rows = []
-        places = [(0, 0), (1, 0), (0, 1), (1, 1), (0.5, 0.5)] + [(dyadic(rng, 0, 1), dyadic(rng, 0, 1)) for _ in range(10)]
+        places = [(0, 0), (1, 0), (0, 1), (1, 1),
+                  (0.5, 0.5)] + [(dyadic(rng, 0, 1), dyadic(rng, 0, 1)) for _ in range(10)]
         for u, w in places:
             axes = [of_patch(points, a, u, w) for a in range(3)]
             rows.append("[" + ",".join(map(number, [u, w] + [axes[a][o] for o in range(6) for a in range(3)])) + "]")

@@ -11,12 +11,13 @@ import subprocess
 import time
 from pathlib import Path
 
-import models
 import numpy as np
 import OpenEXR
 import pytest
-from conftest import PROGRAM, SCENE, TOP, Kage, start
 from PIL import Image
+
+from tests.conftest import PROGRAM, SCENE, TOP, Kage, start
+from tests.support import models
 
 DATA = TOP / "tests" / "data"
 CUBE, SPHERE = DATA / "cube.yaml", DATA / "sphere.yaml"
@@ -212,7 +213,8 @@ def test_made_again_from_its_own_metadata(kage: Kage) -> None:
 @pytest.mark.parametrize("aa", [1, 2])
 def test_crop_is_that_part_of_the_picture(kage: Kage, scene: Path, aa: int) -> None:
     kage.good("render", scene, *SMALL, "--aa", aa, "--shadow", "2", "-o", "all.exr", "-o", "all.png")
-    kage.good("render", scene, *SMALL, "--aa", aa, "--shadow", "2", "-o", "part.exr", "-o", "part.png", "--crop", "37,21,120,86")
+    kage.good("render", scene, *SMALL, "--aa", aa, "--shadow", "2", "-o", "part.exr", "-o", "part.png", "--crop",
+              "37,21,120,86")
     whole, part = exr(kage.folder / "all.exr"), exr(kage.folder / "part.exr")
     assert same({name: plane[21:86, 37:120] for name, plane in whole.items()}, part)
     assert (png(kage.folder / "all.png")[21:86, 37:120] == png(kage.folder / "part.png")).all()
@@ -247,7 +249,8 @@ def test_set_is_an_edited_scene(kage: Kage) -> None:
     (kage.folder / "bumps.png").symlink_to(DATA / "bumps.png")
     (kage.folder / "edited.yaml").write_text(edited)
     kage.good("render", "edited.yaml", *SMALL, "-o", "a.exr")
-    kage.good("render", CUBE, *SMALL, "-o", "b.exr", "--set", "objects.ground.bump.scale=0.1", "--set", "camera.from.1=3")
+    kage.good("render", CUBE, *SMALL, "-o", "b.exr", "--set", "objects.ground.bump.scale=0.1", "--set",
+              "camera.from.1=3")
     assert same(exr(kage.folder / "a.exr"), exr(kage.folder / "b.exr"))
 
 
@@ -261,7 +264,8 @@ def test_set_adds_removes_nothing_else(kage: Kage) -> None:
 @pytest.mark.parametrize("scene", [CUBE, SPHERE], ids=["cube", "sphere"])
 def test_any_number_of_threads_gives_the_same_bytes(kage: Kage, scene: Path) -> None:
     for threads in (1, 2, 7):
-        kage.good("render", scene, *SMALL, "--aa", 2, "--threads", threads, "-o", f"{threads}.png", "-o", f"{threads}.exr")
+        kage.good("render", scene, *SMALL, "--aa", 2, "--threads", threads, "-o", f"{threads}.png", "-o",
+                  f"{threads}.exr")
     for ending in ("png", "exr"):
         pictures = {(kage.folder / f"{threads}.{ending}").read_bytes() for threads in (1, 2, 7)}
         assert len(pictures) == 1
@@ -292,7 +296,8 @@ def test_every_method_is_the_same_where_the_surface_is_flat(kage: Kage) -> None:
 # ---- kage pixel ----
 
 
-def pixel(kage: Kage, scene: Path, x: int, y: int, *options: object) -> tuple[dict[str, list[float]], dict[str, list[str]]]:
+def pixel(kage: Kage, scene: Path, x: int, y: int, *options: object) -> tuple[dict[str, list[float]],
+                                                                              dict[str, list[str]]]:
     """The values of `kage pixel`, and its table: method -> columns."""
     head, _, table = kage.good("pixel", scene, f"{x},{y}", *options).partition("\n\n")
     values = {}
@@ -351,7 +356,8 @@ def test_pixel_agrees_with_the_layers(kage: Kage, scene: Path, method: str) -> N
 
 def test_stats(kage: Kage) -> None:
     text = kage.good("render", CUBE, *SMALL, "--stats", "--shadow", "2", "-o", "a.png")
-    for stage in ("render", "camera", "hit", "sort", "surface", "bump", "normal", "shift", "shadow", "shade", "film", "output"):
+    for stage in ("render", "camera", "hit", "sort", "surface", "bump", "normal", "shift", "shadow", "shade", "film",
+                  "output"):
         assert re.search(rf"^ *{stage} +[\d.]+ ms", text, re.MULTILINE), stage
     assert "Mrays/s" in text
     assert re.search(r"camera rays 19200, shadow rays \d+, height look-ups \d+", text)
@@ -399,7 +405,8 @@ def shown(said: str) -> list[str]:
 
 def test_progress_on_a_terminal(kage: Kage) -> None:
     status, said = on_terminal(
-        kage, "render", CUBE, "--size", "2400x1800", "--aa", "3", "--threads", "1", "--crop", "0,0,2400,1200", "-o", "a.png"
+        kage, "render", CUBE, "--size", "2400x1800", "--aa", "3", "--threads", "1", "--crop", "0,0,2400,1200", "-o",
+        "a.png"
     )
     assert status == 0
     bars = re.findall(r"\rcube\.yaml \[(#*)(\.*)\] +(\d+) %  [\d.]+ Mpixel/s  [\d.]+ s left", said)
@@ -441,7 +448,8 @@ def test_full_disk(kage: Kage, ending: str) -> None:
 @pytest.mark.parametrize("wait", [0.05, 0.3, 0.6, 0.9, 1.2])
 def test_interrupt_leaves_no_half_file(kage: Kage, wait: float) -> None:
     """Ctrl-C at several times, some of them while files are written."""
-    command = [PROGRAM, "render", CUBE, "--size", "1600x1200", "-o", "a.exr", "-o", "b.png", "-o", "c.exr", "-o", "d.png"]
+    command = [PROGRAM, "render", CUBE, "--size", "1600x1200", "-o", "a.exr", "-o", "b.png", "-o", "c.exr", "-o",
+               "d.png"]
     process = start(command, cwd=kage.folder, stderr=subprocess.PIPE)
     time.sleep(wait)
     process.send_signal(signal.SIGINT)
@@ -457,7 +465,8 @@ def test_interrupt_leaves_no_half_file(kage: Kage, wait: float) -> None:
 
 # ---- what no output replaces ----
 
-PATCH = "0 0 0, 0 0 1, 0 0 2, 0 0 3, 1 0 0, 1 1 1, 1 1 2, 1 0 3, 2 0 0, 2 1 1, 2 1 2, 2 0 3, 3 0 0, 3 0 1, 3 0 2, 3 0 3\n"
+PATCH = ("0 0 0, 0 0 1, 0 0 2, 0 0 3, 1 0 0, 1 1 1, 1 1 2, 1 0 3, "
+         "2 0 0, 2 1 1, 2 1 2, 2 0 3, 3 0 0, 3 0 1, 3 0 2, 3 0 3\n")
 MADE_FROM = """
   cloth: {patches: {file: "data/cloth"}, material: clay}
   roof: {mesh: {file: roof.obj}, material: clay}
@@ -478,7 +487,8 @@ def write_hill(kage: Kage) -> dict[str, bytes]:
     (folder / "data" / "cloth").write_text(PATCH)
     (folder / "roof.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
     models.gltf(folder / "model.gltf", models.ball(8, 4), buffer="model.bin")
-    scene = SCENE.replace("map.png", "hill.png").replace("materials:", "materials:\n  tiles: {color: {image: {file: tiles.exr}}}")
+    scene = SCENE.replace("map.png", "hill.png").replace("materials:",
+                                                         "materials:\n  tiles: {color: {image: {file: tiles.exr}}}")
     (folder / "hill.yaml").write_text(scene + MADE_FROM.strip("\n") + "\n")
     return contents(kage)
 
@@ -519,9 +529,11 @@ def test_no_output_is_an_input(kage: Kage, name: str, link: str, ending: str) ->
 def test_no_output_is_an_input_by_its_own_name(kage: Kage) -> None:
     write_hill(kage)
     for name in ("hill.png", "./data/../hill.png", "tiles.exr"):
-        assert refuses(kage, "render", "hill.yaml", "-o", name) == f"kage: {name}: the scene is made from this file, expected -o with another name\n"
+        assert refuses(kage, "render", "hill.yaml", "-o",
+                       name) == f"kage: {name}: the scene is made from this file, expected -o with another name\n"
     for more in ([], ["--overwrite"]):
-        assert refuses(kage, "render", "hill.yaml", *more) == "kage: hill.png: the scene is made from this file, expected -o with another name\n"
+        assert refuses(kage, "render", "hill.yaml",
+                       *more) == "kage: hill.png: the scene is made from this file, expected -o with another name\n"
 
 
 def test_the_default_output_replaces_no_other_file(kage: Kage) -> None:

@@ -9,7 +9,8 @@ from pathlib import Path
 import numpy as np
 import OpenEXR
 import pytest
-from conftest import PROGRAM, TOP
+
+from tests.conftest import PROGRAM, TOP
 
 SCENES = sorted((TOP / "scenes" / "gallery").glob("*.yaml"))
 SCRIPT = TOP / "scripts" / "gallery.py"
@@ -48,7 +49,8 @@ def test_page(tmp_path: Path) -> None:
 
 def test_what_is_missing_is_told_and_no_page_made(tmp_path: Path) -> None:
     done = run("-o", tmp_path / "index.html", SCENES[0])
-    assert done.returncode == 1 and f"no {SCENES[0].stem}-none.png, {SCENES[0].stem}.png; have they been rendered?" in done.stderr
+    first = SCENES[0].stem
+    assert done.returncode == 1 and f"no {first}-none.png, {first}.png; have they been rendered?" in done.stderr
     (tmp_path / "bare.yaml").write_text("camera: {}\n")
     done = run("-o", tmp_path / "index.html", tmp_path / "bare.yaml")
     assert done.returncode == 1 and "expected a comment in its first line" in done.stderr

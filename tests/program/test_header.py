@@ -9,7 +9,9 @@ from pathlib import Path
 
 import pytest
 
-SRC = Path(__file__).resolve().parents[2] / "include"
+from tests.conftest import TOP
+
+SRC = TOP / "include"
 WARNINGS = ["-Wall", "-Wextra", "-Wpedantic", "-Wshadow", "-Wconversion", "-Wdouble-promotion", "-Wundef", "-Werror"]
 FLAGS = ["-O3", "-fno-math-errno", "-fno-trapping-math", "-ffp-contract=off"]
 COMPILERS = [("gcc", "c99"), ("clang", "c99"), ("g++", "c++17"), ("clang++", "c++17")]
@@ -45,7 +47,8 @@ int main(void)
     }
     printf("%a %d\n", (double)m.tau, m.found);
     for (int k = 0; k < 3; k++) { /* no bound above, none below, none at all */
-        bs_slab endless = bs_slab_of(v, k ? (bs_real)-INFINITY : (bs_real)-.1, k == 1 ? (bs_real).2 : (bs_real)INFINITY);
+        bs_real low = k ? (bs_real)-INFINITY : (bs_real)-.1, high = k == 1 ? (bs_real).2 : (bs_real)INFINITY;
+        bs_slab endless = bs_slab_of(v, low, high);
         bs_march e = bs_march_start(endless);
         for (int i = 0; i <= 5; i++) {
             bs_real t = bs_march_tau(endless, i, 5);
@@ -101,7 +104,8 @@ def test_alike_in_every_language(compiler: str, standard: str, real: list[str], 
 def test_vectorises(order: int, tmp_path: Path) -> None:
     source = tmp_path / "loop.c"
     source.write_text(LOOP)
-    command = ["gcc", "-std=c99", *FLAGS, "-fopt-info-vec", f"-DORDER={order}", f"-I{SRC}", "-c", source, "-o", tmp_path / "loop.o"]
+    command = ["gcc", "-std=c99", *FLAGS, "-fopt-info-vec", f"-DORDER={order}", f"-I{SRC}", "-c", source, "-o",
+               tmp_path / "loop.o"]
     told = subprocess.run(command, check=True, capture_output=True, text=True, timeout=120).stderr
     assert re.search(r"loop vectorized using 16 byte vectors", told), told
 

@@ -1,13 +1,12 @@
 """Pictures as a whole: what the method must give exactly, and the same bytes on every processor.
 
-The unit tests (tests/test_shift.c and its neighbours) look at the formulas; here the whole way from the scene file to the
-layers of the EXR is looked at.
+The unit tests (tests/test_shift.c and its neighbours) look at the formulas; here the whole way from the scene file to
+the layers of the EXR is looked at.
 """
 
 from __future__ import annotations
 
 import hashlib
-import os
 import platform
 import re
 import subprocess
@@ -18,8 +17,8 @@ import OpenEXR
 import pytest
 from PIL import Image
 
-TOP = Path(__file__).resolve().parents[2]
-KAGE = Path(os.environ.get("KAGE", TOP / "build" / "float" / "kage"))
+from tests.conftest import PROGRAM as KAGE
+from tests.conftest import TOP
 
 SCENE = """
 camera: {{from: [0, 3.9, -5.2], at: [0.25, 0.1, 0.05], fov: 36}}
@@ -63,13 +62,16 @@ def shadows_differ(a: dict[str, np.ndarray], b: dict[str, np.ndarray]) -> tuple[
 
 @pytest.mark.parametrize("method", ["1", "2", "2+"])
 def test_clamped_ramp_is_the_function(tmp_path: Path, method: str) -> None:
-    """A ramp between two levels, as a map and as a function: the same normals and shifts, but for a sample's distance around the bends."""
+    """A ramp between two levels, as a map and as a function: the same normals and shifts, but for a sample's distance
+    around the bends."""
     n = 256
     Image.fromarray(np.tile(np.arange(n, dtype=np.uint8), (4, 1))).save(tmp_path / "ramp.png")
     low, high, at = -0.5 + 0.5 / n, 0.5 - 0.5 / n, ["--shadow", method, "--no-guard", "--size", "160x120"]
     function = f"0.25*clamp((u-({low}))/{high - low},0,1)"
     want = render(tmp_path, SCENE.format(ground=FLAT, bump=f', bump: {{function: "{function}"}}'), *at)
-    got = render(tmp_path, SCENE.format(ground=FLAT, bump=", bump: {map: {file: ramp.png}, scale: 0.25, zero: 0, sign: up, size: [1, 1], "
+    got = render(tmp_path,
+                 SCENE.format(ground=FLAT,
+                              bump=", bump: {map: {file: ramp.png}, scale: 0.25, zero: 0, sign: up, size: [1, 1], "
                                                           "offset: [-0.5, -0.5], wrap: clamp}"), *at)
     u, bend = want["uw.u"], 1.01 / n
     away = ground(want) & (np.abs(u - low) > bend) & (np.abs(u - high) > bend)
@@ -83,13 +85,15 @@ def test_clamped_ramp_is_the_function(tmp_path: Path, method: str) -> None:
 @pytest.mark.parametrize("method", ["march:1", "march:4"])
 @pytest.mark.parametrize("function", ["0.1*sqrt(u^2+w^2)", "-0.1*sqrt(u^2+w^2)", "0.01*u^2", "0.3*exp(u)", "0.1*u"])
 def test_march_without_a_bound_is_order_0(tmp_path: Path, method: str, function: str) -> None:
-    """P on a plane, with no upper bound, no lower one, or neither: there is no slab to step through. And it counts as a fallback."""
+    """P on a plane, with no upper bound, no lower one, or neither: there is no slab to step through. And it counts as a
+    fallback."""
     scene = SCENE.format(ground=FLAT, bump=f', bump: {{function: "{function}"}}')
     want = render(tmp_path, scene, "--shadow", "0", "--size", "160x120")
     got = render(tmp_path, scene, "--shadow", method, "--size", "160x120")
     assert not np.isnan(want["tau"]).any() and (want["visibility.lamp"][ground(want)] == 0).sum() > 700
     assert all(np.array_equal(got[name], want[name], equal_nan=True) for name in want)
-    told = subprocess.run([KAGE, "render", tmp_path / "scene.yaml", "-o", tmp_path / "out.exr", "--shadow", method, "--stats", "--size", "40x30"],
+    told = subprocess.run([KAGE, "render", tmp_path / "scene.yaml", "-o", tmp_path / "out.exr", "--shadow", method,
+                           "--stats", "--size", "40x30"],
                           check=True, capture_output=True, text=True, timeout=120).stdout
     assert re.search(rf"bumped samples [1-9]\d* by method {method}, fell back \d+ \(100\.0* %\)", told), told
 
@@ -113,7 +117,8 @@ def test_constant_bump_under_other_lights(tmp_path: Path, light: str) -> None:
     """Every shadow ray begins at the shifted origin, those to each sample of an area, too."""
 
     def with_light(**parts: str) -> str:
-        return SCENE.format(**parts).replace("lamp: {at: [-4.5, 5.2, -2.2]}", f"lamp: {{at: [-4.5, 5.2, -2.2], {light}}}")
+        return SCENE.format(**parts).replace("lamp: {at: [-4.5, 5.2, -2.2]}",
+                                             f"lamp: {{at: [-4.5, 5.2, -2.2], {light}}}")
 
     bump = ', bump: {function: "0.08"}'
     assert light in with_light(ground=FLAT, bump=bump)
@@ -125,7 +130,8 @@ def test_constant_bump_under_other_lights(tmp_path: Path, light: str) -> None:
     none = render(tmp_path, with_light(ground=FLAT, bump=bump), "--shadow", "none")
     assert shadows_differ(none, moved)[0] > 100
     if "area" in light:
-        assert set(np.unique(bumped["visibility.lamp"] * 16) % 1) == {0} and len(np.unique(bumped["visibility.lamp"])) == 17
+        assert set(np.unique(bumped["visibility.lamp"] * 16) % 1) == {0}
+    assert len(np.unique(bumped["visibility.lamp"])) == 17
 
 
 @pytest.mark.parametrize("method, exact", [("1", True), ("2", True), ("2+", True), ("0", False)])
@@ -185,7 +191,8 @@ materials:
   clay: {{color: [0.8, 0.7, 0.6], phong: 0.4, specular: 0.3}}
   tiles: {{color: {{checker: {{even: [0.9, 0.9, 0.9], odd: [0.2, 0.1, 0.1], size: [0.5, 0.5]}}}}}}
 objects:
-  ground: {{plane: {{origin: [0, 0, 0], u: [0, 0, 1], w: [1, 0, 0]}}, material: tiles, bump: {{function: "0.05*sin(7*u)*cos(5*w)"}}}}
+  ground: {{plane: {{origin: [0, 0, 0], u: [0, 0, 1], w: [1, 0, 0]}}, material: tiles,
+    bump: {{function: "0.05*sin(7*u)*cos(5*w)"}}}}
   ball: {{sphere: {{center: [0.5, 0.9, -0.4], radius: 0.6}}, material: clay}}
 """
 
@@ -211,7 +218,8 @@ def test_adaptive(tmp_path: Path, view: str, aa: str, threshold: float) -> None:
     marked[:-1] |= down
     assert (0.01 < marked.mean() < 0.9) if threshold and threshold < 3 else threshold == 0 or not marked.any()
     for name in got:
-        want = np.where(marked, all_of[name], one[name]) if name in ("R", "G", "B") or name.startswith("visibility") else one[name]
+        want = np.where(marked, all_of[name],
+                        one[name]) if name in ("R", "G", "B") or name.startswith("visibility") else one[name]
         assert got[name].tobytes() == want.tobytes(), name
     for options in (["--threads", "1"], ["--threads", "5"]):
         again = render(tmp_path, scene, "--aa", aa, "--aa-threshold", str(threshold), *options)
@@ -257,7 +265,8 @@ def test_a_light_right_behind_gives_no_highlight(tmp_path: Path, bump: str, roug
 def test_the_sharpest_highlight_is_finite(tmp_path: Path) -> None:
     """All of a plane in the middle of its highlight: the cosine is 1 to the last digits."""
     for x, y, z in ((5, 1, 2), (1, 1, 4), (3, 1, 2), (1, 2, 3)):
-        scene = SHINY.format(eye=[x, y, -z], at=[0, 0, 0], lens="width: 4", lamp=f"[{-x}, {y}, {z}], parallel: {{to: [0, 0, 0]}}", roughness="1e-6",
+        scene = SHINY.format(eye=[x, y, -z], at=[0, 0, 0], lens="width: 4",
+                             lamp=f"[{-x}, {y}, {z}], parallel: {{to: [0, 0, 0]}}", roughness="1e-6",
                              thing="ground: {plane: {origin: [0, 0, 0], u: [0, 0, 1], w: [1, 0, 0]}, material: clay}")
         color = rgb(render(tmp_path, scene))
         assert np.isfinite(color).all()
@@ -279,7 +288,8 @@ materials:
 objects:
   {mirror}
   floor: {{plane: {{origin: [0, -1, 0], {axes}}}, material: clay, bump: {{function: "{bump}"}}}}
-  ball: {{sphere: {{center: [0.4, 0, {near}4.5], radius: 0.8}}, material: red, bump: {{function: "0.05*cos(5*u)*sin(7*w)*sin(w)"}}}}
+  ball: {{sphere: {{center: [0.4, 0, {near}4.5], radius: 0.8}}, material: red,
+    bump: {{function: "0.05*cos(5*u)*sin(7*w)*sin(w)"}}}}
   block: {{box: {{from: [-1.6, 0.2, {near}5], to: [-0.8, 1.2, {near}4]}}, material: clay}}
 """
 
@@ -288,14 +298,18 @@ def share_close(a: dict[str, np.ndarray], b: dict[str, np.ndarray], tolerance: f
     return float((np.abs(rgb(a) - rgb(b)).max(axis=-1) < tolerance).mean())
 
 
-@pytest.mark.parametrize("options", [["--shadow", "none"], ["--shadow", "2"], ["--shadow", "march:4"], ["--shadow", "exact"],
+@pytest.mark.parametrize("options",
+                         [["--shadow", "none"], ["--shadow", "2"], ["--shadow", "march:4"], ["--shadow", "exact"],
                                      ["--surface", "displaced"]], ids=lambda o: o[-1])
 def test_mirror_is_the_mirrored_scene(tmp_path: Path, options: list[str]) -> None:
-    """What stands behind the eye, seen in a mirror, is that scene mirrored: every method works on reflected rays, too."""
+    """What stands behind the eye, seen in a mirror, is that scene mirrored: every method works on reflected rays,
+    too."""
     mirror = "mirror: {plane: {origin: [0, 0, 0], u: [1, 0, 0], w: [0, -1, 0]}, material: mirror}"
     bump = "0.05*sin(5*{0})*cos(3*{1})"
-    seen = render(tmp_path, VANITY.format(near="-", mirror=mirror, axes="u: [0, 0, 1], w: [1, 0, 0]", bump=bump.format("u", "w")), *options)
-    want = render(tmp_path, VANITY.format(near="", mirror="", axes="u: [1, 0, 0], w: [0, 0, -1]", bump=bump.format("w", "u")), *options)
+    seen = render(tmp_path, VANITY.format(near="-", mirror=mirror, axes="u: [0, 0, 1], w: [1, 0, 0]",
+                                          bump=bump.format("u", "w")), *options)
+    want = render(tmp_path, VANITY.format(near="", mirror="", axes="u: [1, 0, 0], w: [0, 0, -1]",
+                                          bump=bump.format("w", "u")), *options)
     assert share_close(seen, want) > 0.998
     assert rgb(want).std() > 0.1
 
@@ -318,7 +332,8 @@ LAMP = "{lamp: {at: [-4.5, 5.2, -2.2]}}"
 ROUND = "sphere: {center: [0, 1, 0], radius: 0.8}"
 TILES = "floor: {plane: {origin: [0, 0, 0], u: [0, 0, 1], w: [1, 0, 0]}, material: tiles}"
 BUMP = ", bump: {function: '0.04*sin(9*u)*sin(8*w)*sin(w)^2'}"
-PANES = """floor: {plane: {origin: [0, 0, 0], u: [0, 0, 1], w: [1, 0, 0]}, material: tiles, bump: {function: "0.05*sin(7*u)*cos(5*w)"}}
+PANES = """floor: {plane: {origin: [0, 0, 0], u: [0, 0, 1], w: [1, 0, 0]}, material: tiles,
+    bump: {function: "0.05*sin(7*u)*cos(5*w)"}}
   left: {rectangle: {origin: [-1.4, 2, -0.5], u: [1, 0, 0.3], w: [0, -1.6, 0.1]}, material: pane}
   right: {box: {from: [0.9, 0.1, -0.6], to: [1.6, 1.3, 0.6]}, material: pane}
   back: {sphere: {center: [-0.9, 0.5, 1.2], radius: 0.5}, material: clay}"""
@@ -331,7 +346,8 @@ def test_clear_without_refraction_is_not_there(tmp_path: Path, shape: str, bump:
     """transmit 1, ior 1: neither seen nor a shadow, at any depth from 2 on."""
     scene = {"depth": 2, "lights": LAMP, "objects": TILES, "shape": shape, "bump": bump}
     seen = render(tmp_path, GLASS.format(glass="transmit: 1", **scene))
-    without = render(tmp_path, GLASS.format(glass="transmit: 1", **{**scene, "shape": "sphere: {center: [0, 0, -20], radius: 0.1}"}))
+    without = render(tmp_path, GLASS.format(glass="transmit: 1",
+                                            **{**scene, "shape": "sphere: {center: [0, 0, -20], radius: 0.1}"}))
     assert share_close(seen, without) > 0.9995
     assert share_close(render(tmp_path, GLASS.format(glass="ior: 1", **scene)), without) < 0.95
 
@@ -339,12 +355,15 @@ def test_clear_without_refraction_is_not_there(tmp_path: Path, shape: str, bump:
 @pytest.mark.parametrize("bump", ["", BUMP])
 @pytest.mark.parametrize("ior", [0.8, 1, 1.5])
 def test_energy(tmp_path: Path, ior: float, bump: str) -> None:
-    """Half mirrored, half let through, in a white world: white, but for what is beyond the depth, and never brighter."""
-    scene = {"lights": "{}", "objects": "", "shape": ROUND, "bump": bump, "glass": f"transmit: 0.5, reflection: 0.5, ior: {ior}"}
+    """Half mirrored, half let through, in a white world: white, but for what is beyond the depth, and never
+    brighter."""
+    scene = {"lights": "{}", "objects": "", "shape": ROUND, "bump": bump,
+             "glass": f"transmit: 0.5, reflection: 0.5, ior: {ior}"}
     before = np.zeros((120, 160, 3))
     for depth in (1, 2, 5, 24):
         now = rgb(render(tmp_path, GLASS.format(depth=depth, **scene)))
-        if not bump and ior >= 1:  # total reflection is all of the light, as in POV-Ray, whatever the material lets through
+        # total reflection is all of the light, as in POV-Ray, whatever the material lets through
+        if not bump and ior >= 1:
             assert now.max() < 1 + 1e-5
         assert (now >= before - 1e-5).all()
         before = now
@@ -393,9 +412,12 @@ def test_constant_bump_is_the_offset_mirror(tmp_path: Path, method: str, materia
 
 def test_secondary_layers_and_threads(tmp_path: Path) -> None:
     """Layers are those of the first hit; pictures do not depend on threads, crops or the layers."""
-    scene = GLASS.format(depth=6, lights=LAMP.replace("}}", ", area: {u: [1, 0, 0], w: [0, 0, 1], samples: [2, 2]}}, sun: {at: [3, 9, -4]}}"),
-                         glass="filter: 0.8, reflection: 0.15, ior: 1.5, phong: 0.5", bump=BUMP, shape=ROUND, objects=PANES)
-    for options in ([], ["--shadow", "2+"], ["--surface", "displaced", "--size", "40x30"], ["--aa", "3", "--aa-threshold", "0.1"]):
+    scene = GLASS.format(depth=6, lights=LAMP.replace("}}", ", area: {u: [1, 0, 0], w: [0, 0, 1], samples: [2, 2]}}, "
+                                                            "sun: {at: [3, 9, -4]}}"),
+                         glass="filter: 0.8, reflection: 0.15, ior: 1.5, phong: 0.5", bump=BUMP, shape=ROUND,
+                         objects=PANES)
+    for options in ([], ["--shadow", "2+"], ["--surface", "displaced", "--size", "40x30"],
+                    ["--aa", "3", "--aa-threshold", "0.1"]):
         got = render(tmp_path, scene, *options)
         plain = render(tmp_path, scene, *options, "--set", "render.depth=1")
         for name in got:
@@ -410,8 +432,9 @@ def test_secondary_layers_and_threads(tmp_path: Path) -> None:
 def test_visibility_behind_a_filter(tmp_path: Path) -> None:
     """It is the mean of red, green and blue that arrive."""
     scene = GLASS.format(depth=2, lights=LAMP, glass="filter: 0.5, transmit: 0.2", bump="", objects=TILES,
-                         shape="rectangle: {origin: [-1, 1.5, -0.6], u: [1.2, 0, 0], w: [0, 0, 1]}").replace("[1, 1, 1], ambient", "[0.8, 0.4, 0], ambient")
-    got = np.unique(render(tmp_path, scene)["visibility.lamp"].round(5))
+                         shape="rectangle: {origin: [-1, 1.5, -0.6], u: [1.2, 0, 0], w: [0, 0, 1]}")
+    colored = scene.replace("[1, 1, 1], ambient", "[0.8, 0.4, 0], ambient")
+    got = np.unique(render(tmp_path, colored)["visibility.lamp"].round(5))
     assert [x for x in got if x not in (0, 1)] == [pytest.approx((0.6 + 0.4 + 0.2) / 3, abs=1e-5)]
 
 
@@ -424,7 +447,8 @@ TURNED = """
   drum: {{cylinder: {{from: [1, 0, 0.9], to: [1.2, 0.9, 0.8], radius: 0.4}}, material: clay{bump}}}
   pipe: {{cylinder: {{from: [-0.9, 0.3, -1.2], to: [-0.2, 0.4, -1.1], radius: 0.3, open: true}}, material: clay{bump}}}
   bell: {{cone: {{from: [0, 0, 1.2], from_radius: 0.5, to: [0, 1, 1.2], to_radius: 0.3}}, material: clay{bump}}}
-  hat: {{cone: {{from: [0.4, 0, -1.3], from_radius: 0.4, to: [0.4, 0.7, -1.2], to_radius: 0, open: true}}, material: clay}}
+  hat: {{cone: {{from: [0.4, 0, -1.3], from_radius: 0.4, to: [0.4, 0.7, -1.2], to_radius: 0, open: true}},
+    material: clay}}
   plate: {{disc: {{center: [1.3, 0.3, -1.1], normal: [0.1, 1, -0.4], radius: 0.4}}, material: clay{bump}}}
 """
 
@@ -433,12 +457,16 @@ def hashes(kage: Path, tmp_path: Path) -> dict[str, str]:
     """A digest of the pictures and all layers of scenes that use every stage."""
     (tmp_path / "function.yaml").write_text(SCENE.format(ground=FLAT, bump=FUNCTION))
     (tmp_path / "lit.yaml").write_text(LIT.format(view="width: 5"))
-    (tmp_path / "glass.yaml").write_text(GLASS.format(depth=6, lights=LAMP.replace("}}", "}, sun: {at: [3, 9, -4], parallel: {to: [0, 0, 0]}}}"),
-        glass="filter: 0.8, reflection: 0.15, ior: 1.5, phong: 0.5, specular: 0.2", bump=BUMP, shape=ROUND, objects=PANES.replace("tiles", "glass")))
+    (tmp_path / "glass.yaml").write_text(GLASS.format(depth=6, lights=LAMP.replace("}}", "}, sun: {at: [3, 9, -4], "
+                                                                                         "parallel: {to: [0, 0, 0]}}}"),
+        glass="filter: 0.8, reflection: 0.15, ior: 1.5, phong: 0.5, specular: 0.2", bump=BUMP, shape=ROUND,
+        objects=PANES.replace("tiles", "glass")))
     (tmp_path / "image.yaml").write_text(
-        SCENE.format(ground=FLAT, bump="").replace("{color: [0.8, 0.7, 0.6]}", "{color: {image: {file: color.png, size: [1.3, 0.7]}}}"))
+        SCENE.format(ground=FLAT, bump="").replace("{color: [0.8, 0.7, 0.6]}",
+                                                   "{color: {image: {file: color.png, size: [1.3, 0.7]}}}"))
     columns, rows = np.meshgrid(np.arange(31), np.arange(17))
-    Image.fromarray(np.stack([columns * 8, rows * 15, columns * rows % 251], axis=-1).astype(np.uint8)).save(tmp_path / "color.png")
+    Image.fromarray(np.stack([columns * 8, rows * 15, columns * rows % 251],
+                             axis=-1).astype(np.uint8)).save(tmp_path / "color.png")
     turned = TURNED.format(bump=', bump: {function: "0.03*sin(7*u)*cos(5*w)"}')
     (tmp_path / "turned.yaml").write_text(SCENE.format(ground=FLAT, bump="") + turned.lstrip("\n"))
     result = {}
@@ -458,7 +486,8 @@ def hashes(kage: Path, tmp_path: Path) -> dict[str, str]:
 
 
 def levels() -> list[str]:
-    """The lowest and the highest x86-64 level that this processor runs, without the clones: each builds the whole program for itself."""
+    """The lowest and the highest x86-64 level that this processor runs, without the clones: each builds the whole
+    program for itself."""
     flags = Path("/proc/cpuinfo").read_text() if Path("/proc/cpuinfo").exists() else ""
     if " avx512vl " in flags:
         return ["x86-64", "x86-64-v4"]

@@ -1,7 +1,7 @@
 """Bad input: what the program says of it, where, and that it says nothing else.
 
-Most cases replace one part of conftest.SCENE; the message must be the first line on stderr, exactly, and the line and the
-caret below it must be those of the place it names.
+Most cases replace one part of conftest.SCENE; the message must be the first line on stderr, exactly, and the line and
+the caret below it must be those of the place it names.
 """
 
 from __future__ import annotations
@@ -14,8 +14,9 @@ from pathlib import Path
 import numpy as np
 import OpenEXR
 import pytest
-from conftest import PROGRAM, SCENE, TOP, Kage
 from PIL import Image
+
+from tests.conftest import PROGRAM, SCENE, TOP, Kage
 
 BALL = "sphere: {center: [1, 1, 0], radius: 0.5}"
 
@@ -25,7 +26,8 @@ REPLACED = [
     ("camera-key", "fov: 40", "fvo: 40", "1:58: camera has no 'fvo', did you mean 'fov'?"),
     ("camera-key-far", "fov: 40", "lens: 40", "1:58: camera has no 'lens', expected one of: from at up fov width"),
     ("image-key", "size: [40, 30]", "sise: [40, 30]", "2:9: image has no 'sise', did you mean 'size'?"),
-    ("render-key", "aa: 1", "antialias: 1", "3:34: render has no 'antialias', expected one of: shadow guard aa aa_threshold depth surface self_shadow"),
+    ("render-key", "aa: 1", "antialias: 1",
+     "3:34: render has no 'antialias', expected one of: shadow guard aa aa_threshold depth surface self_shadow"),
     ("light-key", "color: [1, 1, 1]", "colour: [1, 1, 1]", "5:27: a light has no 'colour', did you mean 'color'?"),
     ("spot-key", "color: [1, 1, 1]", "spot: {to: [0, 0, 0], angle: 3}",
      "5:49: spot has no 'angle', expected one of: to radius falloff tightness"),
@@ -61,7 +63,8 @@ REPLACED = [
      "5:60: an area of a parallel light, expected a point light or a spot"),
     ("material-key", "diffuse: 0.8", "difuse: 0.8", "7:48: a material has no 'difuse', did you mean 'diffuse'?"),
     ("object-key", "    box: {", "    brick: {",
-     "19:5: an object has no 'brick', expected one of: plane rectangle disc box sphere cylinder cone torus parametric patches mesh material bump transform copy"),
+     "19:5: an object has no 'brick', expected one of: plane rectangle disc box sphere cylinder cone torus parametric "
+     "patches mesh material bump transform copy"),
     ("plane-key", "u: [0, 0, 1]", "U: [0, 0, 1]", "10:32: plane has no 'U', did you mean 'u'?"),
     ("box-key", "to: [0, 1.5", "too: [0, 1.5", "19:32: box has no 'too', did you mean 'to'?"),
     ("sphere-key", "radius: 0.5", "r: 0.5", "22:33: sphere has no 'r', expected one of: center radius"),
@@ -141,12 +144,15 @@ REPLACED = [
      "7:23: -0.7 is less than 0, expected a linear colour [red, green, blue], 0 or more each"),
     ("color-name", "color: [0.8, 0.7, 0.6]", "color: red",
      "7:17: a single value, expected a linear colour [red, green, blue], 0 or more each"),
-    ("color-kind", "color: [0.8, 0.7, 0.6]", "color: {cheker: {}}", "7:18: color has no 'cheker', did you mean 'checker'?"),
+    ("color-kind", "color: [0.8, 0.7, 0.6]", "color: {cheker: {}}",
+     "7:18: color has no 'cheker', did you mean 'checker'?"),
     ("color-neither", "color: [0.8, 0.7, 0.6]", "color: {}",
      "7:17: a color with neither checker nor image, expected either 'checker' or 'image'"),
-    ("color-both", "color: [0.8, 0.7, 0.6]", "color: {checker: {even: [1, 1, 1], odd: [0, 0, 0]}, image: {file: color.png}}",
+    ("color-both", "color: [0.8, 0.7, 0.6]",
+     "color: {checker: {even: [1, 1, 1], odd: [0, 0, 0]}, image: {file: color.png}}",
      "7:17: a color with both checker and image, expected either 'checker' or 'image'"),
-    ("checker-no-odd", "color: [0.8, 0.7, 0.6]", "color: {checker: {even: [1, 1, 1]}}", "7:27: checker lacks its 'odd'"),
+    ("checker-no-odd", "color: [0.8, 0.7, 0.6]", "color: {checker: {even: [1, 1, 1]}}",
+     "7:27: checker lacks its 'odd'"),
     ("checker-key", "color: [0.8, 0.7, 0.6]", "color: {checker: {even: [1, 1, 1], odd: [0, 0, 0], scale: 2}}",
      "7:61: checker has no 'scale', expected one of: even odd size offset"),
     ("checker-color", "color: [0.8, 0.7, 0.6]", "color: {checker: {even: white, odd: [0, 0, 0]}}",
@@ -163,7 +169,8 @@ REPLACED = [
     ("image-cut", "color: [0.8, 0.7, 0.6]", "color: {image: {file: cut.png, size: [1, 1]}}",
      "7:32: 'cut.png' can't be used: libpng: the file ends too early"),
     ("image-alpha", "color: [0.8, 0.7, 0.6]", "color: {image: {file: alpha.png, size: [1, 1]}}",
-     "7:32: 'alpha.png' can't be used: the pixel in column 3 of row 2 (both from 0) is transparent; an opaque image is expected"),
+     "7:32: 'alpha.png' can't be used: the pixel in column 3 of row 2 (both from 0) is transparent; an opaque image is "
+     "expected"),
     ("image-exr-channels", "color: [0.8, 0.7, 0.6]", "color: {image: {file: two.exr, size: [1, 1]}}",
      "7:32: 'two.exr' can't be used: there is no channel 'Y'; the file has a, b"),
     ("image-exr-nan", "color: [0.8, 0.7, 0.6]", "color: {image: {file: nan.exr, size: [1, 1]}}",
@@ -174,7 +181,8 @@ REPLACED = [
      "7:32: 'rg.exr' can't be used: not all of the channels R, G and B are there"),
     ("image-encoding", "color: [0.8, 0.7, 0.6]", "color: {image: {file: color.png, encoding: sRGB, size: [1, 1]}}",
      "7:53: 'sRGB' is unknown, expected srgb or linear"),
-    ("image-interpolation", "color: [0.8, 0.7, 0.6]", "color: {image: {file: color.png, interpolation: cubic, size: [1, 1]}}",
+    ("image-interpolation", "color: [0.8, 0.7, 0.6]",
+     "color: {image: {file: color.png, interpolation: cubic, size: [1, 1]}}",
      "7:58: 'cubic' is unknown, expected bilinear or nearest"),
     ("image-wrap", "color: [0.8, 0.7, 0.6]", "color: {image: {file: color.png, wrap: once, size: [1, 1]}}",
      "7:49: 'once' is unknown, expected repeat, clamp or mirror"),
@@ -197,15 +205,18 @@ REPLACED = [
      "2:15: 1073741824 pixels, expected at most 268435456"),
     ("size-one", "size: [40, 30]", "size: 40",
      "2:15: a single value, expected [width, height] in pixels, from 1 to 32768"),
-    ("shadow", "shadow: 0", "shadow: 3", "3:18: '3' is no method, expected none, 0, 1, 2, 2+, iter:K, march:N or exact"),
+    ("shadow", "shadow: 0", "shadow: 3",
+     "3:18: '3' is no method, expected none, 0, 1, 2, 2+, iter:K, march:N or exact"),
     ("shadow-iter", "shadow: 0", "shadow: 'iter:0'",
      "3:19: 'iter:0' is no method, expected none, 0, 1, 2, 2+, iter:K, march:N or exact"),
     ("surface", "shadow: 0", "shadow: 0, surface: rough", "3:30: 'rough' is unknown, expected smooth or displaced"),
     ("self-shadow", "shadow: 0", "shadow: 0, self_shadow: 1", "3:34: '1' is unknown, expected true or false"),
     ("guard", "guard: true", "guard: yes", "3:28: 'yes' is unknown, expected true or false"),
     ("depth-zero", "aa: 1", "depth: 0", "3:41: 0 is less than 1, expected how many rays follow one another, 1 to 32"),
-    ("depth-deep", "aa: 1", "depth: 33", "3:41: 33 is more than 32, expected how many rays follow one another, 1 to 32"),
-    ("depth-half", "aa: 1", "depth: 2.5", "3:41: 2.5 is no whole number, expected how many rays follow one another, 1 to 32"),
+    ("depth-deep", "aa: 1", "depth: 33",
+     "3:41: 33 is more than 32, expected how many rays follow one another, 1 to 32"),
+    ("depth-half", "aa: 1", "depth: 2.5",
+     "3:41: 2.5 is no whole number, expected how many rays follow one another, 1 to 32"),
     ("reflection", "diffuse: 0.8", "reflection: 1.1",
      "7:60: 1.1 is more than 1, expected a share of light, or one each of red, green and blue, 0 to 1"),
     ("reflection-negative", "diffuse: 0.8", "reflection: -0.1",
@@ -224,8 +235,10 @@ REPLACED = [
      "7:58: -1 is less than 0, expected the share of light that it lets through unchanged, 0 to 1"),
     ("filter-and-transmit", "diffuse: 0.8", "filter: 0.7, transmit: 0.5",
      "7:71: a filter of 0.7 and a transmit of 0.5, expected no more than 1 together"),
-    ("ior-zero", "diffuse: 0.8", "ior: 0", "7:53: 0 is too small, expected an index of refraction above 0, at most 100"),
-    ("ior-negative", "diffuse: 0.8", "ior: -1.5", "7:53: -1.5 is less than 0, expected an index of refraction above 0, at most 100"),
+    ("ior-zero", "diffuse: 0.8", "ior: 0",
+     "7:53: 0 is too small, expected an index of refraction above 0, at most 100"),
+    ("ior-negative", "diffuse: 0.8", "ior: -1.5",
+     "7:53: -1.5 is less than 0, expected an index of refraction above 0, at most 100"),
     ("aa-zero", "aa: 1", "aa: 0", "3:38: 0 is less than 1, expected samples along a pixel's side, 1 to 16"),
     ("aa-fraction", "aa: 1", "aa: 1.5",
      "3:38: 1.5 is no whole number, expected samples along a pixel's side, 1 to 16"),
@@ -290,7 +303,8 @@ REPLACED = [
     ("transform-word", BALL, f"{BALL}\n    transform: [scale]", "23:17: a step is a single value, expected a map"),
     ("transform-two", BALL, f"{BALL}\n    transform: [{{scale: 2, rotate: [0, 1, 2]}}]",
      "23:17: a step with 2 keys, expected one: which is first matters"),
-    ("transform-none", BALL, f"{BALL}\n    transform: [{{}}]", "23:17: a step with 0 keys, expected one: which is first matters"),
+    ("transform-none", BALL, f"{BALL}\n    transform: [{{}}]",
+     "23:17: a step with 0 keys, expected one: which is first matters"),
     ("rotate-number", BALL, f"{BALL}\n    transform: [{{rotate: 45}}]",
      "23:26: a single value, expected angles in degrees about the axes, [x, y, z]"),
     ("translate-text", BALL, f"{BALL}\n    transform: [{{translate: [0, up, 0]}}]",
@@ -338,7 +352,8 @@ REPLACED = [
      "    sphere: {center: [1, 1, 0], radius: 0.5}",
      "22:5: an object lacks its 'material'"),
     ("no-shape", "    sphere: {center: [1, 1, 0], radius: 0.5}\n", "",
-     "22:5: an object lacks its shape, expected one of: plane rectangle disc box sphere cylinder cone torus parametric patches mesh"),
+     "22:5: an object lacks its shape, expected one of: plane rectangle disc box sphere cylinder cone torus parametric "
+     "patches mesh"),
     ("two-shapes", "    sphere: {", "    box: {from: [0, 0, 0], to: [1, 1, 1]}\n    sphere: {",
      "23:13: a second shape, 'sphere' beside 'box', expected one"),
     ("unknown-material", "radius: 0.5}\n    material: clay", "radius: 0.5}\n    material: caly",
@@ -596,7 +611,8 @@ def test_syntax(bench: Kage, text: str, line: int) -> None:
 
 #: Aliases are refused, so nothing grows from them; much of the same is refused in seconds.
 HOSTILE = [
-    ("billion-laughs", "a: &a [x, x]\n" + "".join(f"{b}: &{b} [*{a}, *{a}]\n" for a, b in zip("abcdefghij", "bcdefghijk"))),
+    ("billion-laughs", "a: &a [x, x]\n" + "".join(f"{b}: &{b} [*{a}, *{a}]\n" for a,
+                                                  b in zip("abcdefghij", "bcdefghijk"))),
     ("cycle", "camera: &a {from: *a, at: *a}\nlights: *a\nmaterials: *a\nobjects: *a\n"),
     ("many-keys", "".join(f"k{i}: 1\n" for i in range(100000))),
     ("many-times-one-key", "camera: 1\n" * 100000),
@@ -618,10 +634,12 @@ def test_hostile(bench: Kage, text: str) -> None:
 
 
 def test_all_errors_at_once(bench: Kage) -> None:
-    text = SCENE.replace("fov: 40", "fov: 0").replace("color: [1, 1, 1]", "color: 1").replace("radius: 0.5", "radius: x")
+    text = SCENE.replace("fov: 40", "fov: 0").replace("color: [1, 1, 1]",
+                                                      "color: 1").replace("radius: 0.5", "radius: x")
     text = text.replace("sin(u)", "sin(v)").replace("map.png", "none.png").replace("aa: 1", "ab: 1")
     lines = refused_scene(bench, text)
-    assert [re.findall(r"^scene.yaml:(\d+):", line)[0] for line in errors_in(lines)] == ["1", "3", "5", "13", "17", "22"]
+    assert [re.findall(r"^scene.yaml:(\d+):", line)[0] for line in errors_in(lines)] == ["1", "3", "5", "13", "17",
+                                                                                         "22"]
     assert lines[-1] == "6 errors"
     for k in range(6):
         check_caret(lines[3 * k :], text)
@@ -669,7 +687,8 @@ def test_excerpt_of_a_long_line(bench: Kage) -> None:
 
 
 #: What a key at the top may hold instead of what it should; None: it is not there.
-MISFITS = {"missing": None, "empty": "", "no-items": " {}", "list": " [1]", "no-list": " []", "number": " 3", "empty-item": " {a: }"}
+MISFITS = {"missing": None, "empty": "", "no-items": " {}", "list": " [1]", "no-list": " []", "number": " 3",
+           "empty-item": " {a: }"}
 
 
 @pytest.mark.parametrize("what", MISFITS)
@@ -677,7 +696,8 @@ MISFITS = {"missing": None, "empty": "", "no-items": " {}", "list": " [1]", "no-
 def test_any_key_at_the_top(bench: Kage, key: str, what: str) -> None:
     kept = [part for part in re.split(r"(?m)^(?=\w)", SCENE) if part and not part.startswith(f"{key}:")]
     assert len(kept) == 5
-    (bench.folder / "scene.yaml").write_text("".join(kept) + ("" if MISFITS[what] is None else f"{key}:{MISFITS[what]}\n"))
+    (bench.folder / "scene.yaml").write_text("".join(kept) + ("" if MISFITS[what] is None
+                                                              else f"{key}:{MISFITS[what]}\n"))
     for command, *options in (["check"], ["pixel", "3,3"], ["render", "-o", "out.png"], ["pov", "-o", "out.pov"]):
         done = bench(command, "scene.yaml", *options)
         assert done.returncode in (0, 2), done.stderr
@@ -696,12 +716,15 @@ def test_scene_that_cannot_be_read(kage: Kage) -> None:
 SET = [
     ("path-top", "objcts.ground.bump.scale=1", "1:1: the scene has no 'objcts' here, did you mean 'objects'?"),
     ("path-middle", "objects.grond.bump.scale=1", "1:9: the scene has no 'grond' here, did you mean 'ground'?"),
-    ("path-far", "objects.sea.bump.scale=1", "1:9: the scene has no 'sea' here, expected one of: ground wall cube ball"),
+    ("path-far", "objects.sea.bump.scale=1",
+     "1:9: the scene has no 'sea' here, expected one of: ground wall cube ball"),
     ("path-below", "camera.fov.x=1",
      "1:12: no 'x' here: what stands before it is a single value, expected a map or a list"),
-    ("path-dots", "camera..fov=1", "1:8: no name here, expected names of letters, digits, _ and - with dots between them"),
+    ("path-dots", "camera..fov=1",
+     "1:8: no name here, expected names of letters, digits, _ and - with dots between them"),
     ("path-end", "camera.=1", "1:8: no name here, expected names of letters, digits, _ and - with dots between them"),
-    ("path-blank", "camera. fov=1", "1:8: no name here, expected names of letters, digits, _ and - with dots between them"),
+    ("path-blank", "camera. fov=1",
+     "1:8: no name here, expected names of letters, digits, _ and - with dots between them"),
     ("key", "camera.fvo=1", "1:8: camera has no 'fvo', did you mean 'fov'?"),
     ("key-top", "camra=1", "1:1: the scene has no 'camra', did you mean 'camera'?"),
     ("index", "camera.from.3=1", "1:13: no item '3' in this list, expected a number from 0 to 2"),
@@ -711,13 +734,16 @@ SET = [
     ("type", "camera.from=1", "1:13: a single value, expected the eye's place [x, y, z]"),
     ("type-map", "camera=wide", "1:8: camera is a single value, expected a map"),
     ("nothing", "camera.fov=", "1:12: no value, expected one after '='"),
-    ("range", "camera.fov=180", "1:12: 180 is more than 175, expected the horizontal angle in degrees, above 0 and up to 175"),
+    ("range", "camera.fov=180",
+     "1:12: 180 is more than 175, expected the horizontal angle in degrees, above 0 and up to 175"),
     ("inside", "camera={from: [0, 0, 0], at: [1]}", "1:30: 1 value, expected the place looked at [x, y, z]"),
     ("lacking", "camera={from: [0, 0, 0]}", "1:8: camera lacks its 'at'"),
     ("function", "objects.ground.bump.function=0.1 * sinn(u)", "1:36: unknown function 'sinn', did you mean 'sin'?"),
-    ("function-quoted", "objects.ground.bump.function='0.1 * sinn(u)'", "1:37: unknown function 'sinn', did you mean 'sin'?"),
+    ("function-quoted", "objects.ground.bump.function='0.1 * sinn(u)'",
+     "1:37: unknown function 'sinn', did you mean 'sin'?"),
     ("lines", "camera={from: [0, 0, 0],\nat: [1]}", "1:25: a line break, expected the change on one line"),
-    ("alias", "camera.fov=*x", "1:13: an alias, which kage does not take, expected the horizontal angle in degrees, above 0 and "
+    ("alias", "camera.fov=*x",
+     "1:13: an alias, which kage does not take, expected the horizontal angle in degrees, above 0 and "
      "up to 175"),
 ]
 
@@ -795,18 +821,22 @@ COMMAND = [
      "--shadow 3: no such method, expected none, 0, 1, 2, 2+, iter:K, march:N or exact"),
     ("shadow-steps", ["render", "scene.yaml", "--shadow", "march:0"],
      "--shadow march:0: no such method, expected none, 0, 1, 2, 2+, iter:K, march:N or exact"),
-    *[(f"size-{size}", ["render", "scene.yaml", "--size", size], f"--size {size}: expected WIDTHxHEIGHT, each from 1 to 32768")
+    *[(f"size-{size}", ["render", "scene.yaml", "--size", size],
+       f"--size {size}: expected WIDTHxHEIGHT, each from 1 to 32768")
       for size in ("640", "640x", "640x480x2", "0x480", "-1x5", "640X480", "1e2x5", "32769x1", "99999999999x1", "")],
-    *[(f"aa-threshold-{t}", ["render", "scene.yaml", "--aa-threshold", t], f"--aa-threshold {t}: expected how much two pixels may differ, 0 to 3")
+    *[(f"aa-threshold-{t}", ["render", "scene.yaml", "--aa-threshold", t],
+       f"--aa-threshold {t}: expected how much two pixels may differ, 0 to 3")
       for t in ("x", "-1", "3.1", "1e-3", "0.1.2", "")],
-    *[(f"aa-{aa}", ["render", "scene.yaml", "--aa", aa], f"--aa {aa}: expected the samples along a pixel's side, 1 to 16")
+    *[(f"aa-{aa}", ["render", "scene.yaml", "--aa", aa],
+       f"--aa {aa}: expected the samples along a pixel's side, 1 to 16")
       for aa in ("0", "17", "two", "1.5")],
     *[(f"threads-{n}", ["render", "scene.yaml", "--threads", n], f"--threads {n}: expected a number from 1 to 1024")
       for n in ("0", "-1", "1025", "all")],
     *[(f"crop-{crop}", ["render", "scene.yaml", "--crop", crop],
        f"--crop {crop}: expected X0,Y0,X1,Y1 in pixels, with X0 < X1 and Y0 < Y1")
       for crop in ("1,2,3", "5,0,5,9", "0,9,9,0", "0,0,1,1,1", "a,0,1,1")],
-    ("crop-outside", ["render", "scene.yaml", "--crop", "0,0,41,30"], "--crop 0,0,41,30: the picture is 40 x 30 pixels"),
+    ("crop-outside", ["render", "scene.yaml", "--crop", "0,0,41,30"],
+     "--crop 0,0,41,30: the picture is 40 x 30 pixels"),
     ("bits", ["render", "scene.yaml", "--bits", "12"], "--bits 12: expected 8 or 16"),
     ("set-no-value", ["render", "scene.yaml", "--set", "camera.fov"],
      "--set camera.fov: expected PATH=VALUE, as objects.ground.bump.scale=0.1"),
@@ -850,7 +880,8 @@ PAGE = TOP / "docs" / "scene.md"
 def yaml_blocks() -> list[tuple[int, str]]:
     """The page's examples, with the lines they begin at."""
     text = PAGE.read_text()
-    return [(text[: match.start()].count("\n") + 1, match[1]) for match in re.finditer(r"```yaml\n(.*?)```", text, re.DOTALL)]
+    return [(text[: match.start()].count("\n") + 1, match[1])
+            for match in re.finditer(r"```yaml\n(.*?)```", text, re.DOTALL)]
 
 
 def completed(fragment: str) -> str:
@@ -891,16 +922,19 @@ STRETCHED = SCENE.replace(
 )
 
 
-@pytest.mark.parametrize(("change", "what"), [("render.surface=displaced", "surface displaced"), ("render.shadow=exact", "shadow exact")])
+@pytest.mark.parametrize(("change", "what"),
+                         [("render.surface=displaced", "surface displaced"), ("render.shadow=exact", "shadow exact")])
 def test_stretched_and_displaced(bench: Kage, change: str, what: str) -> None:
-    """No foot is known of what a stretched cylinder becomes, and with caps it is no one sheet; without a need for one it serves, and open, and an
-    ellipsoid."""
+    """No foot is known of what a stretched cylinder becomes, and with caps it is no one sheet; without a need for one
+    it serves, and open, and an ellipsoid."""
     drum = "cylinder: {from: [1, 1, 0], to: [1, 2, 0], radius: 0.5}"
-    message = ("a cylinder with caps and a bump is stretched more one way than another, expected the same scale all ways, or 'open: true', "
+    message = ("a cylinder with caps and a bump is stretched more one way than another, expected the same scale all "
+               "ways, or 'open: true', "
                f"for {what}")
     ball = "sphere: {center: [1, 1, 0], radius: 0.5}"
     assert refused_scene(bench, STRETCHED.replace(ball, drum), "--set", change)[0] == f"scene.yaml:24:16: {message}"
-    copied = SCENE.replace(ball, drum) + "    bump: {function: 0.1 * sin(u)}\n  egg: {copy: ball, transform: [{scale: [1, 2, 1]}]}\n"
+    egg = "  egg: {copy: ball, transform: [{scale: [1, 2, 1]}]}\n"
+    copied = SCENE.replace(ball, drum) + "    bump: {function: 0.1 * sin(u)}\n" + egg
     assert refused_scene(bench, copied, "--set", change)[0] == f"scene.yaml:25:32: {message}"
     (bench.folder / "scene.yaml").write_text(STRETCHED.replace(ball, drum))
     bench.good("render", "scene.yaml", "-o", "out.png", "--quiet", "--shadow", "march:4")
@@ -924,7 +958,8 @@ def test_copies(bench: Kage) -> None:
 
 
 def test_a_transform_as_said_otherwise(bench: Kage) -> None:
-    """The same picture by a transform and without it, to the last digit where the numbers bear it; --set reaches into transforms."""
+    """The same picture by a transform and without it, to the last digit where the numbers bear it; --set reaches into
+    transforms."""
     (bench.folder / "scene.yaml").write_text(SCENE)
     moves = "[{rotate: [0, 90, 0]}, {scale: 2}, {translate: [0, 0.5, 0]}]"
     for name, shape in (
@@ -938,9 +973,11 @@ def test_a_transform_as_said_otherwise(bench: Kage) -> None:
         assert np.mean(np.abs(a - b) > 1) < 0.005
     # from far away
     for file, center, way in (("a.png", "[0.25, 1, 0]", "[0, 0, 0]"), ("b.png", "[2e5, 1, 0]", "[-199999.75, 0, 0]")):
-        ball = (f"{{sphere: {{center: {center}, radius: 1}}, material: clay, bump: {{function: 0.03*sin(9*u)*sin(9*w)}}, "
+        ball = (f"{{sphere: {{center: {center}, radius: 1}}, material: clay, "
+                "bump: {function: 0.03*sin(9*u)*sin(9*w)}, "
                 f"transform: [{{translate: {way}}}, {{rotate: [0, 0, 0]}}]}}")
-        bench.good("render", "scene.yaml", "-o", file, "--quiet", "--surface", "displaced", "--set", f"objects.ball={ball}")
+        bench.good("render", "scene.yaml", "-o", file, "--quiet", "--surface", "displaced", "--set",
+                   f"objects.ball={ball}")
     a, b = (np.asarray(Image.open(bench.folder / file)) for file in ("a.png", "b.png"))
     assert np.array_equal(a, b)
     bench.good("render", "scene.yaml", "-o", "a.png", "--quiet", "--set", f"objects.cube.transform={moves}", "--set",

@@ -1,5 +1,5 @@
-"""Meshes from files, through the program: the formats, what is wrong with files, the same bytes for any number of threads, a million
-triangles, and POV-Ray's picture of them.
+"""Meshes from files, through the program: the formats, what is wrong with files, the same bytes for any number of
+threads, a million triangles, and POV-Ray's picture of them.
 """
 
 from __future__ import annotations
@@ -10,20 +10,20 @@ import random
 import subprocess
 from pathlib import Path
 
-import models
 import numpy as np
 import pytest
-from conftest import PROGRAM, TOP, Kage, needs_povray
-from parity import CAMERA, FLOOR, HEAD, LIGHTS, layers, povray
 
-
-import make_lantern  # noqa: E402
+from scripts import make_lantern
+from tests.conftest import PROGRAM, TOP, Kage, needs_povray
+from tests.support import models
+from tests.support.parity import CAMERA, FLOOR, HEAD, LIGHTS, layers, povray
 
 
 def scene(kage: Kage, mesh: str, more: str = "", *, size: str = "[96, 72]", material: str = "clay") -> Path:
     path = kage.folder / "mesh.yaml"
     head = HEAD.format(camera=CAMERA, lights=LIGHTS).replace("[160, 120]", size)
-    path.write_text(head + FLOOR + f"  it:\n    mesh: {{{mesh}}}\n    material: {material}\n" + "".join(f"    {line}\n" for line in more.splitlines()))
+    rest = "".join(f"    {line}\n" for line in more.splitlines())
+    path.write_text(head + FLOOR + f"  it:\n    mesh: {{{mesh}}}\n    material: {material}\n" + rest)
     return path
 
 
@@ -40,12 +40,13 @@ def rgb(picture: dict[str, np.ndarray]) -> np.ndarray:
 
 
 def test_formats_read_alike(kage: Kage) -> None:
-    """Of a ball: all pictures are the same but for STL and OFF, which have no normals (those found differ from the ball's by less than 1
-    degree), and no texture. glTF's node has a matrix that is undone, and mirrors."""
+    """Of a ball: all pictures are the same but for STL and OFF, which have no normals (those found differ from the
+    ball's by less than 1 degree), and no texture. glTF's node has a matrix that is undone, and mirrors."""
     model = models.ball(48, 24)
     paths = models.write_all(kage.folder, model)
     normal = model.normal * (-2, 1, 1)
-    turned = models.Model(model.at * (-0.5, 1, 1), normal / np.linalg.norm(normal, axis=1, keepdims=True), model.uv, model.face[:, ::-1])
+    turned = models.Model(model.at * (-0.5, 1, 1), normal / np.linalg.norm(normal, axis=1, keepdims=True), model.uv,
+                          model.face[:, ::-1])
     models.gltf(kage.folder / "c.glb", turned, [-2, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1])
     first = None
     for path in [*paths, kage.folder / "c.glb"]:
@@ -61,10 +62,12 @@ def test_formats_read_alike(kage: Kage) -> None:
 
 
 def test_as_the_sphere(kage: Kage) -> None:
-    """A fine ball, its texture from left to right and downward: the same picture as of the sphere itself, with a bump, by every method."""
+    """A fine ball, its texture from left to right and downward: the same picture as of the sphere itself, with a bump,
+    by every method."""
     models.gltf(kage.folder / "ball.glb", models.ball(400, 200))
     place, bump = "transform: [{scale: 0.9}, {translate: [0, 1, 0]}]", "sin(9*{u})*sin(9*{w})*sin({w})^2"
-    path = scene(kage, "file: ball.glb", f'bump: {{function: "{bump.format(u="2*pi*u", w="(pi*w)")}", scale: 0.03}}\n{place}')
+    path = scene(kage, "file: ball.glb",
+                 f'bump: {{function: "{bump.format(u="2*pi*u", w="(pi*w)")}", scale: 0.03}}\n{place}')
     mesh = path.read_text()
     # the file's u begins on its +z, kage's -z, where the sphere's is -pi/2
     sphere = mesh.replace("mesh: {file: ball.glb}", "sphere: {center: [0, 0, 0], radius: 1}")
@@ -93,7 +96,8 @@ def test_smoothing(kage: Kage) -> None:
 
 
 def test_mirrored_texture(kage: Kage) -> None:
-    """Half of a floor has its texture mirrored, as on models that are alike left and right: a bump that is even there is one all over."""
+    """Half of a floor has its texture mirrored, as on models that are alike left and right: a bump that is even there
+    is one all over."""
     whole = models.grid(8)
     half = models.grid(8)
     half.uv[:, 0] = np.abs(half.at[:, 0])
@@ -101,7 +105,8 @@ def test_mirrored_texture(kage: Kage) -> None:
     pictures = []
     for name, model in (("whole", whole), ("half", half)):
         models.gltf(kage.folder / f"{name}.glb", model)
-        path = scene(kage, f"file: {name}.glb", 'bump: {function: "0.05*cos(4*pi*u)*cos(9*w)"}\ntransform: [{translate: [0, 0.1, 0]}]')
+        path = scene(kage, f"file: {name}.glb",
+                     'bump: {function: "0.05*cos(4*pi*u)*cos(9*w)"}\ntransform: [{translate: [0, 0.1, 0]}]')
         ball = path.read_text() + "  ball: {sphere: {center: [0.2, 0.8, 0.1], radius: 0.4}, material: clay}\n"
         for transform in ("{translate: [0, 0.1, 0]}", "{scale: [-1, 1, 1]}, {translate: [0, 0.1, 0]}"):
             path.write_text(ball.replace("{translate: [0, 0.1, 0]}", transform))
@@ -112,10 +117,12 @@ def test_mirrored_texture(kage: Kage) -> None:
 
 
 def test_image_on_a_mesh(kage: Kage) -> None:
-    """An image fills the square of the texture coordinates, its first row at the top, whatever part of it the mesh has."""
+    """An image fills the square of the texture coordinates, its first row at the top, whatever part of it the mesh
+    has."""
     from PIL import Image  # noqa: PLC0415
 
-    Image.fromarray(np.array([[[255, 0, 0], [0, 255, 0]], [[0, 0, 255], [255, 255, 255]]], dtype=np.uint8)).save(kage.folder / "four.png")
+    Image.fromarray(np.array([[[255, 0, 0], [0, 255, 0]], [[0, 0, 255], [255, 255, 255]]],
+                             dtype=np.uint8)).save(kage.folder / "four.png")
     model = models.grid(4)
     model.uv = 0.25 + 0.25 * model.uv  # within the lower left quarter of the image
     models.gltf(kage.folder / "part.glb", model)
@@ -136,7 +143,8 @@ def test_image_on_a_mesh(kage: Kage) -> None:
     [
         ("normals: flat", "mesh lacks its 'file'"),
         ("file: none.obj", "'none.obj' can't be used: No such file or directory"),
-        ("file: ball.txt", "'ball.txt' can't be used: no known kind of model, expected a name that ends in .obj, .ply, .stl, .gltf, .glb or .off"),
+        ("file: ball.txt", "'ball.txt' can't be used: no known kind of model, expected a name that ends in .obj, .ply, "
+                           ".stl, .gltf, .glb or .off"),
         ("file: folder.obj", "'folder.obj' can't be used: no regular file"),
         ("file: empty.ply", "'empty.ply' can't be used: the file is empty"),
         ("file: points.obj", "'points.obj' can't be used: "),
@@ -161,7 +169,8 @@ def test_wrong(kage: Kage, mesh: str, message: str) -> None:
     models.ply(kage.folder / "nan.ply", model, binary=True)
     result = kage("render", scene(kage, mesh), "-o", "x.png")
     assert result.returncode == 2, result.stderr
-    assert result.stderr.startswith(f"{kage.folder}/mesh.yaml:1") and message in result.stderr.splitlines()[0], result.stderr
+    assert result.stderr.startswith(f"{kage.folder}/mesh.yaml:1"), result.stderr
+    assert message in result.stderr.splitlines()[0], result.stderr
     assert not (kage.folder / "x.png").exists()
 
 
@@ -181,9 +190,11 @@ def test_no_texture(kage: Kage) -> None:
 
 def test_flat_triangles_are_told(kage: Kage) -> None:
     models.obj(kage.folder / "ball.obj", models.ball(6, 4), texture=False)
-    (kage.folder / "ball.obj").write_text((kage.folder / "ball.obj").read_text() + "f 1//1 2//2 1//1\nf 9//9 9//9 9//9\n")
+    (kage.folder / "ball.obj").write_text((kage.folder / "ball.obj").read_text() + "f 1//1 2//2 1//1\nf 9//9 9//9 "
+                                                                                   "9//9\n")
     path = scene(kage, "file: ball.obj")
-    assert "kage: object it: 2 of the 38 triangles in ball.obj have no area; they are left out" in kage("render", path, "-o", "x.png").stderr
+    told = kage("render", path, "-o", "x.png").stderr
+    assert "kage: object it: 2 of the 38 triangles in ball.obj have no area; they are left out" in told
     assert "warning: 2 triangles without an area are left out" in kage.good("check", path)
 
 
@@ -197,7 +208,8 @@ def is_borne(kage: Kage, path: Path, what: object) -> bool:
     if result.returncode == 0:
         assert np.isfinite(rgb(layers(kage.folder / "x.exr"))).all(), what
     else:
-        assert "can't be used: " in result.stderr and all(c.isprintable() or c == "\n" for c in result.stderr), result.stderr
+        assert "can't be used: " in result.stderr and all(c.isprintable() or c == "\n"
+                                                          for c in result.stderr), result.stderr
     return result.returncode == 2
 
 
@@ -226,7 +238,8 @@ def test_broken_files(kage: Kage) -> None:
 
 
 def test_files_that_break_the_reader(kage: Kage) -> None:
-    """Files that end too soon: of PLY assimp 5.2's reader goes on beyond its memory, or for ever where only some of the vertices are there."""
+    """Files that end too soon: of PLY assimp 5.2's reader goes on beyond its memory, or for ever where only some of the
+    vertices are there."""
     for source in models.write_all(kage.folder, models.ball(6, 4)):
         path = kage.folder / f"broken{source.suffix}"
         text = source.read_bytes()
@@ -246,7 +259,8 @@ def test_a_million_triangles(kage: Kage) -> None:
     models.ply(kage.folder / "big.ply", models.ball(1001, 501), binary=True)
     path = scene(kage, "file: big.ply", "transform: [{translate: [0, 1, 0]}]")
     main, side = pty.openpty()
-    run = subprocess.Popen([PROGRAM, "render", path, "-o", kage.folder / "x.exr"], stderr=side, stdout=side, cwd=kage.folder)
+    run = subprocess.Popen([PROGRAM, "render", path, "-o", kage.folder / "x.exr"], stderr=side, stdout=side,
+                           cwd=kage.folder)
     os.close(side)
     shown = b""
     while True:
@@ -270,7 +284,8 @@ def test_a_million_triangles(kage: Kage) -> None:
 @pytest.mark.parametrize("options", [[], ["--surface", "displaced"]])
 def test_threads(kage: Kage, options: list[str]) -> None:
     models.obj(kage.folder / "ball.obj", models.ball(24, 12))
-    path = scene(kage, "file: ball.obj", 'bump: {function: "0.02*sin(40*u)*sin(20*w)"}\ntransform: [{translate: [0, 1, 0]}]')
+    path = scene(kage, "file: ball.obj",
+                 'bump: {function: "0.02*sin(40*u)*sin(20*w)"}\ntransform: [{translate: [0, 1, 0]}]')
     made = []
     for threads in (1, 2, 7):
         kage.good("render", path, "-o", "x.exr", "--quiet", "--threads", str(threads), *options)
@@ -300,10 +315,12 @@ def test_parity(kage: Kage, model: str) -> None:
     lantern = TOP / "scenes" / "data" / "lantern.obj"
     models.obj(kage.folder / "ball.obj", models.ball(32, 16))
     models.obj(kage.folder / "floor.obj", models.grid(4))
-    said = {"ball": "file: ball.obj", "lantern": f"file: {lantern}", "floor": "file: floor.obj", "tiles": "file: ball.obj"}[model]
+    said = {"ball": "file: ball.obj", "lantern": f"file: {lantern}", "floor": "file: floor.obj",
+            "tiles": "file: ball.obj"}[model]
     place = "transform: [{scale: [0.9, 0.8, 1]}, {rotate: [20, 30, 0]}, {translate: [0, 1, 0]}]"
     path = scene(kage, said, place, material="tiles" if model == "tiles" else "shiny")
-    tiles = "  tiles: {color: {checker: {even: [0.9, 0.85, 0.7], odd: [0.1, 0.2, 0.3], size: [0.125, 0.125]}}}\nobjects:"
+    checker = "{even: [0.9, 0.85, 0.7], odd: [0.1, 0.2, 0.3], size: [0.125, 0.125]}"
+    tiles = f"  tiles: {{color: {{checker: {checker}}}}}\nobjects:"
     path.write_text(path.read_text().replace("objects:", tiles))
     if model == "lantern":
         path.write_text(path.read_text().replace(CAMERA, "{from: [0.6, 1.9, -5], at: [0.7, 0.8, 0], fov: 30}"))

@@ -8,15 +8,18 @@ from __future__ import annotations
 from collections.abc import Iterator
 from concurrent.futures import Future
 
-import parity
 import pytest
-from conftest import needs_povray
+
+from tests.conftest import needs_povray
+from tests.support import parity
 
 
 @pytest.fixture(scope="module")
-def found(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Iterator[dict[parity.Scene, Future[parity.Found]]]:
+def found(request: pytest.FixtureRequest,
+          tmp_path_factory: pytest.TempPathFactory) -> Iterator[dict[parity.Scene, Future[parity.Found]]]:
     """Those that this run asks for, in its order."""
-    asked = [item.callspec.params["scene"] for item in request.session.items if "scene" in getattr(item, "fixturenames", ())
+    asked = [item.callspec.params["scene"] for item in request.session.items
+             if "scene" in getattr(item, "fixturenames", ())
              and item.module is request.module]
     results = parity.compare_all(tmp_path_factory.mktemp("parity"), asked)
     yield results
@@ -38,4 +41,5 @@ def test_parity(found: dict[parity.Scene, Future[parity.Found]], scene: parity.S
 
 def test_each_scene_has_a_name_and_a_place() -> None:
     assert len({str(scene) for scene in parity.SCENES}) == len(parity.SCENES)
-    assert {scene.row for scene in parity.SCENES} == set(parity.ROWS) and {scene.column for scene in parity.SCENES} == set(parity.COLUMNS)
+    assert {scene.row for scene in parity.SCENES} == set(parity.ROWS)
+    assert {scene.column for scene in parity.SCENES} == set(parity.COLUMNS)

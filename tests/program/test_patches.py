@@ -1,5 +1,5 @@
-"""Surfaces without closed forms, through the program: errors in the scene and in files of patches, the same bytes for any number of
-threads. POV-Ray's picture of them: test_parity.py.
+"""Surfaces without closed forms, through the program: errors in the scene and in files of patches, the same bytes for
+any number of threads. POV-Ray's picture of them: test_parity.py.
 """
 
 from __future__ import annotations
@@ -9,11 +9,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import TOP, Kage
-from parity import CAMERA, FLOOR, HEAD, LIGHTS, SHEETS, layers
 
-
-import make_teapot  # noqa: E402
+from scripts import make_teapot
+from tests.conftest import TOP, Kage
+from tests.support.parity import CAMERA, FLOOR, HEAD, LIGHTS, SHEETS, layers
 
 PARAMETRIC = '{x: "u", y: "1 + 0.2*sin(3*u)*cos(2*w)", z: "w", u: [-1, 1], w: [-pi/3, pi/3]}'
 PATCH = "[" + ", ".join(f"[{i - 1.5}, {1 + (i % 2) * (j % 2)}, {1.5 - j}]" for j in range(4) for i in range(4)) + "]"
@@ -21,8 +20,9 @@ PATCH = "[" + ", ".join(f"[{i - 1.5}, {1 + (i % 2) * (j % 2)}, {1.5 - j}]" for j
 
 def scene(kage: Kage, shape: str, bump: str = "") -> Path:
     path = kage.folder / "sheet.yaml"
-    text = HEAD.format(camera=CAMERA, lights=LIGHTS).replace("[160, 120]", "[96, 72]") + FLOOR + f"  it:\n    {shape}\n    material: shiny\n"
-    path.write_text(text + (f"    bump: {bump}\n" if bump else ""))
+    head = HEAD.format(camera=CAMERA, lights=LIGHTS).replace("[160, 120]", "[96, 72]")
+    path.write_text(head + FLOOR + f"  it:\n    {shape}\n    material: shiny\n"
+                    + (f"    bump: {bump}\n" if bump else ""))
     return path
 
 
@@ -36,7 +36,9 @@ WRONG = [
     ("u: [-1, 1]", "u: [w, 1]", "an end of a range with u or w in it, expected a number or such as 2*pi"),
     ("u: [-1, 1]", "u: [-1, 1/0]", "the range ends at inf, expected -1000000 to 1000000"),
     ("u: [-1, 1]", "v: [-1, 1]", "parametric has no 'v', did you mean"),
-    ('z: "w"', 'z: "1/w"', "11:17: a surface without bounds, or all in one place, expected functions that are bounded over the range of u and w"),
+    ('z: "w"', 'z: "1/w"',
+     "11:17: a surface without bounds, or all in one place, expected functions that are bounded over the range of u "
+     "and w"),
     ('x: "u"', 'x: "log(u)"', "11:17: a surface without bounds, or all in one place, expected functions"),
 ]
 
@@ -55,12 +57,15 @@ def test_wrong_parametric(kage: Kage, old: str, new: str, message: str) -> None:
     ("shape", "message"),
     [
         ("patches: {}", "patches with neither file nor points, expected either 'file' or 'points'"),
-        (f"patches: {{file: a.txt, points: [{PATCH}]}}", "patches with both file and points, expected either 'file' or 'points'"),
+        (f"patches: {{file: a.txt, points: [{PATCH}]}}",
+         "patches with both file and points, expected either 'file' or 'points'"),
         ("patches: {file: none.txt}", "'none.txt' can't be used: No such file or directory"),
         ("patches: {points: []}", "0 patches, expected 1 to 4096"),
         ("patches: {points: [[[0, 0, 0]]]}", "1 point, expected a patch: a list of 16 control points [x, y, z]"),
-        (f"patches: {{points: [{PATCH.replace('[-1.5, 1, 1.5]', '[-1.5, 1]')}]}}", "2 values, expected a control point [x, y, z]"),
-        (f"patches: {{points: [[{', '.join(['[1, 2, 3]'] * 16)}]]}}", "patches that are all in one place, expected some extent"),
+        (f"patches: {{points: [{PATCH.replace('[-1.5, 1, 1.5]', '[-1.5, 1]')}]}}",
+         "2 values, expected a control point [x, y, z]"),
+        (f"patches: {{points: [[{', '.join(['[1, 2, 3]'] * 16)}]]}}",
+         "patches that are all in one place, expected some extent"),
     ],
 )
 def test_wrong_patches(kage: Kage, shape: str, message: str) -> None:
@@ -93,8 +98,8 @@ def test_teapot_is_what_its_script_makes() -> None:
 
 
 def test_teapot_is_newells() -> None:
-    """As it is known: 32 patches, symmetric, its bounds, and parts that join: every edge of a patch that is not the teapot's own is
-    another's, too."""
+    """As it is known: 32 patches, symmetric, its bounds, and parts that join: every edge of a patch that is not the
+    teapot's own is another's, too."""
     patches = [np.array(p) for _, p in make_teapot.patches()]
     assert len(patches) == 32
     points = np.concatenate([p.reshape(-1, 3) for p in patches])

@@ -1,4 +1,5 @@
-"""The export to POV-Ray: what is in the file, when it is refused, and what POV-Ray makes of it but for the pictures of parity.py."""
+"""The export to POV-Ray: what is in the file, when it is refused, and what POV-Ray makes of it but for the pictures of
+parity.py."""
 
 from __future__ import annotations
 
@@ -7,9 +8,26 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import Kage, needs_povray
-from parity import (CAMERA, DISPLACED, HEAD, LIGHTINGS, LIGHTS, MAP, PLANE, POVRAY, SIZE, STEP, SURFACES, colored, displaced, layers, povray, rgb,
-                    write_images)
+
+from tests.conftest import Kage, needs_povray
+from tests.support.parity import (
+    CAMERA,
+    HEAD,
+    LIGHTINGS,
+    LIGHTS,
+    MAP,
+    PLANE,
+    POVRAY,
+    SIZE,
+    STEP,
+    SURFACES,
+    colored,
+    displaced,
+    layers,
+    povray,
+    rgb,
+    write_images,
+)
 
 
 def write_scene(kage: Kage, text: str, name: str = "rough") -> Path:
@@ -23,12 +41,15 @@ def write_displaced(kage: Kage, name: str, camera: str = CAMERA) -> Path:
     return write_scene(kage, displaced(name, camera))
 
 
-@pytest.mark.parametrize("color", ["{image: {file: color.png, wrap: clamp}}", "{image: {file: color.png, wrap: mirror}}",
+@pytest.mark.parametrize("color", ["{image: {file: color.png, wrap: clamp}}",
+                                   "{image: {file: color.png, wrap: mirror}}",
                                    "{image: {file: color.png, wrap: clamp, interpolation: nearest, size: [0.5, 1]}}"])
 def test_image_that_povray_has_not(kage: Kage, color: str) -> None:
-    scene = write_scene(kage, colored(color, "rectangle: {origin: [-1, 2.1, 0.2], u: [2, 0.4, 0.3], w: [0.5, -1.2, 0.4]}"), "color")
+    scene = write_scene(kage, colored(color, "rectangle: {origin: [-1, 2.1, 0.2], u: [2, 0.4, 0.3], w: [0.5, -1.2, "
+                                             "0.4]}"), "color")
     done = kage("pov", scene, "-o", "color.pov")
-    assert done.returncode == 2 and "object it: POV-Ray's images repeat and do nothing else, expected 'wrap: repeat'" in done.stderr
+    assert done.returncode == 2
+    assert "object it: POV-Ray's images repeat and do nothing else, expected 'wrap: repeat'" in done.stderr
     assert not (kage.folder / "color.pov").exists()
     kage.good("render", scene, "-o", "color.exr", "--quiet")
 
@@ -41,12 +62,15 @@ def mesh_list(text: str, name: str) -> np.ndarray:
 
 
 def test_normals_beyond_a_clamped_map_are_those_of_the_triangles(kage: Kage) -> None:
-    """From the places of their corners alone. Pictures cannot tell: POV-Ray shades with the normals that stand in the file."""
+    """From the places of their corners alone. Pictures cannot tell: POV-Ray shades with the normals that stand in the
+    file."""
     text = HEAD.format(camera=CAMERA, lights=LIGHTS)
-    scene = write_scene(kage, f"{text}  rough: {{{PLANE}, material: clay, bump: {MAP.replace('[2, 2]', '[1, 1], wrap: clamp')}}}\n")
+    scene = write_scene(kage, f"{text}  rough: "
+                              f"{{{PLANE}, material: clay, bump: {MAP.replace('[2, 2]', '[1, 1], wrap: clamp')}}}\n")
     kage.good("pov", scene, "-o", "rough.pov", "--surface", "displaced", "--size", "48x36")
     mesh = (kage.folder / "rough.pov").read_text()
-    at, normals, corners = mesh_list(mesh, "vertex_vectors"), mesh_list(mesh, "normal_vectors"), mesh_list(mesh, "face_indices").astype(int)
+    at, normals = mesh_list(mesh, "vertex_vectors"), mesh_list(mesh, "normal_vectors")
+    corners = mesh_list(mesh, "face_indices").astype(int)
     a, b, c = (at[corners[:, k]] for k in range(3))
     facets = np.cross(b - a, c - a)
     facets /= np.linalg.norm(facets, axis=1, keepdims=True)
@@ -85,7 +109,8 @@ def test_adaptive_samples(kage: Kage, name: str) -> None:
     scene.write_text(HEAD.format(camera=camera, lights=lights) + objects)
     some = ["--set", "render={aa: 4, aa_threshold: 0.1}"]
     kage.good("pov", scene, "-o", "adaptive.pov", "--surface", "smooth", *some)
-    found = re.search(r"// render:.* \+A0\.1 \+AM1 \+R4 -J -D$", (kage.folder / "adaptive.pov").read_text(), re.MULTILINE)
+    found = re.search(r"// render:.* \+A0\.1 \+AM1 \+R4 -J -D$", (kage.folder / "adaptive.pov").read_text(),
+                      re.MULTILINE)
     assert found
     theirs, words = povray(kage.folder / "adaptive.pov", SIZE, "+A0.1", "+AM1", "+R4", "-J")
     pictures = {}
@@ -176,8 +201,10 @@ def test_names(kage: Kage) -> None:
         (["pov", "rough.yaml"], "kage: 'kage pov' lacks -o FILE.pov; see kage --help\n", 2),
         (["pov", "rough.yaml", "-o", "a.png"], "kage: -o a.png: expected a name that ends in .pov\n", 2),
         (["pov", "rough.yaml", "-o", "a.pov", "-o", "b.pov"], "kage: -o b.pov: a second output, expected one\n", 2),
-        (["pov", "rough.yaml", "-o", "a.pov", "--surface", "rough"], "kage: --surface rough: expected smooth or displaced\n", 2),
-        (["pov", "rough.yaml", "-o", "a.pov", "--aa", "2"], "kage: --aa: no option of 'kage pov'; see kage --help\n", 2),
+        (["pov", "rough.yaml", "-o", "a.pov", "--surface", "rough"],
+         "kage: --surface rough: expected smooth or displaced\n", 2),
+        (["pov", "rough.yaml", "-o", "a.pov", "--aa", "2"], "kage: --aa: no option of 'kage pov'; see kage --help\n",
+         2),
         (["pov", "-o", "a.pov"], "kage: 'kage pov' lacks a scene; see kage --help\n", 2),
         (["pov", "rough.yaml", "-o", "none/a.pov"], "No such file or directory", 1),
         (["pov", "rough.yaml", "-o", "/dev/full/a.pov"], "Not a directory", 1),
@@ -196,7 +223,8 @@ def test_errors(kage: Kage, arguments: list[str], message: str, status: int) -> 
 
 def test_without_bounds(kage: Kage) -> None:
     scene = write_displaced(kage, "plane")
-    done = kage("pov", scene, "-o", "a.pov", "--surface", "displaced", "--set", "objects.rough.bump.function='0.1*floor(u)'")
+    done = kage("pov", scene, "-o", "a.pov", "--surface", "displaced", "--set",
+                "objects.rough.bump.function='0.1*floor(u)'")
     assert done.returncode == 2 and "no bounds" in done.stderr
     assert not (kage.folder / "a.pov").exists()
     kage.good("pov", scene, "-o", "a.pov", "--surface", "smooth", "--set", "objects.rough.bump.function='0.1*floor(u)'")

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import Kage, needs_povray
-from parity import GLOBE, HEAD, LIGHTS, PLANE, ROUND_ONES, difference, layers, povray, rgb
+from tests.conftest import Kage, needs_povray
+from tests.support.parity import GLOBE, HEAD, LIGHTS, PLANE, ROUND_ONES, difference, layers, povray, rgb
 from PIL import Image
 
 MOST = 4_000_000

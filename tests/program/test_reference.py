@@ -20,8 +20,9 @@ from types import ModuleType
 import numpy as np
 import pytest
 import references
-from conftest import PROGRAM, TOP, start
 from PIL import Image
+
+from tests.conftest import PROGRAM, TOP, start
 
 RENDER = TOP / "reference" / "render.py"
 
@@ -243,7 +244,8 @@ FAILURES = {
 
 @pytest.mark.parametrize("mode", FAILURES)
 def test_failures(studio: Studio, mode: str, capsys: pytest.CaptureFixture[str]) -> None:
-    """One message; nothing is made, and what was there stays as it was: a good reference, or a stale one that says so."""
+    """One message; nothing is made, and what was there stays as it was: a good reference, or a stale one that says
+    so."""
     assert studio.make(mode) == 1
     err = capsys.readouterr().err
     assert err.startswith("render.py: waves: ") and err.count("render.py:") == 1 and FAILURES[mode] in err
@@ -315,7 +317,8 @@ def runs(pid: int) -> bool:
 def test_interrupted(studio: Studio, how: signal.Signals) -> None:
     """POV-Ray ends with the program, and nothing is left."""
     env = os.environ | {"FAKE_POVRAY": "sleeps"}
-    process = start([sys.executable, RENDER, *studio.arguments()], env=env, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+    process = start([sys.executable, RENDER, *studio.arguments()], env=env, stdout=subprocess.PIPE,
+                    stderr=subprocess.PIPE,
                     text=True)
     pid = studio.log.with_name("pid")
     for _ in range(300):

@@ -1,7 +1,8 @@
-"""Every scene by every method is what it was (tests/regression/); truly displaced, it is what POV-Ray shows (reference/).
+"""Every scene by every method is what it was (tests/regression/); truly displaced, it is what POV-Ray shows
+(reference/).
 
-A failure writes old, new and difference into out/regression/ and tells the command that repeats it. `make accept` shows all
-changes on one page and keeps them where that is wanted.
+A failure writes old, new and difference into out/regression/ and tells the command that repeats it. `make accept` shows
+all changes on one page and keeps them where that is wanted.
 """
 
 from __future__ import annotations
@@ -15,13 +16,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from conftest import TOP
 
-
-import cases  # noqa: E402
-
-from bench import claims, plan, quality  # noqa: E402
-from reference import references  # noqa: E402
+from bench import claims, plan, quality
+from reference import references
+from tests.regression import cases
 
 KAGE = cases.PROGRAM
 
@@ -116,7 +114,8 @@ def test_displaced_is_povrays(bench: plan.Bench, scene: str) -> None:
     for kind, least in claims.LEAST_CLOSE.items():
         assert found[f"{kind}_close"] >= least, f"% of the pixels within 1/255 of POV-Ray's ({kind}); {again}"
     assert found["mask_shadow"] > 5000
-    assert found["mask"]["wrong"] <= claims.MOST_DIFFERENT["mask"], f"{found['mask_differs']} pixels of shadow differ; {again}"
+    differ = f"{found['mask_differs']} pixels of shadow differ; {again}"
+    assert found["mask"]["wrong"] <= claims.MOST_DIFFERENT["mask"], differ
 
 
 @pytest.fixture(scope="module")
@@ -126,7 +125,8 @@ def waves(bench: plan.Bench) -> dict[str, dict[str, Any]]:
 
 @pytest.mark.parametrize("truth", ["mask", "exact"])
 def test_order_of_merit(waves: dict[str, dict[str, Any]], truth: str) -> None:
-    """On function data with gentle slopes each order is better than the one before, against POV-Ray's truth and kage's."""
+    """On function data with gentle slopes each order is better than the one before, against POV-Ray's truth and
+    kage's."""
     wrong = [waves[method][truth]["wrong"] for method in claims.MERIT]
     assert all(a > b for a, b in itertools.pairwise(wrong)), wrong
 
@@ -138,7 +138,8 @@ def test_exact_is_povrays_shadow(waves: dict[str, dict[str, Any]]) -> None:
     assert exact["exact"]["wrong"] == exact["tau"]["p95"] == exact["fell_back"] == 0
 
 
-def test_without_a_reference_the_rest_is_measured(bench: plan.Bench, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_without_a_reference_the_rest_is_measured(bench: plan.Bench, monkeypatch: pytest.MonkeyPatch,
+                                                  tmp_path: Path) -> None:
     monkeypatch.setattr(plan.Bench, "references", tmp_path)
     found = quality.measure(bench, bench.scenes["waves"], "0")
     assert "mask" not in found and "`make reference` makes it again" in found["why"]

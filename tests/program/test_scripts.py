@@ -17,7 +17,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
-TOP = Path(__file__).resolve().parents[2]
+from tests.conftest import TOP
+
 SCRIPTS = TOP / "scripts"
 DATA = TOP / "scenes" / "data"
 

@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-import os
 import platform
 import shutil
 from pathlib import Path
 
 import pytest
 
-TOP = Path(__file__).resolve().parents[2]
-KAGE = Path(os.environ.get("KAGE", TOP / "build" / "float" / "kage"))
-
-import vectorised  # noqa: E402
+from scripts import vectorised
+from tests.conftest import PROGRAM as KAGE
 
 # What is known not to be vectorised, or not to full width, and why.
 SCALAR = {"order_2_bare"}  # gcc 12 finds no vector for its choice between the orders 1 and 2; not the default method

@@ -1,4 +1,5 @@
-"""Accept changed pictures: show old, new and difference on a page, ask, then keep the new ones for tests/test_regression.py.
+"""Accept changed pictures: show old, new and difference on a page, ask, then keep the new ones for
+tests/test_regression.py.
 
 ACCEPT=yes answers the question beforehand. Without it and without a terminal nothing is kept.
 
@@ -13,7 +14,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-import cases
+from tests.regression import cases
 
 
 def find_changes() -> list[cases.Change]:

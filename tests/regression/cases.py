@@ -1,13 +1,13 @@
 """The pictures that must stay as they are: the cases, how they are compared, and the page that shows old and new.
 
-A case is a scene and a method: each of scenes/ by every method at 128x96, and those of this folder, which show what the others
-have not (lights, colours, mirrors, glass, surfaces by their points), as they say themselves at 80x60. Its picture is kept beside this
-file as an EXR with R, G, B and tau in half floats, some 50 and 15 kB each.
+A case is a scene and a method: each of scenes/ by every method at 128x96, and those of this folder, which show what the
+others have not (lights, colours, mirrors, glass, surfaces by their points), as they say themselves at 80x60. Its
+picture is kept beside this file as an EXR with R, G, B and tau in half floats, some 50 and 15 kB each.
 
-Tolerance: kage's bytes are the same on every processor, with any compiler and any number of threads, so on unchanged code
-nothing differs at all. A change may round sums differently in float's last bits, which can turn the rounding to half: two
-values that are neighbours among half floats are the same. No pixel is excepted: a shadow that moves by one pixel is a
-change that somebody must look at, and accept.
+Tolerance: kage's bytes are the same on every processor, with any compiler and any number of threads, so on unchanged
+code nothing differs at all. A change may round sums differently in float's last bits, which can turn the rounding to
+half: two values that are neighbours among half floats are the same. No pixel is excepted: a shadow that moves by one
+pixel is a change that somebody must look at, and accept.
 """
 
 from __future__ import annotations
@@ -16,23 +16,18 @@ import html
 import os
 import shlex
 import subprocess
-import sys
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 from PIL import Image
 
+from bench import images
+from reference import references
+from tests.conftest import PROGRAM, TOP
+
 HERE = Path(__file__).resolve().parent
-TOP = HERE.parent.parent
 OUT = TOP / "out" / "regression"
-PROGRAM = Path(os.environ.get("KAGE", TOP / "build" / "float" / "kage")).resolve()
-sys.path[:0] = [str(TOP), str(TOP / "reference")]
-
-import references  # noqa: E402  (the folder is no package)
-
-from bench import images  # noqa: E402
-
 SIZES = {"scenes": "128x96", "tests/regression": "80x60"}
 CHANNELS = ("R", "G", "B", "tau")
 AMPLIFY = 8  # of differences, so that 1/255 can be seen
@@ -61,11 +56,13 @@ class Case:
 
     def command(self, output: Path) -> list[str]:
         """From the project's top folder."""
-        return [os.path.relpath(PROGRAM, TOP), "render", f"{self.folder}/{self.scene}.yaml", *METHODS[self.method], "--size",
+        return [os.path.relpath(PROGRAM, TOP), "render", f"{self.folder}/{self.scene}.yaml", *METHODS[self.method],
+                "--size",
                 SIZES[self.folder], "--quiet", "-o", os.path.relpath(output, TOP)]
 
 
-CASES = (*(Case(scene.stem, method) for scene in sorted((TOP / "scenes").glob("*.yaml")) for method in METHODS if method != "own"),
+CASES = (*(Case(scene.stem, method) for scene in sorted((TOP / "scenes").glob("*.yaml")) for method in METHODS
+           if method != "own"),
          *(Case(scene.stem, "own", "tests/regression") for scene in sorted(HERE.glob("*.yaml"))))
 
 
@@ -173,8 +170,8 @@ td, th {{ padding: 4px 8px; text-align: left }}
 code {{ background: #eee; padding: 2px 4px }}
 </style>
 <h1>{count} of {all} pictures changed</h1>
-<p>Differences are {amplify} times as strong, around grey: brighter where the new picture is. Where &tau; has changed it is
-shown as well, from black for the lowest to white for the highest of both.
+<p>Differences are {amplify} times as strong, around grey: brighter where the new picture is. Where &tau; has changed
+it is shown as well, from black for the lowest to white for the highest of both.
 <code>make accept</code> keeps the new ones.</p>
 {sections}
 </html>

@@ -1,4 +1,5 @@
-"""Models for the tests, and the files that they come in. Right-handed and y up, v upward, as files have them; corners counterclockwise."""
+"""Models for the tests, and the files that they come in. Right-handed and y up, v upward, as files have them; corners
+counterclockwise."""
 
 from __future__ import annotations
 
@@ -86,12 +87,14 @@ def stl(path: Path, m: Model, *, binary: bool) -> None:
 
 
 def off(path: Path, m: Model) -> None:
-    path.write_text(f"OFF\n{len(m.at)} {len(m.face)} 0\n" + rows("%.9g %.9g %.9g\n", m.at) + rows("3 %d %d %d\n", m.face))
+    path.write_text(f"OFF\n{len(m.at)} {len(m.face)} 0\n" + rows("%.9g %.9g %.9g\n",
+                                                                 m.at) + rows("3 %d %d %d\n", m.face))
 
 
 def gltf(path: Path, m: Model, matrix: list[float] | None = None, buffer: str = "") -> None:
     """glTF, with its numbers in a file beside it where that has a name, or, by the name, GLB; v goes down in these."""
-    arrays = [m.at.astype("<f4"), m.normal.astype("<f4"), (m.uv * (1, -1) + (0, 1)).astype("<f4"), m.face.astype("<u4").ravel()]
+    arrays = [m.at.astype("<f4"), m.normal.astype("<f4"), (m.uv * (1, -1) + (0, 1)).astype("<f4"),
+              m.face.astype("<u4").ravel()]
     kinds = [("VEC3", 5126), ("VEC3", 5126), ("VEC2", 5126), ("SCALAR", 5125)]
     blob, views, accessors = b"", [], []
     for k, (array, (kind, component)) in enumerate(zip(arrays, kinds, strict=True)):
@@ -107,7 +110,8 @@ def gltf(path: Path, m: Model, matrix: list[float] | None = None, buffer: str = 
     elif not binary:
         numbers["uri"] = "data:application/octet-stream;base64," + base64.b64encode(blob).decode()
     document = {
-        "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0} | ({"matrix": matrix} if matrix else {})],
+        "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
+        "nodes": [{"mesh": 0} | ({"matrix": matrix} if matrix else {})],
         "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "NORMAL": 1, "TEXCOORD_0": 2}, "indices": 3}]}],
         "buffers": [numbers], "bufferViews": views, "accessors": accessors,
     }

@@ -1,0 +1,196 @@
+/* Bounds of the value, the gradient and the Hessian over a box: the program, run once on intervals instead of on
+ * points, in forward mode. A point at which some operand is NaN or a pole counts as outside the expression's domain.
+ *
+ * Bounds of partials are bounds of differences too. So each operation must be Lipschitz over all the values that its
+ * operands can take in the box, not only have a derivative almost everywhere: a kink has the derivatives of both its
+ * sides and all between, a jump has an infinite one, unless what decides about the jump does not change in that
+ * direction. As everywhere here, 0 times infinity is 0: what does not change, changes nothing.
+ */
+#include "expr/operation.h"
+
+enum { ALONG_U, ALONG_W, DIRECTIONS };
+enum { UU, UW, WW, SECONDS };
+
+typedef struct slope {
+    interval along[DIRECTIONS];
+} slope;
+
+typedef struct second {
+    interval d[SECONDS];
+} second;
+
+/* Of each of these, its directions. */
+static const int first_of[SECONDS] = {ALONG_U, ALONG_U, ALONG_W}, second_of[SECONDS] = {ALONG_U, ALONG_W, ALONG_W};
+
+static expr_ranges ranges_of(const expr_code *c, const interval *value)
+{
+    expr_ranges r = {.k = c->k, .same = c->arg[0] == c->arg[1]};
+    for (int i = 0; i < c->op->operands; i++)
+        r.x[i] = value[c->arg[i]];
+    r.f = interval_known(c->op->value(&r));
+    return r;
+}
+
+void expr_bound_value(const expr *e, double u0, double u1, double w0, double w1, double *lo, double *hi)
+{
+    interval value[EXPR_SLOTS] = {{u0, u1}, {w0, w1}};
+    for (int i = 0; i < e->count; i++)
+        value[e->code[i].z] = ranges_of(&e->code[i], value).f;
+    *lo = value[e->result].lo;
+    *hi = value[e->result].hi;
+}
+
+/* ---- terms of the chain rule ---- */
+
+/* Exact where a factor is 0, as along what an operand does not depend on, or 1 or -1, as in sums. */
+static interval product(interval x, interval y)
+{
+    if (interval_is(x, 0) || interval_is(y, 0))
+        return interval_zero;
+    if (interval_is(x, 1) || interval_is(x, -1))
+        return x.lo > 0 ? y : interval_negate(y);
+    if (interval_is(y, 1) || interval_is(y, -1))
+        return y.lo > 0 ? x : interval_negate(x);
+    return interval_multiply(x, y);
+}
+
+static interval sum(interval x, interval y)
+{
+    if (interval_is(x, 0) || interval_is(y, 0))
+        return interval_is(x, 0) ? y : x;
+    return interval_add(x, y);
+}
+
+/* ---- first partials ---- */
+
+/* f_i = f_a a_i + f_b b_i + f_c c_i */
+static slope chain(const expr_code *c, const slope *s, const expr_gradient *g)
+{
+    slope z = {{{0, 0}}};
+    for (int k = 0; k < c->op->operands; k++)
+        for (int i = 0; i < DIRECTIONS; i++)
+            z.along[i] = sum(z.along[i], product(g->d[k], s[c->arg[k]].along[i]));
+    return z;
+}
+
+/* Of an operation that chooses: the slope is that of one of the operands reached. Between operands that meet, as min's
+ * do, nothing jumps. */
+static slope choice(const expr_code *c, const expr_ranges *r, const slope *s)
+{
+    const int set = c->op->reached(r);
+    int first = 0;
+    while (!(set >> first & 1))
+        first++;
+    const interval v = r->x[first];
+    slope z = s[c->arg[first]];
+    bool meet = true;
+    for (int k = first + 1; k < c->op->operands; k++)
+        if (set >> k & 1) {
+            const interval x = r->x[k];
+            meet = meet && (c->arg[k] == c->arg[first] || (interval_is(x, v.lo) && interval_is(x, v.hi)));
+            for (int i = 0; i < DIRECTIONS; i++)
+                z.along[i] = interval_hull(z.along[i], s[c->arg[k]].along[i]);
+        }
+    for (int i = 0; i < DIRECTIONS; i++)
+        if (c->op->deciding && !meet && !interval_is(s[c->arg[0]].along[i], 0))
+            z.along[i] = interval_all;
+    return z;
+}
+
+static void put_bounds(interval v, slope s, expr_bounds *out)
+{
+    const interval u = s.along[ALONG_U], w = s.along[ALONG_W];
+    *out = (expr_bounds){{v.lo, v.hi}, {u.lo, u.hi}, {w.lo, w.hi}};
+}
+
+void expr_bound_gradient(const expr *e, double u0, double u1, double w0, double w1, expr_bounds *out)
+{
+    interval value[EXPR_SLOTS] = {{u0, u1}, {w0, w1}};
+    slope s[EXPR_SLOTS] = {{{{1, 1}, {0, 0}}}, {{{0, 0}, {1, 1}}}};
+    for (int i = 0; i < e->count; i++) {
+        const expr_code *c = &e->code[i];
+        const expr_ranges r = ranges_of(c, value);
+        if (c->op->reached)
+            s[c->z] = choice(c, &r, s);
+        else {
+            const expr_gradient g = c->op->gradient(&r);
+            s[c->z] = chain(c, s, &g);
+        }
+        value[c->z] = r.f;
+    }
+    put_bounds(value[e->result], s[e->result], out);
+}
+
+/* ---- second partials ---- */
+
+/* The terms of f_ij in the first partials of operands: f_aa a_i a_j, f_ab (a_i b_j + a_j b_i). */
+static interval pair_term(interval dd, bool same, const slope *a, const slope *b, int m)
+{
+    const interval ai = a->along[first_of[m]], aj = a->along[second_of[m]];
+    const interval bi = b->along[first_of[m]], bj = b->along[second_of[m]];
+    if (interval_is(dd, 0))
+        return interval_zero;
+    if (!same)
+        return product(dd, sum(product(ai, bj), product(aj, bi)));
+    return product(dd, m == UW ? product(ai, aj) : interval_square(ai));
+}
+
+/* f_ij = sum of f_a a_ij over operands, and of pair_term over pairs. */
+static second chain2(const expr_code *c, const slope *s, const second *h, const expr_gradient *g, const expr_hessian *f)
+{
+    second z = {{{0, 0}}};
+    for (int m = 0; m < SECONDS; m++) {
+        for (int k = 0; k < c->op->operands; k++)
+            z.d[m] = sum(z.d[m], product(g->d[k], h[c->arg[k]].d[m]));
+        for (int p = 0; p < EXPR_PAIRS; p++) {
+            const int i = expr_pairs[p].i, j = expr_pairs[p].j;
+            z.d[m] = sum(z.d[m], pair_term(f->dd[p], i == j, &s[c->arg[i]], &s[c->arg[j]], m));
+        }
+    }
+    return z;
+}
+
+/* Those of the one operand that is reached; between several the slope jumps, except along what none of them depends
+ * on. */
+static second choice2(const expr_code *c, const expr_ranges *r, const slope *s, const second *h)
+{
+    const int set = c->op->reached(r);
+    bool rests[DIRECTIONS] = {true, true};
+    second z;
+    for (int k = 0; k < c->op->operands; k++)
+        if (set == 1 << k)
+            return h[c->arg[k]];
+    for (int i = 0; i < DIRECTIONS; i++)
+        for (int k = 0; k < c->op->operands; k++)
+            if (set >> k & 1 || k < c->op->deciding)
+                rests[i] = rests[i] && interval_is(s[c->arg[k]].along[i], 0);
+    for (int m = 0; m < SECONDS; m++)
+        z.d[m] = rests[first_of[m]] || rests[second_of[m]] ? interval_zero : interval_all;
+    return z;
+}
+
+void expr_bound_hessian(const expr *e, double u0, double u1, double w0, double w1, expr_bounds *out,
+                        expr_hessians *hessian)
+{
+    static const expr_hessian flat;
+    interval value[EXPR_SLOTS] = {{u0, u1}, {w0, w1}};
+    slope s[EXPR_SLOTS] = {{{{1, 1}, {0, 0}}}, {{{0, 0}, {1, 1}}}};
+    second h[EXPR_SLOTS] = {{{{0, 0}}}};
+    for (int i = 0; i < e->count; i++) {
+        const expr_code *c = &e->code[i];
+        const expr_ranges r = ranges_of(c, value);
+        if (c->op->reached) {
+            h[c->z] = choice2(c, &r, s, h);
+            s[c->z] = choice(c, &r, s);
+        } else {
+            const expr_gradient g = c->op->gradient(&r);
+            const expr_hessian f = c->op->hessian ? c->op->hessian(&r) : flat;
+            h[c->z] = chain2(c, s, h, &g, &f);
+            s[c->z] = chain(c, s, &g);
+        }
+        value[c->z] = r.f;
+    }
+    const second z = h[e->result];
+    put_bounds(value[e->result], s[e->result], out);
+    *hessian = (expr_hessians){{z.d[UU].lo, z.d[UU].hi}, {z.d[UW].lo, z.d[UW].hi}, {z.d[WW].lo, z.d[WW].hi}};
+}

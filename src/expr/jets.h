@@ -1,0 +1,64 @@
+/* Arithmetic of jets: values with their first and second partials, a batch of points at a time (forward-mode
+ * differentiation). Parts of a jet that are 0 for all points are not touched.
+ *
+ * Partials are sums of products. In them 0 times infinity is 0: where an operand does not change in a direction, a
+ * steep function of it does not either. So sqrt(u^2 + w^2) has first partials 0 at its apex.
+ */
+#ifndef KAGE_EXPR_JETS_H
+#define KAGE_EXPR_JETS_H
+
+#include "expr/program.h"
+
+/* An operand or a result: a jet and those of its parts that are not 0 and are asked for. */
+typedef struct expr_view {
+    expr_jets *jet;
+    int has;
+} expr_view;
+
+/* A part, NULL where the view has none. */
+static inline double *expr_part(expr_view v, int p)
+{
+    /* the parts of a jet are arrays of one size, in the order of enum expr_part */
+    return v.has >> p & 1 ? (double *)((char *)v.jet + (size_t)p * sizeof v.jet->v) : NULL;
+}
+
+/* The same, an array of zeros where the view has none. */
+static inline const double *expr_part_or_zeros(expr_view v, int p)
+{
+    static const double zeros[EXPR_BATCH];
+    return v.has >> p & 1 ? expr_part(v, p) : zeros;
+}
+
+/* The operands of a function with partials f_i, f_ij: at most three; and the pairs i <= j, as sets. */
+enum { EXPR_CURVED = 3, EXPR_PAIRS = 6 };
+enum { EXPR_AA = 1, EXPR_AB = 2, EXPR_AC = 4, EXPR_BB = 8, EXPR_BC = 16, EXPR_CC = 32, EXPR_ALL = 63 };
+extern const struct expr_pair {
+    int i, j;
+} expr_pairs[EXPR_PAIRS];
+
+/* The partials of a function by its operands. */
+typedef struct expr_partials {
+    double d[EXPR_CURVED][EXPR_BATCH], dd[EXPR_PAIRS][EXPR_BATCH];
+} expr_partials;
+
+/* A function f(a), f(a,b) or f(a,b,c) at n points, with order 1 also its first partials, with order 2 also its second.
+ * RULE1, RULE2 and RULE3 in rule.h make them. */
+typedef void expr_rule1(int n, int order, const double *restrict a, double *restrict f, double *restrict d,
+                        double *restrict dd);
+typedef void expr_rule2(int n, int order, const double *restrict a, const double *restrict b, double *restrict f,
+                        expr_partials *restrict p);
+typedef void expr_rule3(int n, int order, const double *restrict a, const double *restrict b, const double *restrict c,
+                        double *restrict f, expr_partials *restrict p);
+
+/* z = k, x + k, k x, x + y, x - y, x y; all parts that z has. */
+void jets_fill(int n, expr_view z, double k);
+void jets_shift(int n, expr_view z, expr_view x, double k);
+void jets_scale(int n, expr_view z, expr_view x, double k);
+void jets_add(int n, expr_view z, expr_view x, expr_view y);
+void jets_subtract(int n, expr_view z, expr_view x, expr_view y);
+void jets_multiply(int n, expr_view z, expr_view x, expr_view y);
+
+/* The chain rule: the partials of z = f(x[0], x[1], ...). curved: which f_ij can differ from 0. */
+void jets_chain(int n, expr_view z, int operands, const expr_view *x, const expr_partials *f, int curved);
+
+#endif
