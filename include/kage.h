@@ -148,19 +148,19 @@ typedef struct kage_model_info {
 
 typedef struct kage_object_info {
     const char *name;
-    const char *shape;           /* its kind, as in docs/scene.md */
-    const char *copy_of;         /* the object that it is a copy of; NULL: none */
-    int transformed;             /* it has a transform */
-    const char *material;        /* the material's name */
-    const char *color;           /* what its colour is made by, "checker" or "image ..."; NULL: it is constant */
-    const char *bump;            /* what its bump is made by; NULL: it has none */
-    int mirrors, transparent;    /* its material does */
+    const char *shape;            /* its kind, as in docs/scene.md */
+    const char *copy_of;          /* the object that it is a copy of; NULL: none */
+    int transformed;              /* it has a transform */
+    const char *material;         /* the material's name */
+    const char *color;            /* what its colour is made by, "checker" or "image ..."; NULL: it is constant */
+    const char *bump;             /* what its bump is made by; NULL: it has none */
+    int mirrors, transparent;     /* its material does */
     const kage_model_info *model; /* NULL: no mesh, or a copy */
-    const char *map;             /* its height map's file, as the scene says; NULL: none */
-    int map_size[2];             /* of the map, in samples */
-    double map_range[2];         /* the lowest and highest sample, before `scale` and `zero` */
-    double height[2];            /* bounds of the bump's height P, in scene units */
-    int bounded;                 /* P has finite bounds */
+    const char *map;              /* its height map's file, as the scene says; NULL: none */
+    int map_size[2];              /* of the map, in samples */
+    double map_range[2];          /* the lowest and highest sample, before `scale` and `zero` */
+    double height[2];             /* bounds of the bump's height P, in scene units */
+    int bounded;                  /* P has finite bounds */
 } kage_object_info;
 
 typedef struct kage_scene_info {
@@ -263,9 +263,9 @@ typedef struct kage_order_count {
 } kage_order_count;
 
 typedef struct kage_stats {
-    double seconds;         /* the time that rendering took, by the wall clock */
-    const char *method;     /* that was asked for */
-    int64_t camera_rays;    /* samples */
+    double seconds;      /* the time that rendering took, by the wall clock */
+    const char *method;  /* that was asked for */
+    int64_t camera_rays; /* samples */
     int64_t shadow_rays;
     int64_t secondary_rays; /* reflected, refracted and straight through */
     int64_t height_lookups; /* evaluations of P */
@@ -285,12 +285,12 @@ KAGE_API const kage_stats *kage_film_get_stats(const kage_film *film);
 /* One method on the sample of a pixel. */
 typedef struct kage_probe_row {
     const char *method;
-    int guard;              /* 0: the bare formula */
-    double tau, t0;         /* t0 = t + tau: the shadow rays start at r + s t0, */
-    double origin[3];       /* which is here */
-    const char *fell_back;  /* the order that was used instead; NULL: none */
-    const double *visible;  /* for each light of the scene, 0..1: the share of it that is seen */
-    double color[3];        /* without light that is mirrored or let through */
+    int guard;             /* 0: the bare formula */
+    double tau, t0;        /* t0 = t + tau: the shadow rays start at r + s t0, */
+    double origin[3];      /* which is here */
+    const char *fell_back; /* the order that was used instead; NULL: none */
+    const double *visible; /* for each light of the scene, 0..1: the share of it that is seen */
+    double color[3];       /* without light that is mirrored or let through */
 } kage_probe_row;
 
 /* Every value on the way of the ray through the middle of a pixel. Names as in docs/method.md. */
@@ -319,7 +319,7 @@ KAGE_API void kage_probe_free(kage_probe *probe); /* NULL: nothing */
 typedef struct kage_bump_survey {
     int samples; /* of 40 000 over the picture; 0: no bump, or the camera does not see it, and what follows is 0 */
     double slope_median, slope_95, slope_max; /* tan of the angle between n and n'; 95 of 100 are below the second */
-    double fell_back[3]; /* in per cent of the samples, by the orders 1 and 2; [0] is 0 */
+    double fell_back[3];                      /* in per cent of the samples, by the orders 1 and 2; [0] is 0 */
 } kage_bump_survey;
 
 typedef enum kage_warning_code {
@@ -347,8 +347,8 @@ KAGE_API void kage_survey_free(kage_survey *survey); /* NULL: nothing */
 /* ---- POV-Ray ---- */
 
 typedef struct kage_povray_options {
-    const char *command; /* for the file's first lines: what made it. NULL: "libkage" */
-    int no_cast;         /* not 0: objects without a bump cast no shadows */
+    const char *command;   /* for the file's first lines: what made it. NULL: "libkage" */
+    int no_cast;           /* not 0: objects without a bump cast no shadows */
     kage_choice displaced; /* as in kage_render_options */
     void *reserved[8];
 } kage_povray_options;

@@ -144,8 +144,7 @@ kage_status kage_film_write_png(const kage_film *f, const char *path, int bits, 
     return written(good, &e, to);
 }
 
-kage_status kage_film_write_exr(const kage_film *f, const char *path, const char *layers, int threads,
-                                kage_errors **to)
+kage_status kage_film_write_exr(const kage_film *f, const char *path, const char *layers, int threads, kage_errors **to)
 {
     errors e = {0};
     picture_texts t;
@@ -165,8 +164,8 @@ kage_status kage_film_write_exr(const kage_film *f, const char *path, const char
         if (is_wanted(layers, f->film->name[k]))
             channel[channels++] = (image_channel){f->film->name[k], f->film->plane[k]};
     texts_of(f, &t);
-    const bool good = image_write_exr(path, threads, kage_film_width(f), kage_film_height(f), channels, channel, TEXTS,
-                                      t.text, &e);
+    const bool good =
+        image_write_exr(path, threads, kage_film_width(f), kage_film_height(f), channels, channel, TEXTS, t.text, &e);
     free(channel);
     return written(good, &e, to);
 }

@@ -71,16 +71,14 @@ static kage_status load(scene_source *from, const kage_load_options *given, kage
     return errors_give(&e, KAGE_BAD_INPUT, &w, to);
 }
 
-kage_status kage_scene_load(const char *path, const kage_load_options *options, kage_scene **out,
-                            kage_errors **to)
+kage_status kage_scene_load(const char *path, const kage_load_options *options, kage_scene **out, kage_errors **to)
 {
     scene_source from = {.path = path};
     return load(&from, options, out, to);
 }
 
 kage_status kage_scene_parse(const char *text, size_t size, const char *name, const char *folder,
-                             const kage_load_options *options, kage_scene **out,
-                            kage_errors **to)
+                             const kage_load_options *options, kage_scene **out, kage_errors **to)
 {
     scene_source from = {.path = name ? name : "scene", .text = text, .size = size, .folder = folder ? folder : ""};
     return load(&from, options, out, to);

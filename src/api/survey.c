@@ -97,7 +97,8 @@ static void warn_of(const kage_object_info *o, const kage_bump_survey *b, int id
 static kage_survey *report(const kage_scene *k, seen *all)
 {
     const size_t objects = (size_t)k->info.object_count;
-    kage_survey *v = malloc(sizeof *v + (objects + 1) * (sizeof(kage_bump_survey) + MOST_WARNINGS * sizeof(kage_warning)));
+    kage_survey *v =
+        malloc(sizeof *v + (objects + 1) * (sizeof(kage_bump_survey) + MOST_WARNINGS * sizeof(kage_warning)));
     if (!v)
         return NULL;
     kage_bump_survey *b = (kage_bump_survey *)(void *)(v + 1);

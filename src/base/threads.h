@@ -1,4 +1,5 @@
-/* How many threads share a piece of work. The count comes from the caller: nothing changes the process's own setting. */
+/* How many threads share a piece of work. The count comes from the caller: nothing changes the process's own setting.
+ */
 #ifndef KAGE_BASE_THREADS_H
 #define KAGE_BASE_THREADS_H
 

@@ -66,7 +66,10 @@ static void list_methods(char *text, size_t size)
     const int n = kage_method_count();
     size_t used = 0;
     for (int k = 0; k < n && used < size; k++)
-        used += (size_t)snprintf(text + used, size - used, "%s%s", k == 0 ? "" : k < n - 1 ? ", " : " or ",
+        used += (size_t)snprintf(text + used, size - used, "%s%s",
+                                 k == 0      ? ""
+                                 : k < n - 1 ? ", "
+                                             : " or ",
                                  kage_method_get(k).name);
 }
 

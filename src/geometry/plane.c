@@ -2,7 +2,7 @@
 #include "geometry/plane.h"
 
 #include "math/slab.h"
-#include "base/frame.h"
+#include "geometry/closed_form.h"
 
 #include <stdlib.h>
 
@@ -389,3 +389,76 @@ surface *disc_new(vec3 centre, vec3 normal, double radius)
     disc_set(f, centre, a.x, vec3_scale(a.z, -1), radius);
     return &f->base;
 }
+
+/* ---- as the scene file has them ---- */
+
+static const form_parameter edges[] = {
+    {"origin", FORM_PLACE, 0, "the place of u = w = 0, [x, y, z]"},
+    {"u", FORM_EDGE, 1, "the edge along u, [x, y, z]"},
+    {"w", FORM_EDGE, 2, "the edge along w, [x, y, z]"},
+    {0},
+};
+
+static surface *make_flat(const shape_values *v, bool bounded, form_fault *fault)
+{
+    surface *f = plane_new(v->v[0], v->v[1], v->v[2], bounded);
+    if (!f)
+        *fault = (form_fault){NULL, "u and w are parallel, expected two directions"};
+    return f;
+}
+
+static surface *make_plane(const shape_values *v, form_fault *fault) { return make_flat(v, false, fault); }
+static surface *make_rectangle(const shape_values *v, form_fault *fault) { return make_flat(v, true, fault); }
+
+static bool flat_edges(const shape_values *v, int part, flat_part *out)
+{
+    (void)part;
+    *out = (flat_part){v->v[0], v->v[1], v->v[2], -1};
+    return true;
+}
+
+const closed_form form_plane = {
+    .name = "plane",
+    .parameters = edges,
+    .make = make_plane,
+    .flat = flat_edges,
+    .solid = true,
+    .povray = "plane {\n  $plane\n",
+};
+
+const closed_form form_rectangle = {
+    .name = "rectangle",
+    .parameters = edges,
+    .make = make_rectangle,
+    .flat = flat_edges,
+    .povray = "$rectangle",
+};
+
+static const form_parameter disc_parameters[] = {
+    {"center", FORM_PLACE, 0, "a place [x, y, z]"},
+    {"normal", FORM_DIRECTION, 1, "the direction of n, [x, y, z]"},
+    {"radius", FORM_POSITIVE, 0, NULL},
+    {0},
+};
+
+static surface *make_disc(const shape_values *v, form_fault *fault)
+{
+    (void)fault;
+    return disc_new(v->v[0], v->v[1], v->r[0]);
+}
+
+static bool flat_disc(const shape_values *v, int part, flat_part *out)
+{
+    const frame a = frame_about(v->v[1]);
+    (void)part;
+    *out = (flat_part){v->v[0], a.x, vec3_scale(a.z, -1), v->r[0]};
+    return true;
+}
+
+const closed_form form_disc = {
+    .name = "disc",
+    .parameters = disc_parameters,
+    .make = make_disc,
+    .flat = flat_disc,
+    .povray = "disc {\n  $center, $normal, $radius\n",
+};

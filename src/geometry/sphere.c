@@ -1,7 +1,8 @@
 /* Sphere: Q(u,w) = C + R (sin w cos u, cos w, sin w sin u). */
 #include "math/kmath.h"
-#include "geometry/surface.h"
+#include "geometry/closed_form.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 
 typedef struct sphere {
@@ -240,3 +241,37 @@ surface *sphere_new(vec3 centre, double radius)
     f->R = (real)radius;
     return &f->base;
 }
+
+/* ---- as the scene file has it ---- */
+
+static const form_parameter sphere_parameters[] = {
+    {"center", FORM_PLACE, 0, "a place [x, y, z]"},
+    {"radius", FORM_POSITIVE, 0, NULL},
+    {0},
+};
+
+static surface *make_sphere(const shape_values *v, form_fault *fault)
+{
+    (void)fault;
+    return sphere_new(v->v[0], v->r[0]);
+}
+
+static bool sphere_formula(const shape_values *v, form_formula *out)
+{
+    const vec3 up = {0, 1, 0};
+    char rho[40], y[40];
+    snprintf(rho, sizeof rho, "%.17g*sin(w)", v->r[0]);
+    snprintf(y, sizeof y, "%.17g*cos(w)", v->r[0]);
+    sphere_extent(NULL, 0, out->u, out->w);
+    formula_revolve(out, frame_about(up), rho, y);
+    return true;
+}
+
+const closed_form form_sphere = {
+    .name = "sphere",
+    .parameters = sphere_parameters,
+    .make = make_sphere,
+    .formula = sphere_formula,
+    .solid = true,
+    .povray = "sphere {\n  $center, $radius\n",
+};

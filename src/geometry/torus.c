@@ -2,7 +2,9 @@
 #include "geometry/torus.h"
 
 #include "base/frame.h"
+#include "geometry/closed_form.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 
 STAGE static void torus_locate(const surface *base, int n, const rays *x, const real *t, int32_t *part, real *u,
@@ -188,3 +190,40 @@ surface *torus_new(vec3 centre, vec3 axis, double major, double minor)
     f->m = minor;
     return &f->base;
 }
+
+/* ---- as the scene file has it ---- */
+
+static const form_parameter torus_parameters[] = {
+    {"center", FORM_PLACE, 0, "a place [x, y, z]"},
+    {"axis", FORM_DIRECTION, 1, "the direction of the axis, [x, y, z]"},
+    {"major", FORM_POSITIVE, 0, NULL},
+    {"minor", FORM_POSITIVE, 1, NULL},
+    {0},
+};
+
+static surface *make_torus(const shape_values *v, form_fault *fault)
+{
+    if (v->r[1] < v->r[0])
+        return torus_new(v->v[0], v->v[1], v->r[0], v->r[1]);
+    *fault = (form_fault){"minor", "a tube that closes the hole, expected 'minor' below 'major'"};
+    return NULL;
+}
+
+static bool torus_formula(const shape_values *v, form_formula *out)
+{
+    char rho[64], y[40];
+    snprintf(rho, sizeof rho, "%.17g + %.17g*cos(w)", v->r[0], v->r[1]);
+    snprintf(y, sizeof y, "-%.17g*sin(w)", v->r[1]);
+    torus_extent(NULL, 0, out->u, out->w);
+    formula_revolve(out, frame_about(v->v[1]), rho, y);
+    return true;
+}
+
+const closed_form form_torus = {
+    .name = "torus",
+    .parameters = torus_parameters,
+    .make = make_torus,
+    .formula = torus_formula,
+    .solid = true,
+    .povray = "torus {\n  $major, $minor\n  sturm\n$axes",
+};

@@ -312,9 +312,10 @@ static void choose_methods(transformed *f, double scale)
     f->methods.occlude_own = f->from->ops->occlude_own ? transformed_occlude_own : NULL;
     f->methods.extent = transformed_extent;
     f->methods.box = transformed_box;
-    f->methods.shell = scale > 0 ? similar_shell : NULL;
-    f->methods.foot = scale > 0 ? similar_foot : NULL;
-    f->methods.steep = scale > 0 ? similar_steep : NULL;
+    const bool foot = scale > 0 && f->from->ops->foot;
+    f->methods.shell = foot ? similar_shell : NULL;
+    f->methods.foot = foot ? similar_foot : NULL;
+    f->methods.steep = foot ? similar_steep : NULL;
 }
 
 surface *surface_transformed(const surface *from, const affine *m)

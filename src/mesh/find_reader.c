@@ -46,7 +46,8 @@ static bool is_beside(char path[READER_PATH])
 
 bool find_reader(const char *asked, char path[READER_PATH], char *why, size_t size)
 {
-    const char *said = asked ? asked : secure_getenv("KAGE_IMPORT"), *by = asked ? "as asked for" : "as KAGE_IMPORT says";
+    const char *said = asked ? asked : secure_getenv("KAGE_IMPORT"),
+               *by = asked ? "as asked for" : "as KAGE_IMPORT says";
     if (said) {
         const int n = snprintf(path, READER_PATH, "%s", said);
         if (n < READER_PATH && access(path, X_OK) == 0)
@@ -56,7 +57,8 @@ bool find_reader(const char *asked, char path[READER_PATH], char *why, size_t si
     }
     if (is_beside(path) || has(KAGE_LIBEXEC, strlen(KAGE_LIBEXEC), "", path))
         return true;
-    snprintf(why, size, "no program " NAME " to read models, expected it beside kage, in " KAGE_LIBEXEC
-                        ", or where KAGE_IMPORT says");
+    snprintf(why, size,
+             "no program " NAME " to read models, expected it beside kage, in " KAGE_LIBEXEC
+             ", or where KAGE_IMPORT says");
     return false;
 }

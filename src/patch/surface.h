@@ -4,7 +4,7 @@
 
 #include "bvh/bvh.h"
 #include "patch/piece.h"
-#include "geometry/surface.h"
+#include "geometry/closed_form.h"
 
 typedef struct patch_surface {
     surface base;
@@ -33,6 +33,9 @@ surface *patch_surface_new(patch *q);
  * displacement. `from` must outlive it; as there, where the map mirrors u runs the other way. NULL: as
  * patch_surface_new. */
 surface *patch_surface_affine(const surface *from, const affine *m);
+
+/* A closed form's formula as a patch surface (formula.c); kind: a constant. threads: as patch.threads. NULL: out of memory. */
+surface *patch_surface_formula(const char *kind, const form_formula *f, int threads);
 
 /* As patch_surface_new, with pieces as flat as that (pieces_of). */
 patch_surface *patch_surface_make(patch *q, double flat);

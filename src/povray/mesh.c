@@ -2,6 +2,7 @@
  * once. Displaced, each triangle becomes k x k, with the normals of the rough surface at their corners; k is the same
  * for all, so that there are no gaps.
  */
+#include "povray/material.h"
 #include "povray/parts.h"
 
 #include "mesh/mesh.h"

@@ -2,6 +2,7 @@
  * (u,w), the same on every part, so that parts that join have the same vertices there. Its normals are the surface's
  * own.
  */
+#include "povray/material.h"
 #include "povray/parts.h"
 
 #include "displaced/offset.h"

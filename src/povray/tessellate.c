@@ -6,8 +6,9 @@
  * camera sees, and what casts shadows there, is made; far away cells are joined. Where that would be too many
  * triangles, a ladder of coarser rules is tried.
  */
+#include "povray/flat.h"
+#include "povray/material.h"
 #include "povray/parts.h"
-
 #include "povray/vertices.h"
 
 #include <stdlib.h>
@@ -573,7 +574,7 @@ static void lay(tessellation *x, int part)
     pov_lattice *l = &x->v.lattice;
     l->part = part;
     x->flat = pov_is_flat(&o->shape_spec, part);
-    x->closed = !x->flat && !o->shape_spec.open;
+    x->closed = !x->flat && !o->shape_spec.values.open;
     o->shape->ops->extent(o->shape, part, range[0], range[1]);
     for (int a = 0; a < 2; a++) {
         l->lo[a] = range[a][0];
@@ -711,7 +712,7 @@ static void put_note(pov_text *t, const tessellation *x, int k)
 bool pov_mesh(pov_text *t, const scene *s, const object *o, pov_report *report)
 {
     const int parts = o->shape->ops->parts;
-    tessellation x = {.s = s, .o = o, .memory = true, .unbounded = o->shape_spec.kind == SHAPE_PLANE};
+    tessellation x = {.s = s, .o = o, .memory = true, .unbounded = o->shape_spec.form == &form_plane};
     x.v.f = o->shape;
     x.v.P = o->bump;
     x.points = o->map.file && !s->sends && s->aa == 1;

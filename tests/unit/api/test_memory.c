@@ -138,8 +138,8 @@ static void each_fails(const char *text, const kage_render_options *o, long stri
     unlink(path);
 }
 
-static const kage_render_options plain = {.threads = 1, .layers = 1, .aa = 2, .aa_threshold = 0.1, .width = 16,
-                                          .height = 12};
+static const kage_render_options plain = {
+    .threads = 1, .layers = 1, .aa = 2, .aa_threshold = 0.1, .width = 16, .height = 12};
 static const kage_render_options truth = {.threads = 1, .displaced = KAGE_YES, .width = 16, .height = 12};
 
 static void of_functions(void **state)

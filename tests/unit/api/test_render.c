@@ -135,11 +135,11 @@ static void wrong_options_are_named(void **state)
         kage_render_options o;
         const char *says;
     } all[] = {
-        {{.method = "3"}, "'3' is no method"},          {{.width = 10}, "10 x 0 pixels"},
-        {{.width = -1, .height = 4}, "-1 x 4 pixels"},  {{.aa = 17}, "17 samples"},
-        {{.aa_threshold = -1}, "threshold"},            {{.threads = 2000}, "2000 threads"},
-        {{.crop = {0, 0, 49, 32}}, "48 x 32 pixels"},   {{.crop = {5, 5, 5, 6}}, "crop 5,5,5,6"},
-        {{.guard = (kage_choice)7}, "KAGE_AS_SCENE"},   {{.width = 32768, .height = 32768}, "pixels"},
+        {{.method = "3"}, "'3' is no method"},         {{.width = 10}, "10 x 0 pixels"},
+        {{.width = -1, .height = 4}, "-1 x 4 pixels"}, {{.aa = 17}, "17 samples"},
+        {{.aa_threshold = -1}, "threshold"},           {{.threads = 2000}, "2000 threads"},
+        {{.crop = {0, 0, 49, 32}}, "48 x 32 pixels"},  {{.crop = {5, 5, 5, 6}}, "crop 5,5,5,6"},
+        {{.guard = (kage_choice)7}, "KAGE_AS_SCENE"},  {{.width = 32768, .height = 32768}, "pixels"},
     };
     kage_scene *s = parse(GROUND);
     for (size_t k = 0; k < sizeof all / sizeof *all; k++) {
