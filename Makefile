@@ -205,7 +205,7 @@ $(UNITS:%=$(BUILD)/%): $(BUILD)/%: $(BUILD)/%.o $(BUILD)/internal.a
 	$(Q)$(CC) $(LDFLAGS) -o $@ $^ -lcmocka $(LIBS)
 
 # A test in which memory runs out: our own objects ask its functions.
-$(BUILD)/unit/api/test_memory: override LDFLAGS += $(foreach f,malloc calloc realloc posix_memalign strdup free,-Wl$(comma)--wrap=$(f))
+$(BUILD)/unit/api/test_memory: override LDFLAGS += $(foreach f,malloc calloc realloc posix_memalign strdup free fy_node_build_from_malloc_string,-Wl$(comma)--wrap=$(f))
 
 # ---- tests ----
 

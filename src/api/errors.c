@@ -1,6 +1,7 @@
 /* Errors as the caller has them, progress, and the locale meanwhile. */
 #include "api/api.h"
 
+#include <errno.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -51,12 +52,19 @@ static kage_errors *list_of(const errors *e)
     return list;
 }
 
-/* Every lack of memory is told with these words, and about no place in a file. */
+/* The words of messages of a lack of memory. tests/unit/api/test_memory.c finds those that have others. */
 static bool is_memory(const errors *e)
 {
-    for (int k = 0; k < e->items; k++)
-        if (!e->item[k].file && strstr(e->text + e->item[k].start, "out of memory"))
-            return true;
+    const char *const words[] = {"out of memory", "not enough memory", strerror(ENOMEM)};
+    for (int k = 0; k < e->items; k++) {
+        const error_item *at = &e->item[k];
+        for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
+            const char *found = strstr(e->text + at->start + at->what, words[i]);
+            if (found && found < e->text + at->end &&
+                !memchr(e->text + at->start, '\n', (size_t)(found - e->text) - at->start))
+                return true;
+        }
+    }
     return e->items == 0;
 }
 

@@ -128,7 +128,7 @@ static bool has_bounds(const pieces *l)
     return l->space.radius > POINT * vec3_length(l->space.centre) && l->space.radius < HUGE_VAL;
 }
 
-bool pieces_of(const patch *q, double flat, pieces *l)
+bool pieces_of(const patch *q, double flat, pieces *l, bool *bounded)
 {
     *l = (pieces){.piece = malloc(sizeof *l->piece * (size_t)q->parts)};
     bool good = l->piece, any = true;
@@ -140,8 +140,7 @@ bool pieces_of(const patch *q, double flat, pieces *l)
     }
     if (good) {
         measure(l);
-        l->n = has_bounds(l) ? l->n : 0;
-        good = l->n > 0;
+        good = *bounded = has_bounds(l);
     }
     return good;
 }

@@ -47,11 +47,12 @@ static surface *search(reader *r, node *at, patch *q, const char *what)
 {
     if (q)
         q->threads = r->from->threads;
-    surface *f = q ? patch_surface_new(q) : NULL;
-    if (!q)
-        errors_add(r->e, "out of memory");
-    else if (!f)
+    bool bounded = true;
+    surface *f = q ? patch_surface_new_bounded(q, &bounded) : NULL;
+    if (!bounded)
         yaml_error(r->y, at, "%s", what);
+    else if (!f)
+        errors_add(r->e, "out of memory");
     return f;
 }
 

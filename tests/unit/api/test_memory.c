@@ -6,6 +6,7 @@
  */
 #include "unit/api/scenes.h"
 
+#include <errno.h>
 #include <unistd.h>
 
 void *__real_malloc(size_t size);
@@ -14,6 +15,10 @@ void *__real_realloc(void *p, size_t size);
 int __real_posix_memalign(void **p, size_t align, size_t size);
 char *__real_strdup(const char *text);
 void __real_free(void *p);
+struct fy_node;
+struct fy_document;
+struct fy_node *__real_fy_node_build_from_malloc_string(struct fy_document *to, char *text, size_t size);
+struct fy_node *__wrap_fy_node_build_from_malloc_string(struct fy_document *to, char *text, size_t size);
 void *__wrap_malloc(size_t size);
 void *__wrap_calloc(size_t n, size_t size);
 void *__wrap_realloc(void *p, size_t size);
@@ -26,7 +31,13 @@ static long request, fails_at; /* 0: none fails */
 static void *live[MOST];
 static int lives;
 
-static int fails(void) { return fails_at && ++request == fails_at; }
+static int fails(void)
+{
+    const int now = fails_at && ++request == fails_at;
+    if (now)
+        errno = ENOMEM;
+    return now;
+}
 
 static void *give(void *p)
 {
@@ -63,7 +74,7 @@ void *__wrap_realloc(void *p, size_t size)
 
 int __wrap_posix_memalign(void **p, size_t align, size_t size)
 {
-    const int error = fails() ? 12 : __real_posix_memalign(p, align, size);
+    const int error = fails() ? ENOMEM : __real_posix_memalign(p, align, size);
     if (!error)
         give(*p);
     return error;
@@ -75,6 +86,13 @@ void __wrap_free(void *p)
 {
     take(p);
     __real_free(p);
+}
+
+/* The text becomes the document's. */
+struct fy_node *__wrap_fy_node_build_from_malloc_string(struct fy_document *to, char *text, size_t size)
+{
+    take(text);
+    return __real_fy_node_build_from_malloc_string(to, text, size);
 }
 
 static const char *work_on(const char *text, const kage_render_options *o, const char *path, kage_status *status)
