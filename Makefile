@@ -72,7 +72,7 @@ PICTURES  = $(FIGURES:%=out/%.png)
 SHOWN     = wall teapot shell
 GALLERY   = $(patsubst scenes/gallery/%.yaml,%,$(wildcard scenes/gallery/*.yaml))
 
-.PHONY: all render bench readme reference accept test unit-tests program-tests programs install uninstall clean help bootstrap FORCE
+.PHONY: all render bench readme reference accept test unit-tests program-tests programs install install-files uninstall clean help bootstrap FORCE
 all: bootstrap
 	@$(MAKE) --no-print-directory $(JOBS) programs
 
@@ -246,7 +246,11 @@ accept: all
 	@KAGE=$(BUILD)/kage scripts/venv python -m tests.regression.accept
 
 # LIBDIR, LIBEXEC: of the library, and of kage-import, where they are not in PREFIX/lib and PREFIX/libexec/kage.
-install: all $(BUILD)/kage.pc
+install: all
+	@$(MAKE) --no-print-directory install-files
+
+# The same of what is built already.
+install-files: $(BUILD)/kage.pc
 	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/include $(DESTDIR)$(LIBDIR)/pkgconfig $(DESTDIR)$(LIBEXEC)
 	install -m 755 $(BUILD)/kage $(DESTDIR)$(PREFIX)/bin/kage
 	install -m 755 $(BUILD)/kage-import $(DESTDIR)$(LIBEXEC)/kage-import
