@@ -4,7 +4,8 @@
 #   CC=gcc|clang          the compiler
 #   SANITIZE=address,undefined
 #   CLONES=no             without the AVX2 copies of the stages
-#   OPENMP=no             one thread a render, and no OpenMP (for ThreadSanitizer, which does not see into it)
+#   OPENMP=no             one thread a render, without OpenMP: for SANITIZE=thread, which does not see the barriers of
+#                         its library (CLONES=no, too: functions that choose their copy run before it is ready)
 #   BUILD=DIR             where the objects and the program go
 #   V=1                   print the whole commands
 

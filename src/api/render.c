@@ -199,7 +199,7 @@ static bool fill(kage_film *f, const job *j, const kage_render_options *o, watch
                       .displaced = s->displaced,
                       .self_shadow = s->self_shadow};
     const progress p = watch_progress(w);
-    const render_options how = {s->aa, s->aa_threshold, o->threads, o->timing != 0, &p};
+    const render_options how = {s->aa, s->aa_threshold, o->threads, o->timing != 0, w->call ? &p : NULL};
     stats t;
     const double start = stats_clock();
     const bool good = render(&k, &how, f->film, &t, e);

@@ -15,7 +15,7 @@ void progress_bar_start(progress_bar *p, bool quiet, const char *name, long pixe
 enum { BAR = 30 };
 static bool is_due(progress_bar *p, double share, char bar[BAR + 1])
 {
-    const double now = clock_now();
+    const double now = p->on ? clock_now() : 0;
     if (!p->on || now - p->shown < 0.1)
         return false;
     p->shown = now;

@@ -49,7 +49,7 @@ def embree() -> str:
 
 
 def test_embree(installed: Installed, tmp_path: Path) -> None:
-    """Somebody else's renderer with bumpshadow.h has kage's pictures, by none and by order 0, and these are not the same."""
+    """Somebody else's renderer with bumpshadow.h has kage's pictures by none and by order 0, which are not the same."""
     program = installed.build(EXAMPLES / "embree.c", tmp_path / "embree", embree())
     theirs = {}
     for method in ("none", "0"):

@@ -8,6 +8,7 @@ import subprocess
 from pathlib import Path
 
 import pytest
+from PIL import Image
 
 from tests.conftest import TOP
 from tests.support.installed import Installed, install, make
@@ -59,14 +60,12 @@ def test_a_program_against_the_installed_library(installed: Installed, tmp_path:
     done = subprocess.run([program, TOP / "scenes" / "cube.yaml", picture], capture_output=True, text=True)
     assert (done.returncode, done.stdout, done.stderr) == (0, "R 64 48\n", "")
     same = tmp_path / "same.png"
-    subprocess.run([installed.prefix / "bin" / "kage", "render", TOP / "scenes" / "cube.yaml", "--size", "64x48", "-o", same,
-                    "--quiet"], check=True)
+    subprocess.run([installed.prefix / "bin" / "kage", "render", TOP / "scenes" / "cube.yaml", "--size", "64x48",
+                    "--quiet", "-o", same], check=True)
     assert pixels(picture) == pixels(same)
 
 
 def pixels(path: Path) -> bytes:
-    from PIL import Image
-
     with Image.open(path) as image:
         return image.tobytes()
 

@@ -19,7 +19,7 @@ CXX = os.environ.get("KAGE_TEST_CXX", "c++")
 
 def make(target: str, *settings: str) -> None:
     """Make a target with what is built already, whatever the make around this test was told."""
-    environment = {name: value for name, value in os.environ.items() if name not in ("MAKEFLAGS", "MAKELEVEL", "MFLAGS")}
+    environment = {name: value for name, value in os.environ.items() if not name.startswith(("MAKE", "MFLAGS"))}
     subprocess.run(["make", "-s", target, f"BUILD={BUILD}", *settings], cwd=TOP, env=environment, check=True,
                    capture_output=True)
 
@@ -35,7 +35,8 @@ class Installed:
     def config(self, *options: str) -> list[str]:
         """What pkg-config says of kage."""
         environment = {**os.environ, "PKG_CONFIG_PATH": str(self.library / "pkgconfig")}
-        done = subprocess.run(["pkg-config", *options, "kage"], env=environment, check=True, capture_output=True, text=True)
+        done = subprocess.run(["pkg-config", *options, "kage"], env=environment, check=True, capture_output=True,
+                              text=True)
         return shlex.split(done.stdout)
 
     def build(self, source: Path, program: Path, *options: str, static: bool = False) -> Path:
