@@ -1,7 +1,9 @@
 /* The way of one ray, every value by the same stages as in a picture. */
 #include "api/api.h"
 
-#include "render/render.h"
+#include "render/intersect.h"
+#include "render/trace.h"
+#include "wave/gather.h"
 #include "wave/lane.h"
 
 #include <stdlib.h>
@@ -45,15 +47,15 @@ static void set_bump(kage_probe *p, const hit_group *g, const bump *P)
     const bs_vec3 s = lane_get(&g->x.s, 0), n = lane_get(&g->n_smooth, 0), Qu = lane_get(&g->q.Qu, 0),
                   Qw = lane_get(&g->q.Qw, 0);
     p->bumped = 1;
-    p->P = (double)g->h.P[0];
-    p->Pu = (double)g->h.Pu[0];
-    p->Pw = (double)g->h.Pw[0];
-    p->Puu = (double)g->h.Puu[0];
-    p->Puw = (double)g->h.Puw[0];
-    p->Pww = (double)g->h.Pww[0];
+    p->P = (double)g->bump.P[0];
+    p->Pu = (double)g->bump.Pu[0];
+    p->Pw = (double)g->bump.Pw[0];
+    p->Puu = (double)g->bump.Puu[0];
+    p->Puw = (double)g->bump.Puw[0];
+    p->Pww = (double)g->bump.Pww[0];
     p->Pmin = (double)P->Pmin;
     p->Pmax = (double)P->Pmax;
-    set3(p->n_bump, bs_perturbed_normal(n, Qu, Qw, g->h.Pu[0], g->h.Pw[0]));
+    set3(p->n_bump, bs_perturbed_normal(n, Qu, Qw, g->bump.Pu[0], g->bump.Pw[0]));
     p->regular = bs_regular(n, Qu, Qw);
     if (!p->regular)
         return;
@@ -72,14 +74,13 @@ static kage_probe_row row_of(const tracer *k, int id, workspace *v, const char *
     trace_group(k, id, v);
     const hit_group *g = &v->g;
     const int asked = k->scene->object[id].bump ? method_code(k->shadow) : -1;
-    const real t0 = g->t[0] + g->tau[0];
     kage_probe_row x = {.method = name,
                         .guard = k->guard,
                         .tau = (double)g->tau[0],
-                        .t0 = (double)t0,
+                        .t0 = (double)g->t0[0],
                         .fell_back = g->order[0] == asked ? NULL : method_code_name(g->order[0]),
                         .visible = visible};
-    set3(x.origin, lane_at(&g->x, 0, t0));
+    set3(x.origin, lane_at(&g->x, 0, g->t0[0]));
     set3(x.color, lane_get(&g->rgb, 0));
     for (int l = 0; l < k->scene->lights; l++)
         visible[l] = (double)v->visibility[l][0];
@@ -109,10 +110,11 @@ static void follow(const scene *s, int x, int y, workspace *v, block *b)
     /* 2+ asks every surface and bump for all of its partials */
     const tracer k = {.scene = s, .shadow = {METHOD_ORDER, 3}, .guard = true, .layers = true};
     kage_probe *p = &b->probe;
-    render_ray(&s->camera, s->width, s->height, x + 0.5, y + 0.5, v, 0);
+    camera_ray(&s->camera, s->width, s->height, x + 0.5, y + 0.5, &v->x, 0);
+    intersect_nearest(s, 1, v);
     set3(p->r, lane_get(&v->x.r, 0));
     set3(p->s, lane_get(&v->x.s, 0));
-    p->object = trace_nearest(&k, 1, v);
+    p->object = gather_next_group(1, &v->x, &v->nearest, &v->g);
     if (p->object < 0)
         return;
     const object *o = &s->object[p->object];
@@ -134,7 +136,7 @@ kage_status kage_scene_probe(kage_scene *k, int x, int y, kage_probe **out, kage
         return error_give(KAGE_BAD_OPTION, to, "pixel %d,%d: the picture is %d x %d pixels, expected 0,0 to %d,%d", x,
                           y, s->width, s->height, s->width - 1, s->height - 1);
     block *b = calloc(1, sizeof *b + (size_t)(s->lights * ROWS) * sizeof *b->visible);
-    workspace *v = b ? workspace_new(s) : NULL;
+    workspace *v = b ? workspace_new(&(tracer){.scene = s}) : NULL;
     if (!v) {
         free(b);
         return error_give(KAGE_NO_MEMORY, to, "out of memory");

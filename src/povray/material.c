@@ -4,6 +4,8 @@
  */
 #include "povray/material.h"
 
+#include "patch/surface.h"
+
 #include "povray/flat.h"
 #include "povray/povray.h"
 
@@ -258,7 +260,7 @@ bool pov_is_patch(const scene *s, const object *o)
     const shape_spec *f = &o->shape_spec;
     if (f->kind == SHAPE_MESH)
         return false;
-    return f->kind == SHAPE_PATCH || !f->form->povray || (s->displaced && o->shape->rough) ||
+    return f->kind == SHAPE_PATCH || !f->form->povray || (s->displaced && patch_surface_is(o->shape)) ||
            (s->material[o->material].pattern && !has_warp(f));
 }
 

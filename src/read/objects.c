@@ -1,7 +1,7 @@
 /* The scene reader's objects: their shapes, materials, bumps and transforms, and what is copied from others. */
-#include "displaced/march.h"
+#include "displaced/displaced.h"
 #include "read/parts.h"
-#include "yaml/text.h"
+#include "base/spelling.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -26,7 +26,7 @@ static int find(reader *r, node *at, const char *what, const char *among, const 
             if (*its)
                 strcat(strcat(names, *names ? " " : ""), *its);
         }
-    text_nearest(name, names ? names : "", near, sizeof near);
+    spelling_nearest(name, names ? names : "", near, sizeof near);
     yaml_error(r->y, at, "no %s '%.60s'%s%s%s%s", thing, name,
                *near ? ", did you mean '" : ", expected one of those under '", *near ? near : among, "'",
                *near ? "?" : "");
@@ -79,7 +79,7 @@ static void take(object *o, const object *from)
     o->name = name;
     o->copy_of = from->copy_of ? from->copy_of : from->name;
     o->shape = from->own;
-    o->centred = NULL;
+    o->centred = o->displaced = NULL;
     o->shares_bump = true;
 }
 
@@ -93,7 +93,7 @@ static void place(reader *r, node *v, object *o)
         o->moved = true;
     }
     const bool truth = o->bump && scene_wants_truth(r->s);
-    if (o->own && (o->moved || (truth && !o->own->ops->foot && !o->own->rough)))
+    if (o->own && (o->moved || (truth && !displaced_has_form(o->own))))
         reader_place(r, transform ? transform : copy ? copy : v, o);
 }
 
@@ -103,7 +103,7 @@ static void read_own_bump(reader *r, node *at, object *o)
     o->map = (map_note){0};
     o->bump_spec = (bump_spec){0};
     o->bump = reader_bump(r, at, o);
-    if (o->bump && scene_wants_truth(r->s) && !displaced_possible(o->bump))
+    if (o->bump && scene_wants_truth(r->s) && !displaced_has_bounds(o->bump))
         yaml_error(r->y, at,
                    "no bounds of P or of its slope are known, expected them for %s: a function that is bounded, "
                    "without jumps, over the whole surface",
@@ -132,7 +132,8 @@ static void read_object(reader *r, const queue *q, int i)
         if ((at_bump = yaml_get(v, "bump")) && o->own)
             read_own_bump(r, at_bump, o);
         place(r, v, o);
-        if (o->shape && o->bump && scene_wants_truth(s) && !displaced_prepare(o->shape, o->bump))
+        if (o->shape && o->bump && scene_wants_truth(s) && displaced_has_form(o->shape) &&
+            !(o->displaced = displaced_new(o->shape, o->bump)))
             errors_add(r->e, "out of memory");
     }
     q->state[i] = DONE;

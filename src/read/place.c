@@ -2,6 +2,7 @@
  * float bears. For true displacement a shape needs to know the foot of a perpendicular; one that does not is made a
  * patch, if it has a formula, which is searched without.
  */
+#include "displaced/displaced.h"
 #include "mesh/mesh.h"
 #include "patch/surface.h"
 #include "read/parts.h"
@@ -62,7 +63,7 @@ static surface *image_of_closed(object *o, const shape_values *values, const aff
     form_fault fault;
     o->centred = o->shape_spec.form->make(values, &fault);
     surface *f = o->centred ? surface_transformed(o->centred, m) : NULL,
-            *searched = f && truth && !f->ops->foot ? as_patch(o, threads) : NULL;
+            *searched = f && truth && !displaced_has_form(f) ? as_patch(o, threads) : NULL;
     if (!searched)
         return f;
     surface_free(f);
@@ -106,7 +107,7 @@ bool reader_place(reader *r, node *at, object *o)
     if (!(is_mesh ? is_mesh_sized(o->own, m, &wrong) : is_sized(o->shape, &wrong)))
         return yaml_error(r->y, at, "an edge or a radius of %.4g scene units comes from this, expected 1e-6 to 1e6",
                           wrong);
-    if (truth && !o->shape->ops->foot && !o->shape->rough)
+    if (truth && !displaced_has_form(o->shape))
         return yaml_error(r->y, at,
                           "a %s with caps and a bump is stretched more one way than another, expected the same scale "
                           "all ways, or 'open: true', for %s",
