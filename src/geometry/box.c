@@ -246,13 +246,16 @@ static const surface_ops box_methods = {
     .steep = box_steep,
 };
 
+/* In the numbers that it is kept in. */
+static bool is_thick(vec3 from, vec3 to)
+{
+    return (real)from.x != (real)to.x && (real)from.y != (real)to.y && (real)from.z != (real)to.z;
+}
+
 surface *box_new(vec3 from, vec3 to)
 {
-    double a[3] = {from.x, from.y, from.z}, b[3] = {to.x, to.y, to.z};
-    for (int k = 0; k < 3; k++)
-        if (!((real)a[k] != (real)b[k]))
-            return NULL;
-    box *f = calloc(1, sizeof *f);
+    const double a[3] = {from.x, from.y, from.z}, b[3] = {to.x, to.y, to.z};
+    box *f = is_thick(from, to) ? calloc(1, sizeof *f) : NULL;
     if (!f)
         return NULL;
     f->base.ops = &box_methods;
@@ -273,10 +276,9 @@ static const form_parameter box_parameters[] = {
 
 static surface *make_box(const shape_values *v, form_fault *fault)
 {
-    surface *f = box_new(v->v[0], v->v[1]);
-    if (!f)
+    if (!is_thick(v->v[0], v->v[1]))
         *fault = (form_fault){"to", "a box without thickness, expected 'to' apart from 'from' along x, y and z"};
-    return f;
+    return box_new(v->v[0], v->v[1]);
 }
 
 static double *coordinate(vec3 *v, int k) { return k == 0 ? &v->x : k == 1 ? &v->y : &v->z; }

@@ -378,10 +378,10 @@ static const form_parameter edges[] = {
 
 static surface *make_flat(const shape_values *v, bool bounded, form_fault *fault)
 {
-    surface *f = plane_new(v->v[0], v->v[1], v->v[2], bounded);
-    if (!f)
+    plane trial;
+    if (!plane_place(&trial, v->v[0], v->v[1], v->v[2]))
         *fault = (form_fault){NULL, "u and w are parallel, expected two directions"};
-    return f;
+    return plane_new(v->v[0], v->v[1], v->v[2], bounded);
 }
 
 static surface *make_plane(const shape_values *v, form_fault *fault) { return make_flat(v, false, fault); }
