@@ -182,7 +182,7 @@ static void disc_bound(const surface *base, int part, int n, const rays *x, cons
 
 /* The dual basis is in the plane, so Du.(X - O) is u of the foot. */
 STAGE static void plane_closest(const surface *base, int part, int n, const rays *x, const real *restrict t,
-                             closest_points *restrict p)
+                                closest_points *restrict p)
 {
     const plane f = *(const plane *)base;
     (void)part;
@@ -198,8 +198,8 @@ STAGE static void plane_closest(const surface *base, int part, int n, const rays
 }
 
 /* u, w and the height are linear along a ray, so the rate holds for all of it. */
-STAGE static void plane_lipschitz(const surface *base, int part, int n, const rays *x, const closest_points *p, real Pu_max,
-                              real Pw_max, real *restrict rate, real *restrict reach)
+STAGE static void plane_lipschitz(const surface *base, int part, int n, const rays *x, const closest_points *p,
+                                  real Pu_max, real Pw_max, real *restrict rate, real *restrict reach)
 {
     const plane f = *(const plane *)base;
     (void)part;

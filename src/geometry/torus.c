@@ -116,8 +116,8 @@ STAGE static void torus_closest(const surface *base, int part, int n, const rays
 /* The directions of h, u and w are at right angles, so that the ray's way is shared between them (Cauchy and Schwarz).
  * |grad u| is 1/(distance to the axis), |grad w| 1/(distance to the tube's middle): within half of either they at most
  * double. */
-STAGE static void torus_lipschitz(const surface *base, int part, int n, const rays *x, const closest_points *p, real Pu_max,
-                              real Pw_max, real *restrict rate, real *restrict reach)
+STAGE static void torus_lipschitz(const surface *base, int part, int n, const rays *x, const closest_points *p,
+                                  real Pu_max, real Pw_max, real *restrict rate, real *restrict reach)
 {
     (void)base;
     (void)part;
