@@ -214,7 +214,7 @@ def render(report: Report, folder: Path) -> tuple[str, list[str]]:
     environment = jinja2.Environment(loader=jinja2.FileSystemLoader(TEMPLATES), autoescape=True,
                                      undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True)
     environment.filters["code"] = code
-    environment.globals.update(data=data, tables=tables, dig=dig, verdicts=VERDICTS, map_legend=map_legend)
+    environment.globals.update(tables=tables, dig=dig, verdicts=VERDICTS, map_legend=map_legend)
     page = environment.get_template("index.html").render(
         report=report, sheets=sheets, plots=drawn, sections=sections(report, sheets),
         incomplete=[*(report.get("incomplete") or []), *messages])

@@ -9,8 +9,8 @@ typedef struct box {
     real lo[3], hi[3];
 } box;
 
-/* Where the line r + s t enters and leaves the box, in <= out where it meets it. A line in the plane of a face gives
- * 0 * inf: it counts as inside or outside that slab, never as a hit at an undefined t. */
+/* Where the line r + s t enters and leaves the box: in <= out where it meets the box. A line in the plane of a face
+ * gives 0 * inf: it counts as inside or outside that slab, never as a hit at NaN. */
 static inline void box_crossing(const box *f, real rx, real ry, real rz, real sx, real sy, real sz, real *in, real *out)
 {
     real ix = 1 / sx, iy = 1 / sy, iz = 1 / sz;
@@ -21,11 +21,18 @@ static inline void box_crossing(const box *f, real rx, real ry, real rz, real sx
     *out = real_min(real_min(real_max(ax, bx), real_max(ay, by)), real_max(az, bz));
 }
 
-/* How far a ray from within goes until it passes the slab's other side; along the slab, beyond all measure. */
+/* t at which a ray from within a slab leaves it; REAL_FAR where it runs along the slab. */
 static inline real box_exit(real r, real s, real lo, real hi)
 {
     real t = ((s > 0 ? hi : lo) - r) / s;
     return s == 0 ? REAL_FAR : t;
+}
+
+/* The same for the box, from (x,y,z). */
+static inline real box_first_exit(const box *f, real x, real y, real z, real sx, real sy, real sz)
+{
+    real ex = box_exit(x, sx, f->lo[0], f->hi[0]), ey = box_exit(y, sy, f->lo[1], f->hi[1]);
+    return real_min(real_min(ex, ey), box_exit(z, sz, f->lo[2], f->hi[2]));
 }
 
 STAGE static void box_hit(const surface *base, int n, const rays *x, int32_t id, hits *h)
@@ -36,12 +43,12 @@ STAGE static void box_hit(const surface *base, int n, const rays *x, int32_t id,
         box_crossing(&f, x->r.x[i], x->r.y[i], x->r.z[i], x->s.x[i], x->s.y[i], x->s.z[i], &in, &out);
         real t = in > 0 ? in : out;
         int take = (in <= out) & (t > 0) & (t < h->t[i]);
-        h->t[i] = take ? t : h->t[i];
-        h->id[i] = take ? id : h->id[i];
+        hits_take(h, i, take, t, id);
     }
 }
 
-/* From a point of a face into the box, to where it is left through the first of the other five; out of it, nowhere. */
+/* A ray from a point of a face into the box leaves it through the first of the other five faces; a ray outward meets
+ * nothing. */
 STAGE static void box_hit_own(const surface *base, int n, const rays *x, const ray_origins *from, int32_t id, hits *h)
 {
     const box f = *(const box *)base;
@@ -49,14 +56,12 @@ STAGE static void box_hit_own(const surface *base, int n, const rays *x, const r
         real in, out, sx = x->s.x[i], sy = x->s.y[i], sz = x->s.z[i];
         box_crossing(&f, x->r.x[i], x->r.y[i], x->r.z[i], sx, sy, sz, &in, &out);
         real near = in > 0 ? in : out;
-        real ex = box_exit(from->at.x[i], sx, f.lo[0], f.hi[0]), ey = box_exit(from->at.y[i], sy, f.lo[1], f.hi[1]);
-        real ez = box_exit(from->at.z[i], sz, f.lo[2], f.hi[2]), far = real_min(real_min(ex, ey), ez);
+        real far = box_first_exit(&f, from->at.x[i], from->at.y[i], from->at.z[i], sx, sy, sz);
         int part = from->part[i], k = part >> 1, high = part & 1, own = from->id[i] == id;
         real along = k == 0 ? sx : k == 1 ? sy : sz, inward = high ? -along : along;
         real t = own ? far : near;
         int take = (own ? inward > 0 : in <= out) & (t > 0) & (t < h->t[i]);
-        h->t[i] = take ? t : h->t[i];
-        h->id[i] = take ? id : h->id[i];
+        hits_take(h, i, take, t, id);
     }
 }
 
@@ -72,7 +77,7 @@ STAGE static void box_locate(const surface *base, int n, const rays *x, const re
         real px = (x->r.x[i] + x->s.x[i] * t[i] - f.lo[0]) / dx;
         real py = (x->r.y[i] + x->s.y[i] * t[i] - f.lo[1]) / dy;
         real pz = (x->r.z[i] + x->s.z[i] * t[i] - f.lo[2]) / dz;
-        /* the face is the one that the hit is farthest out towards */
+        /* the face is the one across the axis along which the hit is farthest from the middle */
         real ox = real_abs(px - R(0.5)), oy = real_abs(py - R(0.5)), oz = real_abs(pz - R(0.5));
         int on_x = (ox >= oy) & (ox >= oz), on_y = (oy > ox) & (oy >= oz);
         real out = on_x ? px : on_y ? py : pz;
@@ -122,8 +127,7 @@ STAGE static void box_occlude(const surface *base, int n, const rays *x, real *l
     }
 }
 
-/* From a point of a face the box is entered here or not at all; entered, it is left through the first of the other
- * five faces. */
+/* As box_hit_own. */
 STAGE static void box_occlude_own(const surface *base, int n, const rays *x, const int32_t *restrict part,
                                   real *restrict lit)
 {
@@ -133,9 +137,7 @@ STAGE static void box_occlude_own(const surface *base, int n, const rays *x, con
         int k = part[i] >> 1, high = part[i] & 1;
         real along = k == 0 ? sx : k == 1 ? sy : sz;
         real away = high ? along : -along;
-        real out =
-            real_min(real_min(box_exit(x->r.x[i], sx, f.lo[0], f.hi[0]), box_exit(x->r.y[i], sy, f.lo[1], f.hi[1])),
-                     box_exit(x->r.z[i], sz, f.lo[2], f.hi[2]));
+        real out = box_first_exit(&f, x->r.x[i], x->r.y[i], x->r.z[i], sx, sy, sz);
         lit[i] = ((away < 0) & (out < 1)) ? 0 : lit[i];
     }
 }

@@ -9,17 +9,17 @@
 
 #include <stdlib.h>
 
-/* Two stretches of a ray: in the solid within the endless side, and between the ends. Each is empty where its ends are
- * the wrong way round. */
+/* Two intervals of t: within the infinite cone, from `in` to `out`, and between the planes of the ends. An interval
+ * whose ends are in the wrong order is empty. */
 typedef struct spans {
     real in, out, from, to;
 } spans;
 
-/* For the cone whose radius is rho at the axis' lower end, and the ends at heights lo and hi.
- * The roots of a t^2 + 2 b t + c are taken from the ray's place nearest to the cone's middle, so that no digit is lost
- * to the way there; the discriminant b^2 - a c is a difference of two squares, which cancels only at a tangent. Below 0
- * its root is NaN, and so is what follows: every comparison with that is false. (Choices by more than one comparison
- * would keep gcc 12 from vectorising the loops.) */
+/* For the cone whose radius is rho at the lower end of the axis, with ends at the heights lo and hi.
+ * t is measured from the point of the ray that is closest to the middle of the cone, so that a distant origin costs no
+ * precision. The discriminant b^2 - a c of a t^2 + 2 b t + c is a difference of two squares, which cancels only at a
+ * tangent. Where it is below 0 its root is NaN, and so are the results, for which every comparison is false. (Choices
+ * by more than one comparison would keep gcc 12 from vectorising the loops.) */
 KM_INLINE spans cone_spans(const cone *f, real rho, real lo, real hi, cone_ray l)
 {
     real s2 = l.sx * l.sx + l.sy * l.sy + l.sz * l.sz;
@@ -51,7 +51,7 @@ KM_INLINE spans cone_spans(const cone *f, real rho, real lo, real hi, cone_ray l
 
 KM_INLINE spans spans_of(const cone *f, cone_ray l) { return cone_spans(f, f->from, 0, f->length, l); }
 
-/* The two places where the ray meets the surface, at t0 <= t1, as far as they are any. */
+/* The ray may meet the surface at t0 <= t1: whether it does at the first, and at the second. */
 typedef struct places {
     real t0, t1;
     int first, second;
@@ -77,40 +77,11 @@ KM_INLINE void hit(const surface *base, int capped, int n, const rays *x, int32_
         int first = p.first & (p.t0 > 0), second = p.second & (p.t1 > 0);
         real t = first ? p.t0 : p.t1;
         int take = (first | second) & (t < h->t[i]);
-        h->t[i] = take ? t : h->t[i];
-        h->id[i] = take ? id : h->id[i];
+        hits_take(h, i, take, t, id);
     }
 }
 
-STAGE static void cone_open_hit(const surface *base, int n, const rays *x, int32_t id, hits *h)
-{
-    hit(base, 0, n, x, id, h);
-}
-STAGE static void cone_capped_hit(const surface *base, int n, const rays *x, int32_t id, hits *h)
-{
-    hit(base, 1, n, x, id, h);
-}
-
-KM_INLINE void occlude(const surface *base, int capped, int n, const rays *x, real *lit)
-{
-    const cone f = *(const cone *)base;
-    for (int i = 0; i < n; i++) {
-        places p = cone_places(&f, capped, cone_local_of(&f, x, i));
-        int met = (p.first & (p.t0 > 0) & (p.t0 < 1)) | (p.second & (p.t1 > 0) & (p.t1 < 1));
-        lit[i] = met ? 0 : lit[i];
-    }
-}
-
-STAGE static void cone_open_occlude(const surface *base, int n, const rays *x, real *lit)
-{
-    occlude(base, 0, n, x, lit);
-}
-STAGE static void cone_capped_occlude(const surface *base, int n, const rays *x, real *lit)
-{
-    occlude(base, 1, n, x, lit);
-}
-
-/* From a place of the side one root is 0, the other -2 b/a; an open side is met there if that is between its ends. */
+/* For a ray from the side one root is 0, the other -2 b/a. An open side is met there if that is between its ends. */
 KM_INLINE real cone_open_far(const cone *f, cone_ray l, int *met)
 {
     real grow = f->rise * l.sy, r = f->from + f->rise * l.oy;
@@ -120,8 +91,8 @@ KM_INLINE real cone_open_far(const cone *f, cone_ray l, int *met)
     return t;
 }
 
-/* From a place of a capped one the solid is entered here or not at all; entered, it is left through the first of its
- * other parts, and of the side through that other root. */
+/* A ray from a capped cone enters the solid at its start or not at all. Inside, it leaves through the first of the
+ * other parts; from the side to the side through the other root. */
 KM_INLINE real cone_capped_far(const cone *f, cone_ray l, int part, int *met)
 {
     real grow = f->rise * l.sy, r = f->from + f->rise * l.oy;
@@ -146,22 +117,38 @@ KM_INLINE void hit_own(const surface *base, int capped, int n, const rays *x, co
         real far = capped ? cone_capped_far(&f, l, from->part[i], &again) : cone_open_far(&f, l, &again);
         real near = first ? p.t0 : p.t1, t = own ? far : near;
         int met = (own & again) | ((1 - own) & (first | second)), take = met & (t < h->t[i]);
-        h->t[i] = take ? t : h->t[i];
-        h->id[i] = take ? id : h->id[i];
+        hits_take(h, i, take, t, id);
     }
 }
 
-STAGE static void cone_open_hit_own(const surface *base, int n, const rays *x, const ray_origins *from, int32_t id,
-                                    hits *h)
+KM_INLINE void occlude(const surface *base, int capped, int n, const rays *x, real *lit)
 {
-    hit_own(base, 0, n, x, from, id, h);
+    const cone f = *(const cone *)base;
+    for (int i = 0; i < n; i++) {
+        places p = cone_places(&f, capped, cone_local_of(&f, x, i));
+        int met = (p.first & (p.t0 > 0) & (p.t0 < 1)) | (p.second & (p.t1 > 0) & (p.t1 < 1));
+        lit[i] = met ? 0 : lit[i];
+    }
 }
 
-STAGE static void cone_capped_hit_own(const surface *base, int n, const rays *x, const ray_origins *from, int32_t id,
-                                      hits *h)
-{
-    hit_own(base, 1, n, x, from, id, h);
-}
+/* The three stages of an open or a capped cone. */
+#define CONE_STAGES(form, capped)                                                                                      \
+    STAGE static void cone_##form##_hit(const surface *f, int n, const rays *x, int32_t id, hits *h)                   \
+    {                                                                                                                  \
+        hit(f, capped, n, x, id, h);                                                                                   \
+    }                                                                                                                  \
+    STAGE static void cone_##form##_hit_own(const surface *f, int n, const rays *x, const ray_origins *from,           \
+                                            int32_t id, hits *h)                                                       \
+    {                                                                                                                  \
+        hit_own(f, capped, n, x, from, id, h);                                                                         \
+    }                                                                                                                  \
+    STAGE static void cone_##form##_occlude(const surface *f, int n, const rays *x, real *lit)                         \
+    {                                                                                                                  \
+        occlude(f, capped, n, x, lit);                                                                                 \
+    }
+
+CONE_STAGES(open, 0)
+CONE_STAGES(capped, 1)
 
 STAGE static void cone_open_occlude_own(const surface *base, int n, const rays *x, const int32_t *part, real *lit)
 {
@@ -272,7 +259,7 @@ static void cone_steep(const surface *base, int part, int n, const rays *x, cons
     }
 }
 
-/* What a cone and a cylinder, open or with caps, have in common. A cylinder's stretches end with its side. */
+/* The methods of a cone or a cylinder, open or capped. */
 #define CONE_METHODS(name, is_cone, form, number)                                                                      \
     {                                                                                                                  \
         .kind = name, .hit = cone_##form##_hit, .hit_own = cone_##form##_hit_own, .locate = cone_locate,               \

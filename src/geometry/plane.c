@@ -6,17 +6,18 @@
 
 #include <stdlib.h>
 
-/* Where the plane ends: a constant in each of the stages. */
+/* Where the plane ends: a constant in each stage, so that loops have no choice in them. */
 enum bounds { NOWHERE, AT_SIDES, AT_RIM };
 
-/* t of the crossing with the plane. A ray along the plane gives an infinite or undefined t, for which
- * every comparison below is false. */
+/* t of the crossing with the plane. A ray along the plane gives an infinite t or NaN, for which every comparison below
+ * is false. */
 static inline real plane_t(const plane *f, real rx, real ry, real rz, real sx, real sy, real sz)
 {
     real d = (f->O[0] - rx) * f->N[0] + (f->O[1] - ry) * f->N[1] + (f->O[2] - rz) * f->N[2];
     return d / (sx * f->N[0] + sy * f->N[1] + sz * f->N[2]);
 }
 
+/* A coordinate of the point p, by a vector of the dual basis. */
 static inline real plane_coord(const plane *f, const real *D, real px, real py, real pz)
 {
     return (px - f->O[0]) * D[0] + (py - f->O[1]) * D[1] + (pz - f->O[2]) * D[2];
@@ -30,7 +31,7 @@ static inline int plane_inside(const plane *f, const rays *x, int i, enum bounds
     return end == AT_RIM ? u * u + w * w <= f->R * f->R : (u >= 0) & (u <= 1) & (w >= 0) & (w <= 1);
 }
 
-/* t of the hit, by a ray with t in (0, last), and `last` without one. */
+/* t of the hit with t in (0, last), or `last` if there is none. */
 static inline real plane_cut(const plane *f, const rays *x, int i, enum bounds end, real last)
 {
     real t = plane_t(f, x->r.x[i], x->r.y[i], x->r.z[i], x->s.x[i], x->s.y[i], x->s.z[i]);
@@ -57,41 +58,36 @@ static inline void hit_own(const surface *base, enum bounds end, int n, const ra
         real t = plane_t(&f, x->r.x[i], x->r.y[i], x->r.z[i], x->s.x[i], x->s.y[i], x->s.z[i]);
         int in = end == NOWHERE ? 1 : plane_inside(&f, x, i, end, t),
             take = in & (from->id[i] != id) & (t > 0) & (t < h->t[i]);
-        h->t[i] = take ? t : h->t[i];
-        h->id[i] = take ? id : h->id[i];
+        hits_take(h, i, take, t, id);
     }
 }
 
-STAGE static void plane_hit(const surface *base, int n, const rays *x, int32_t id, hits *h)
+static inline void occlude(const surface *base, enum bounds end, int n, const rays *x, real *lit)
 {
-    hit(base, NOWHERE, n, x, id, h);
+    const plane f = *(const plane *)base;
+    for (int i = 0; i < n; i++)
+        lit[i] = plane_cut(&f, x, i, end, 1) < 1 ? 0 : lit[i];
 }
 
-STAGE static void rectangle_hit(const surface *base, int n, const rays *x, int32_t id, hits *h)
-{
-    hit(base, AT_SIDES, n, x, id, h);
-}
+/* The three stages of one kind of flat surface, with its bounds as a constant. */
+#define FLAT_STAGES(kind, bounds)                                                                                      \
+    STAGE static void kind##_hit(const surface *f, int n, const rays *x, int32_t id, hits *h)                          \
+    {                                                                                                                  \
+        hit(f, bounds, n, x, id, h);                                                                                   \
+    }                                                                                                                  \
+    STAGE static void kind##_hit_own(const surface *f, int n, const rays *x, const ray_origins *from, int32_t id,      \
+                                     hits *h)                                                                          \
+    {                                                                                                                  \
+        hit_own(f, bounds, n, x, from, id, h);                                                                         \
+    }                                                                                                                  \
+    STAGE static void kind##_occlude(const surface *f, int n, const rays *x, real *lit)                                \
+    {                                                                                                                  \
+        occlude(f, bounds, n, x, lit);                                                                                 \
+    }
 
-STAGE static void disc_hit(const surface *base, int n, const rays *x, int32_t id, hits *h)
-{
-    hit(base, AT_RIM, n, x, id, h);
-}
-
-STAGE static void plane_hit_own(const surface *base, int n, const rays *x, const ray_origins *from, int32_t id, hits *h)
-{
-    hit_own(base, NOWHERE, n, x, from, id, h);
-}
-
-STAGE static void rectangle_hit_own(const surface *base, int n, const rays *x, const ray_origins *from, int32_t id,
-                                    hits *h)
-{
-    hit_own(base, AT_SIDES, n, x, from, id, h);
-}
-
-STAGE static void disc_hit_own(const surface *base, int n, const rays *x, const ray_origins *from, int32_t id, hits *h)
-{
-    hit_own(base, AT_RIM, n, x, from, id, h);
-}
+FLAT_STAGES(plane, NOWHERE)
+FLAT_STAGES(rectangle, AT_SIDES)
+FLAT_STAGES(disc, AT_RIM)
 
 STAGE static void plane_locate(const surface *base, int n, const rays *x, const real *t, int32_t *part, real *u,
                                real *w)
@@ -122,28 +118,6 @@ STAGE static void plane_eval(const surface *base, int n, const int32_t *part, co
         vec3s_fill(&q->Quw, n, 0, 0, 0);
         vec3s_fill(&q->Qww, n, 0, 0, 0);
     }
-}
-
-static inline void occlude(const surface *base, enum bounds end, int n, const rays *x, real *lit)
-{
-    const plane f = *(const plane *)base;
-    for (int i = 0; i < n; i++)
-        lit[i] = plane_cut(&f, x, i, end, 1) < 1 ? 0 : lit[i];
-}
-
-STAGE static void plane_occlude(const surface *base, int n, const rays *x, real *lit)
-{
-    occlude(base, NOWHERE, n, x, lit);
-}
-
-STAGE static void rectangle_occlude(const surface *base, int n, const rays *x, real *lit)
-{
-    occlude(base, AT_SIDES, n, x, lit);
-}
-
-STAGE static void disc_occlude(const surface *base, int n, const rays *x, real *lit)
-{
-    occlude(base, AT_RIM, n, x, lit);
 }
 
 /* ---- for true displacement ---- */
@@ -338,12 +312,15 @@ static const surface_ops disc_methods = {
     .steep = plane_steep,
 };
 
+/* The squared sine of the angle between U and W below which float has no digits of N: an angle of 1e-6, float's
+ * rounding is 1e-7. */
+#define PARALLEL2 1e-12
+
 bool plane_place(plane *f, vec3 origin, vec3 U, vec3 W)
 {
     vec3 N = vec3_cross(U, W);
     double n2 = vec3_dot(N, N), e2 = vec3_dot(U, U) * vec3_dot(W, W);
-    /* sin^2 of the angle between them: below this, float has no digit of N left */
-    if (!(n2 > 1e-12 * e2) || !(e2 < HUGE_VAL))
+    if (!(n2 > PARALLEL2 * e2) || !(e2 < HUGE_VAL))
         return false;
     vec3_round(f->O, origin);
     vec3_round(f->U, U);

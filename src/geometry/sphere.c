@@ -4,12 +4,16 @@
 
 #include <stdlib.h>
 
+/* At a pole Qu is 0, and so would be n. Qu is taken as if the sine of w were this much, which keeps the direction of n;
+ * bs_regular still sees that there is no second direction. */
+#define POLE 1e-12
+
 typedef struct sphere {
     surface base;
     real C[3], R;
 } sphere;
 
-/* Both roots of |r + s t - C|^2 = R^2, t0 <= t1; 0 where there is none.
+/* Both roots t0 <= t1 of |r + s t - C|^2 = R^2. Returns 0 where there are none.
  * The discriminant is taken from the foot of the perpendicular from C to the ray, |s|^2 R^2 - |s|^2 |foot|^2, which
  * keeps the digits that b^2 - a c loses for a small sphere far away [Haines et al., Ray Tracing Gems, ch. 7]. */
 static inline int sphere_roots(const sphere *f, real rx, real ry, real rz, real sx, real sy, real sz, real *t0,
@@ -33,8 +37,7 @@ STAGE static void sphere_hit(const surface *base, int n, const rays *x, int32_t 
         int met = sphere_roots(&f, x->r.x[i], x->r.y[i], x->r.z[i], x->s.x[i], x->s.y[i], x->s.z[i], &t0, &t1);
         real t = t0 > 0 ? t0 : t1;
         int take = met & (t > 0) & (t < h->t[i]);
-        h->t[i] = take ? t : h->t[i];
-        h->id[i] = take ? id : h->id[i];
+        hits_take(h, i, take, t, id);
     }
 }
 
@@ -54,8 +57,7 @@ STAGE static void sphere_hit_own(const surface *base, int n, const rays *x, cons
         int met = sphere_roots(&f, x->r.x[i], x->r.y[i], x->r.z[i], sx, sy, sz, &t0, &t1), own = from->id[i] == id;
         real far = sphere_far(&f, ax, ay, az, sx, sy, sz), near = t0 > 0 ? t0 : t1, t = own ? far : near;
         int take = (met | own) & (t > 0) & (t < h->t[i]);
-        h->t[i] = take ? t : h->t[i];
-        h->id[i] = take ? id : h->id[i];
+        hits_take(h, i, take, t, id);
     }
 }
 
@@ -81,9 +83,7 @@ STAGE static void sphere_eval(const surface *base, int n, const int32_t *part, c
     for (int i = 0; i < n; i++) {
         real cu = (real)km_cos((double)u[i]), su = (real)km_sin((double)u[i]);
         real cw = (real)km_cos((double)w[i]), sw = (real)km_sin((double)w[i]);
-        /* At a pole Qu is 0 and with it n. Its direction is kept by a circle of latitude that does not quite close;
-         * bs_regular still sees that there is no second direction. */
-        real rim = f.R * real_max(sw, R(1e-12)), r = f.R * sw, y = f.R * cw;
+        real rim = f.R * real_max(sw, R(POLE)), r = f.R * sw, y = f.R * cw;
         q->Q.x[i] = f.C[0] + r * cu;
         q->Q.y[i] = f.C[1] + y;
         q->Q.z[i] = f.C[2] + r * su;

@@ -59,6 +59,13 @@ typedef struct hits {
     int32_t part[LANES]; /* of its surface; set by displaced surfaces and meshes, found by `locate` of the others */
 } hits;
 
+/* Where `take`, ray i has met object `id` at t. */
+static inline void hits_take(hits *h, int i, int take, real t, int32_t id)
+{
+    h->t[i] = take ? t : h->t[i];
+    h->id[i] = take ? id : h->id[i];
+}
+
 /* The starts of rays that leave a surface: the object, the part of its surface, and the place on its smooth shape.
  * There the ray begins for the surface itself, while r is where it begins for all others. */
 typedef struct ray_origins {

@@ -13,12 +13,13 @@ import subprocess
 from pathlib import Path
 
 import numpy as np
-import OpenEXR
 import pytest
 from PIL import Image
 
+from reference.references import read_exr
 from tests.conftest import PROGRAM as KAGE
 from tests.conftest import TOP
+from tests.support.parity import rgb
 
 SCENE = """
 camera: {{from: [0, 3.9, -5.2], at: [0.25, 0.1, 0.05], fov: 36}}
@@ -44,8 +45,7 @@ def render(tmp_path: Path, scene: str, *options: str) -> dict[str, np.ndarray]:
     path, out = tmp_path / "scene.yaml", tmp_path / "out.exr"
     path.write_text(scene)
     subprocess.run([KAGE, "render", path, "-o", out, *options], check=True, capture_output=True, timeout=120)
-    with OpenEXR.File(str(out), separate_channels=True) as f:
-        return {name: np.array(c.pixels) for name, c in f.channels().items()}
+    return read_exr(out)
 
 
 def ground(layers: dict[str, np.ndarray]) -> np.ndarray:
@@ -242,10 +242,6 @@ def test_adaptive(tmp_path: Path, view: str, aa: str, threshold: float) -> None:
 
 
 # ---- highlights ----
-
-
-def rgb(layers: dict[str, np.ndarray]) -> np.ndarray:
-    return np.stack([layers[name] for name in "RGB"], axis=-1).astype(float)
 
 
 SHINY = """

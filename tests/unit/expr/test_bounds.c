@@ -17,7 +17,7 @@ static void test_range_holds(void **state)
         double u0 = draw_in(-2, 2), w0 = draw_in(-2, 2), u1 = u0 + draw_in(0, size), w1 = w0 + draw_in(0, size);
         double lo, hi;
         expr_bound_value(e, u0, u1, w0, w1, &lo, &hi);
-        assert_true(lo <= hi);
+        CHECK(lo, <=, hi);
         finite += isfinite(lo) && isfinite(hi);
         for (int k = 0; k < 40; k++) {
             double u = k & 1 ? draw_in(u0, u1) : k & 2 ? u0 : u1, w = k & 4 ? draw_in(w0, w1) : k & 8 ? w0 : w1;
@@ -30,7 +30,8 @@ static void test_range_holds(void **state)
         }
         expr_free(e);
     }
-    assert_true(inside > 80000 && finite > 2000);
+    CHECK(inside, >, 80000);
+    CHECK(finite, >, 2000);
 }
 
 static void check_range(const char *text, double u0, double u1, double w0, double w1, double lo, double hi)
@@ -132,10 +133,14 @@ static void check_gradient_in(const char *text, const expr *e, const double u[2]
     expr_bound_gradient(e, u[0], u[1], w[0], w[1], &b);
     expr_bound_hessian(e, u[0], u[1], w[0], w[1], &same, &bend);
     assert_memory_equal(&same, &b, sizeof b);
-    assert_true(bend.uu[0] <= bend.uu[1] && bend.uw[0] <= bend.uw[1] && bend.ww[0] <= bend.ww[1]);
+    CHECK(bend.uu[0], <=, bend.uu[1]);
+    CHECK(bend.uw[0], <=, bend.uw[1]);
+    CHECK(bend.ww[0], <=, bend.ww[1]);
     expr_bound_value(e, u[0], u[1], w[0], w[1], &lo, &hi);
-    assert_true(b.v[0] == lo && b.v[1] == hi);
-    assert_true(b.u[0] <= b.u[1] && b.w[0] <= b.w[1]); /* so none is NaN */
+    CHECK(b.v[0], ==, lo);
+    CHECK(b.v[1], ==, hi);
+    CHECK(b.u[0], <=, b.u[1]);
+    CHECK(b.w[0], <=, b.w[1]); /* so none is NaN */
     for (int k = 0; k < 40; k++) {
         double x = draw_place(u[0], u[1]), y = draw_place(w[0], w[1]), jet[JET];
         /* the other end of the pair: anywhere, near, or straight along one coordinate */
@@ -183,7 +188,7 @@ static void test_gradient_holds(void **state)
         expr_free(e);
     }
     print_message("%d pairs under a finite bound\n", pairs);
-    assert_true(pairs > 150000);
+    CHECK(pairs, >, 150000);
 }
 
 static void check_gradient(const char *text, double u0, double u1, double w0, double w1, double fu0, double fu1,
@@ -354,7 +359,8 @@ static void test_gradient_of_noise(void **state)
         top = fmax(top, fmax(fabs(jet[1]), fabs(jet[2])));
     }
     print_message("steepest noise %.4f\n", top);
-    assert_true(top > 2.6 && top < 2.93);
+    CHECK(top, >, 2.6);
+    CHECK(top, <, 2.93);
     expr_free(e);
 }
 

@@ -22,7 +22,7 @@ static void test_golden(void **state)
     assert_non_null(doc);
     struct fy_node *cases = fy_node_mapping_lookup_by_string(fy_document_root(doc), "cases", (size_t)-1);
     int count = fy_node_sequence_item_count(cases), rows_seen = 0;
-    assert_true(count > 40);
+    CHECK(count, >, 40);
     double worst = 0;
     for (int c = 0; c < count; c++) {
         struct fy_node *one = fy_node_sequence_get_by_index(cases, c);
@@ -97,7 +97,8 @@ static void test_differences(void **state)
             }
         expr_free(e);
     }
-    assert_true(checked > 15000 && skipped < checked / 20);
+    CHECK(checked, >, 15000);
+    CHECK(skipped, <, checked / 20);
 }
 
 /* ---- batches, orders ---- */
@@ -230,16 +231,17 @@ static void test_noise_is_bounded(void **state)
     double lo = 0, hi = 0;
     for (int i = 0; i < 200000; i++) {
         double span = i % 2 ? 50 : 1e12, v = value_at(e, draw_in(-span, span), draw_in(-span, span));
-        assert_true(v >= -1 && v <= 1);
+        BETWEEN(-1, v, 1);
         lo = fmin(lo, v);
         hi = fmax(hi, v);
     }
-    assert_true(lo < -0.8 && hi > 0.8);
-    assert_true(value_at(e, 5, -7) == 0);
+    CHECK(lo, <, -0.8);
+    CHECK(hi, >, 0.8);
+    CHECK(value_at(e, 5, -7), ==, 0);
     static const double huge[] = {2147483647.5, -2147483648.5, 4294967295.5, 1e15, -1e18, 1e300, -1e308};
     for (size_t i = 0; i < sizeof huge / sizeof huge[0]; i++)
         for (size_t k = 0; k < sizeof huge / sizeof huge[0]; k++)
-            assert_true(fabs(value_at(e, huge[i], huge[k])) <= 1);
+            CHECK(fabs(value_at(e, huge[i], huge[k])), <=, 1);
     expr_free(e);
 }
 
@@ -249,8 +251,10 @@ static void test_large_angles(void **state)
     (void)state;
     expr *s = parse("sin(u)"), *c = parse("cos(u)");
     for (double x = 1; x < 1e308; x *= 1.37) {
-        assert_true(fabs(value_at(s, x, 0)) <= 1 && fabs(value_at(s, -x, 0)) <= 1);
-        assert_true(fabs(value_at(c, x, 0)) <= 1 && fabs(value_at(c, -x, 0)) <= 1);
+        CHECK(fabs(value_at(s, x, 0)), <=, 1);
+        CHECK(fabs(value_at(s, -x, 0)), <=, 1);
+        CHECK(fabs(value_at(c, x, 0)), <=, 1);
+        CHECK(fabs(value_at(c, -x, 0)), <=, 1);
     }
     expr_free(s);
     expr_free(c);

@@ -13,16 +13,11 @@
 
 #include <cmocka.h>
 
-#include "displaced/march.h"
+#include "support/displace.h"
 #include "wave/lane.h"
 #include "mesh/mesh.h"
+#include "support/check.h"
 #include "support/random_in.h"
-
-#ifdef KAGE_DOUBLE
-#define EPS 2.2e-16
-#else
-#define EPS 1.2e-7
-#endif
 
 static const double pi = 3.14159265358979323846;
 
@@ -188,14 +183,15 @@ static void hits_as_by_brute_force(void **state)
             met++;
             assert_int_equal(h.part[i], at);
             /* rounded to a real, from double's digits on thin triangles and flat rays */
-            assert_true(fabs((double)h.t[i] - (double)best) <= (EPS + 1e-12) * (double)best);
+            NEAR((double)h.t[i], (double)best, (EPS + 1e-12) * (double)best);
             /* float's (u,w) tell the place to a share of the triangle's size; the thinnest of these have little of it
              */
-            assert_true(apart(lane_get(&q.Q, i), lane_at(&x, i, h.t[i])) < 1e4 * EPS * 4);
+            CHECK(apart(lane_get(&q.Q, i), lane_at(&x, i, h.t[i])), <, 1e4 * EPS * 4);
         }
     }
     print_message("%d hits and %d shadows as by brute force\n", met, dark);
-    assert_true(met > 700 && dark > 300);
+    CHECK(met, >, 700);
+    CHECK(dark, >, 300);
     surface_free(&f->base);
 }
 
@@ -253,7 +249,7 @@ static void partials_are_those_of_the_triangle(void **state)
             N[i] = vec3_unit(wide(bs_normal(lane_get(&q.Qu, i), lane_get(&q.Qw, i))));
             Q[i] = wide(lane_get(&q.Q, i));
         }
-        assert_true(vec3_length(vec3_sub(N[0], vec3_unit(mesh_mix(a.normal, b, c)))) < 1e3 * EPS);
+        CHECK(vec3_length(vec3_sub(N[0], vec3_unit(mesh_mix(a.normal, b, c)))), <, 1e3 * EPS);
         const double du = (double)(u[1] - u[0]), dw = (double)(w[2] - w[0]), digits = 1e2 * EPS / d;
         const vec3 Qu = vec3_scale(vec3_sub(Q[1], Q[0]), 1 / du), Qw = vec3_scale(vec3_sub(Q[2], Q[0]), 1 / dw);
         const vec3 nu = vec3_scale(vec3_sub(N[1], N[0]), 1 / du), nw = vec3_scale(vec3_sub(N[2], N[0]), 1 / dw);
@@ -261,12 +257,12 @@ static void partials_are_those_of_the_triangle(void **state)
         const vec3 flat_u = vec3_sub(Qu, vec3_scale(N[0], vec3_dot(Qu, N[0]))),
                    flat_w = vec3_sub(Qw, vec3_scale(N[0], vec3_dot(Qw, N[0])));
         worst = fmax(worst, vec3_length(vec3_sub(flat_u, wide(lane_get(&q.Qu, 0)))));
-        assert_true(vec3_length(vec3_sub(flat_u, wide(lane_get(&q.Qu, 0)))) < digits + d);
-        assert_true(vec3_length(vec3_sub(flat_w, wide(lane_get(&q.Qw, 0)))) < digits + d);
-        assert_true(fabs(vec3_dot(wide(lane_get(&q.Quu, 0)), N[0]) + vec3_dot(nu, flat_u)) < digits + 4 * d);
-        assert_true(fabs(vec3_dot(wide(lane_get(&q.Qww, 0)), N[0]) + vec3_dot(nw, flat_w)) < digits + 4 * d);
-        assert_true(fabs(vec3_dot(wide(lane_get(&q.Quw, 0)), N[0]) +
-                         0.5 * (vec3_dot(nu, flat_w) + vec3_dot(nw, flat_u))) < digits + 4 * d);
+        CHECK(vec3_length(vec3_sub(flat_u, wide(lane_get(&q.Qu, 0)))), <, digits + d);
+        CHECK(vec3_length(vec3_sub(flat_w, wide(lane_get(&q.Qw, 0)))), <, digits + d);
+        CHECK(fabs(vec3_dot(wide(lane_get(&q.Quu, 0)), N[0]) + vec3_dot(nu, flat_u)), <, digits + 4 * d);
+        CHECK(fabs(vec3_dot(wide(lane_get(&q.Qww, 0)), N[0]) + vec3_dot(nw, flat_w)), <, digits + 4 * d);
+        CHECK(fabs(vec3_dot(wide(lane_get(&q.Quw, 0)), N[0]) + 0.5 * (vec3_dot(nu, flat_w) + vec3_dot(nw, flat_u))), <,
+              digits + 4 * d);
     }
     print_message("Qu at most %.2g off\n", worst);
     surface_free(&f->base);
@@ -295,13 +291,14 @@ static void the_way_past(void **state)
             mesh_gradients(&x, &p, vec3_dot(vec3_cross(p.Xb, p.Xc), p.N), &gu, &gw);
             /* (u,w), which are reals here, tell b and c to 1e3 roundings on these triangles, of 1/24 and more of 2 pi
              */
-            assert_true(fabs((double)v.a - vec3_dot(gu, wide(s))) <= 1e3 * EPS * (1 + vec3_length(gu)));
-            assert_true(fabs((double)v.b - vec3_dot(gw, wide(s))) <= 1e3 * EPS * (1 + vec3_length(gw)));
+            NEAR((double)v.a, vec3_dot(gu, wide(s)), 1e3 * EPS * (1 + vec3_length(gu)));
+            NEAR((double)v.b, vec3_dot(gw, wide(s)), 1e3 * EPS * (1 + vec3_length(gw)));
             if (flat) {
-                assert_true(apart(Qu, (bs_vec3){0, 0, 1}) < 4 * EPS && apart(Qw, (bs_vec3){1, 0, 0}) < 4 * EPS);
-                assert_true(vec3_length(wide(lane_get(&q.Quu, 0))) + vec3_length(wide(lane_get(&q.Quw, 0))) +
-                                vec3_length(wide(lane_get(&q.Qww, 0))) ==
-                            0);
+                CHECK(apart(Qu, (bs_vec3){0, 0, 1}), <, 4 * EPS);
+                CHECK(apart(Qw, (bs_vec3){1, 0, 0}), <, 4 * EPS);
+                CHECK(vec3_length(wide(lane_get(&q.Quu, 0))) + vec3_length(wide(lane_get(&q.Quw, 0))) +
+                          vec3_length(wide(lane_get(&q.Qww, 0))),
+                      ==, 0);
             }
         }
         surface_free(&f->base);
@@ -373,16 +370,17 @@ static void images(void **state)
                 continue;
             met++;
             /* the moved mesh has its corners rounded to float, in either build */
-            assert_true(apart(lane_at(&x, i, a.t[i]), lane_at(&x, i, b.t[i])) < 3e-5);
-            assert_true(fabs((double)(u[0][i] - u[1][i])) < 1e-4 && fabs((double)(w[0][i] - w[1][i])) < 1e-4);
-            assert_true(apart(lane_get(&p.Qu, i), lane_get(&q.Qu, i)) < 0.2 &&
-                        apart(lane_get(&p.Qw, i), lane_get(&q.Qw, i)) < 0.2);
+            CHECK(apart(lane_at(&x, i, a.t[i]), lane_at(&x, i, b.t[i])), <, 3e-5);
+            NEAR(u[0][i], u[1][i], 1e-4);
+            NEAR(w[0][i], w[1][i], 1e-4);
+            CHECK(apart(lane_get(&p.Qu, i), lane_get(&q.Qu, i)), <, 0.2);
+            CHECK(apart(lane_get(&p.Qw, i), lane_get(&q.Qw, i)), <, 0.2);
             const vec3 n = wide(bs_normal(lane_get(&p.Qu, i), lane_get(&p.Qw, i))), s = wide(lane_get(&x.s, i));
-            assert_true(vec3_dot(n, wide(bs_normal(lane_get(&q.Qu, i), lane_get(&q.Qw, i)))) > 0);
-            assert_true(vec3_dot(n, s) <
-                        0.35 * vec3_length(n) * vec3_length(s)); /* outward, but for what normals are bent */
+            CHECK(vec3_dot(n, wide(bs_normal(lane_get(&q.Qu, i), lane_get(&q.Qw, i)))), >, 0);
+            CHECK(vec3_dot(n, s), <,
+                  0.35 * vec3_length(n) * vec3_length(s)); /* outward, but for what normals are bent */
         }
-        assert_true(met > 40);
+        CHECK(met, >, 40);
         surface_free(k);
         surface_free(g);
     }
@@ -406,9 +404,9 @@ static void displaced_as(const char *name, mesh *f, surface *g, const char *text
                          double share)
 {
     bump *P = bumped(text, scale, f);
-    assert_true(displaced_prepare(&f->base, P));
     int met = 0, far = 0, differ = 0, dark = 0, darker = 0;
     displaced_counts c = {0, 0};
+    surface *over_mesh = displace(&f->base, P, &c), *over_closed = displace(g, P, &c);
     for (int round = 0; round < 4; round++) {
         static rays x;
         static hits a, b;
@@ -420,10 +418,10 @@ static void displaced_as(const char *name, mesh *f, surface *g, const char *text
         }
         no_hits(&a, LANES);
         no_hits(&b, LANES);
-        displaced_hit(&f->base, P, LANES, &x, NULL, 0, &a, &c);
-        displaced_hit(g, P, LANES, &x, NULL, 0, &b, &c);
-        displaced_occlude(&f->base, P, LANES, &x, NULL, lit_a, &c);
-        displaced_occlude(g, P, LANES, &x, NULL, lit_b, &c);
+        over_mesh->ops->hit(over_mesh, LANES, &x, 0, &a);
+        over_closed->ops->hit(over_closed, LANES, &x, 0, &b);
+        over_mesh->ops->occlude(over_mesh, LANES, &x, lit_a);
+        over_closed->ops->occlude(over_closed, LANES, &x, lit_b);
         g_a.n = g_b.n = 0;
         for (int i = 0; i < LANES; i++) {
             differ += a.id[i] != b.id[i];
@@ -446,8 +444,8 @@ static void displaced_as(const char *name, mesh *f, surface *g, const char *text
             g_b.part[k] = b.part[i];
         }
         g_b.x = g_a.x;
-        displaced_shape(&f->base, P, &g_a);
-        displaced_shape(g, P, &g_b);
+        displaced_shape(over_mesh, &g_a);
+        displaced_shape(over_closed, &g_b);
         for (int k = 0; k < g_a.n; k++)
             if (!(apart(lane_get(&g_a.n_bump, k), lane_get(&g_b.n_bump, k)) < 20 * within + 0.02))
                 far++;
@@ -456,6 +454,8 @@ static void displaced_as(const char *name, mesh *f, surface *g, const char *text
                   differ, darker, dark, c.uncertain);
     assert_true(met > 150 && dark > 100);
     assert_true(far <= share * met && differ <= share * met && darker <= share * dark);
+    surface_free(over_mesh);
+    surface_free(over_closed);
     bump_free(P);
     surface_free(g);
     surface_free(&f->base);
@@ -500,14 +500,14 @@ static double error_of(mesh *f, double A, int order)
     int n = 0;
     displaced_counts c = {0, 0};
     bump *P = bumped("sin(2*u + w) + 0.5*cos(3*w - u) + 0.3", A, f);
-    assert_true(displaced_prepare(&f->base, P));
+    surface *d = displace(&f->base, P, &c);
     for (int round = 0; round < 4; round++) {
         for (int i = 0; i < LANES; i++)
             random_ray(&x, i);
         no_hits(&h, LANES);
         no_hits(&rough, LANES);
         f->base.ops->hit(&f->base, LANES, &x, 0, &h);
-        displaced_hit(&f->base, P, LANES, &x, NULL, 0, &rough, &c);
+        d->ops->hit(d, LANES, &x, 0, &rough);
         f->base.ops->locate(&f->base, LANES, &x, h.t, h.part, u, w);
         f->base.ops->eval(&f->base, LANES, h.part, u, w, 2, &q);
         P->ops->eval(P, LANES, u, w, 2, &p);
@@ -527,8 +527,9 @@ static double error_of(mesh *f, double A, int order)
             n++;
         }
     }
+    surface_free(d);
     bump_free(P);
-    assert_true(n > 60);
+    CHECK(n, >, 60);
     return sum / n;
 }
 
@@ -543,14 +544,15 @@ static void error_slopes(void **state)
     for (int order = 0; order < 4; order++) {
         const double slope = (error_of(f, 1e-2, order) - error_of(f, 1e-3, order)) / log(10);
         print_message("flat order %d: error as A^%.3f, expected A^%d\n", order, slope, want[order]);
-        assert_true(fabs(slope - want[order]) < 0.25); /* other rays each time */
+        NEAR(slope, want[order], 0.25); /* other rays each time */
     }
     surface_free(&f->base);
     mesh *coarse = mesh_of(ball, 40, 20), *fine = mesh_of(ball, 160, 80);
     const double a = error_of(coarse, 1e-4, 3), times = (a - error_of(coarse, 1e-5, 3)) / log(10),
                  finer = (a - error_of(fine, 1e-4, 3)) / log(4);
     print_message("ball order 3: error as A^%.3f, and as the cells' size^%.3f\n", times, finer);
-    assert_true(fabs(times - 1) < 0.25 && fabs(finer - 1) < 0.25);
+    NEAR(times, 1, 0.25);
+    NEAR(finer, 1, 0.25);
     surface_free(&coarse->base);
     surface_free(&fine->base);
 }
@@ -668,7 +670,7 @@ static void odd_textures(void **state)
         f->base.ops->locate(&f->base, 1, &x, &t, &told, &u, &w);
         assert_int_equal(told, k);
         f->base.ops->eval(&f->base, 1, &part, &u, &w, 2, &q);
-        assert_true(apart(lane_get(&q.Q, 0), lane_at(&x, 0, 1)) < 1e-3); /* float's digits of u in 1/4096 */
+        CHECK(apart(lane_get(&q.Q, 0), lane_at(&x, 0, 1)), <, 1e-3); /* float's digits of u in 1/4096 */
         const bs_vec3 n = bs_normal(lane_get(&q.Qu, 0), lane_get(&q.Qw, 0));
         assert_true(n.z > 0 && bs_regular(n, lane_get(&q.Qu, 0), lane_get(&q.Qw, 0)));
     }
