@@ -340,6 +340,7 @@ static void own_rays_meet_what_is_ahead(void **state)
 static void own_hits_are_on_the_surface(void **state)
 {
     const int kind = *(const int *)*state;
+    const double within = (kind == HAT || kind == THIN ? 300 : 60) * EPS; /* a tip, and a tube of radius 0.05 */
     surface *f = make(kind);
     for (int round = 0; round < 40; round++) {
         static points p;
@@ -362,7 +363,7 @@ static void own_hits_are_on_the_surface(void **state)
             if (h.id[i] != 7)
                 continue;
             const bs_vec3 s = lane_get(&out.s, i), n = bs_normal(lane_get(&q.Qu, i), lane_get(&q.Qw, i));
-            NEAR(distance(lane_get(&q.Q, i), lane_at(&out, i, h.t[i])), 0, (kind == HAT ? 300 : 60) * EPS); /* a tip */
+            NEAR(distance(lane_get(&q.Q, i), lane_at(&out, i, h.t[i])), 0, within);
             if (is_closed(kind))
                 CHECK(bs_dot(s, n) > 0, ==, bs_dot(s, p.normal[i]) < 0);
             if (kind == BOX)
