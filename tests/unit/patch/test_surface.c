@@ -8,6 +8,7 @@
 #include "wave/lane.h"
 #include "displaced/offset.h"
 #include "read/patch_file.h"
+#include "support/odd_rays.h"
 #include "support/properties.h"
 #include "support/random_rays.h"
 #include "patch/surface.h"
@@ -467,33 +468,8 @@ static void odd_rays(void **state)
         {1.5, -0.2, 0.1, 0, 1, 0},   {-5, 0, 0, 1, 0, 0},
         {0, 0, -5, 0, 0, 1},         {0.04, 5, 0, 0, -1, 0},
     };
-    enum { ODD = sizeof odd / sizeof *odd };
-    const int kind = *(const int *)*state;
-    surface *f = surface_of(kind);
-    static rays x;
-    static hits h;
-    static partials q;
-    int32_t part[LANES];
-    real u[LANES], w[LANES], lit[LANES];
-    for (int i = 0; i < ODD; i++) {
-        x.r.x[i] = (real)odd[i][0], x.r.y[i] = (real)odd[i][1], x.r.z[i] = (real)odd[i][2];
-        x.s.x[i] = (real)odd[i][3], x.s.y[i] = (real)odd[i][4], x.s.z[i] = (real)odd[i][5];
-        lit[i] = 1;
-    }
-    no_hits(&h, ODD + 1);
-    f->ops->hit(f, ODD, &x, 0, &h);
-    f->ops->occlude(f, ODD, &x, lit);
-    f->ops->locate(f, ODD, &x, h.t, part, u, w);
-    f->ops->eval(f, ODD, part, u, w, 2, &q);
-    f->ops->occlude_own(f, ODD, &x, part, lit);
-    assert_int_equal(h.id[ODD], -1);
-    for (int i = 0; i < ODD; i++) {
-        BETWEEN(-1, h.id[i], 0);
-        CHECK(h.t[i], >, 0);
-        CHECK(h.t[i], <=, REAL_FAR);
-        BETWEEN(0, lit[i], 1);
-        BETWEEN(0, part[i], f->ops->parts - 1);
-    }
+    surface *f = surface_of(*(const int *)*state);
+    check_odd_rays(f, sizeof odd / sizeof *odd, odd);
 }
 
 /* A hit does not know what other rays were in the wave, nor how many. */
