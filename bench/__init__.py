@@ -1,12 +1,14 @@
 """The bench: what each method costs, what it buys, and when to use which.
 
-    scripts/venv python -m bench            from the project's top; `make bench` does that
+    scripts/venv python -m bench            from the project's top, as `make bench` does
 
     plan.py                 what is measured at which level
-    runner.py, store.py     doing it; results as they come, so that an interrupted bench goes on where it was
+    runner.py, store.py     run the jobs, and keep results as they come, so that an interrupted bench can go on
     quality.py, cost.py, sweep.py     the jobs
-    programs.py             running kage, POV-Ray, valgrind and the yardsticks, and reading what they print
+    programs.py             runs kage, POV-Ray, valgrind and the yardsticks, and reads their output
     stats.py, masks.py, images.py     intervals, shadows against shadows, pictures against pictures
-    summary.py, claims.py   the report's data, and what they say of the paper's claims
-    report.py, plots.py, templates/   the report's pages
+    data.py                 the types of a report's data
+    summary.py, claims.py   make these data, and judge the paper's claims by them
+    tables.py, plots.py, page.py, report.py, templates/     the report's files
+    readme.py               the tables of README.md and docs/
 """

@@ -1,9 +1,10 @@
 """What each method costs, what it buys, and when to use which: measures, then writes the report.
 
-Results are kept in OUT/results.jsonl as they come. Interrupted at any moment and started again, the bench goes on where it was;
-it repeats only what has another scene, program or options. The report is OUT/index.html, with report.md, report.json and CSV.
+Results are kept in OUT/results.jsonl as they come. If the bench is interrupted and started again, it goes on where it
+was: it repeats a measurement only if the scene, the program or the options have changed. The report is OUT/index.html,
+with report.md, report.json and CSV files.
 
-status: 0 the report is made, 1 it can't be, 2 wrong usage, 3 it is made but incomplete, 130 interrupted
+status: 0 the report is made, 1 it can't be made, 2 wrong usage, 3 it is made but incomplete, 130 interrupted
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from pathlib import Path
 try:
     from bench import claims, cost, plan, programs, quality, report, summary, sweep
 except ModuleNotFoundError as error:
-    sys.exit(f"bench: the Python package {error.name} is missing; nothing can be reckoned without it (`scripts/venv` installs it)")
+    sys.exit(f"bench: the Python package {error.name} is missing, and the bench needs it (`scripts/venv` installs it)")
 from bench.plan import LEVELS, TITLES, Bench
 from bench.programs import KAGE, TOP, MeasureError
 from bench.runner import Job, Runner
@@ -42,13 +43,14 @@ def parse_arguments(arguments: Sequence[str] | None) -> argparse.Namespace:
     options = parser.parse_args(arguments)
     options.kage, options.out = options.kage.resolve(), options.out.resolve()
     if not os.access(options.kage, os.X_OK):
-        parser.error(f"{options.kage} is not there, or no program: `make` makes it")
+        parser.error(f"{options.kage} is missing or is not a program: `make` builds it")
     return options
 
 
 def plan_jobs(bench: Bench, parts: Sequence[str]) -> tuple[list[Job], list[str]]:
-    """All jobs, and why others can't be."""
-    jobs, faults = [], []
+    """All jobs, and a line for each thing that can't be measured."""
+    jobs: list[Job] = []
+    faults: list[str] = []
     if "quality" in parts:
         jobs += quality.jobs(bench)
     if "sweeps" in parts:
@@ -60,7 +62,9 @@ def plan_jobs(bench: Bench, parts: Sequence[str]) -> tuple[list[Job], list[str]]
 
 
 def cost_jobs(bench: Bench) -> tuple[list[Job], list[str]]:
-    built, faults = cost.limits(bench) if bench.level.yardsticks and "cube" in bench.scenes else ({}, [])
+    """As plan_jobs, for the part `cost`."""
+    wanted = bench.level.yardsticks and "cube" in bench.scenes
+    built, faults = cost.limits(bench) if wanted else ({}, [])
     scenes = cost.povray_scenes(bench) if programs.has_povray() else []
     version = programs.version(["povray", "--version"], r"POV-Ray \d\S*")
     jobs = cost.kage_once(bench) + [made for *_, made in scenes if made]
@@ -71,19 +75,20 @@ def cost_jobs(bench: Bench) -> tuple[list[Job], list[str]]:
 
 
 def make_references(bench: Bench) -> list[str]:
-    """Larger references than those of the project are made here, where they are stale. Why not, where they can't be."""
+    """Make the references that are larger than the project's, where they are stale. Returns why they can't be made."""
     if bench.references == TOP / "reference":
         return []
-    print("bench: POV-Ray's references, minutes where they are not there yet", file=sys.stderr, flush=True)
+    print("bench: POV-Ray's references; to make them takes minutes", file=sys.stderr, flush=True)
     try:
-        programs.run([sys.executable, TOP / "reference" / "render.py", "--kage", bench.kage, "--folder", bench.references,
-                      "--scale", str(bench.level.reference_scale), *bench.scenes])
+        programs.run([sys.executable, TOP / "reference" / "render.py", "--kage", bench.kage, "--folder",
+                      bench.references, "--scale", str(bench.level.reference_scale), *bench.scenes])
     except MeasureError as error:
         return [str(error)]
     return []
 
 
 def bench(options: argparse.Namespace) -> int:
+    """Measure, write the report, and name all that is missing. The exit status."""
     names = options.scene or TITLES
     facts = {name: plan.facts(options.kage, name) for name in TITLES if name in names}
     about = Bench(options.kage, programs.file_digest(options.kage), options.out, LEVELS[options.level], facts)

@@ -1,13 +1,13 @@
 """What the paper claims, and what kage claims of itself, judged by the numbers of a report.
 
-Each claim is a function of the report's data (bench/summary.py makes them), with its test and bound written out. The
-paper gives no numbers: it judged figures 4 to 8 by eye, so the bounds are ours, the constants below with their reasons.
-Each claim is judged case by case, as it may hold for one scene and not for the next.
+Each claim is a function of the report's data (bench/data.py), with its test and bound written out. The paper gives no
+numbers: it judged figures 4 to 8 by eye. So the bounds are ours: the constants below, with their reasons. Each claim is
+judged case by case, as it may hold for one scene and not for the next.
 
 The verdicts
 
     of a measured time, which has an interval: "holds" or "does not hold" where all of the interval is on one side of
-    the bound, "undecided" where it straddles the bound or comes from fewer than LEAST_RUNS runs
+    the bound, "undecided" where the bound is inside the interval or there were fewer than LEAST_RUNS runs
     of a share or distance, which has no noise: "holds" or "does not hold"
     "not measured" where a number is missing
     of a claim as a whole: see `overall`
@@ -16,9 +16,11 @@ The verdicts
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterable, Sequence
-from typing import Any, TypedDict
+from collections.abc import Iterable, Mapping, Sequence
+from typing import TypeVar
 
+from bench import data
+from bench.data import Case, Claim, Cost, MaskMetric, Parity, Peer, Quality, Report, Shares, Sweep, Truth
 from bench.stats import Interval
 
 HOLDS = "holds"
@@ -31,58 +33,39 @@ PAPER_SCENE = "cube"  # figures 4 to 7
 MERIT_SCENE = "waves"  # function data with slopes below 0.35
 ORDERS = ("0", "1", "2")
 MERIT = ("none", "0", "1", "2", "2+")  # each better than the one before
-TRUTHS = {"mask": "POV-Ray's displacement", "exact": "kage's exact"}  # by a method's key for them, the better one first
+TRUTHS: dict[Truth, str] = {"mask": "POV-Ray's displacement", "exact": "kage's exact"}  # the better one first
 BUMP_MAP = "POV-Ray, bump_map"
-PEER = "POV-Ray, "  # how the names of all of POV-Ray's ways start
+PEER = "POV-Ray, "  # every name of a POV-Ray peer starts so
 FLAT_PEERS = (BUMP_MAP, "POV-Ray, smooth, no bumps")  # without displacement; the first that a scene has is the base
 
-# An edge that is off by a pixel on average is seen; one off by less is about as good as its grid of pixels can draw it.
+# An edge that is off by a pixel on average is seen; one off by less is about as good as pixels can draw it.
 SEEN = 1.0  # pixels
 # `none` should not move the edge at all; this allows for the odd pixel that falls on the other side.
 STAYS = 0.1  # pixels
-WIDTH = 640  # of the pictures whose pixels the two above are; those of finer masks are that much smaller
+WIDTH = 640  # the two above are in pixels of a picture that is so wide; finer masks have smaller pixels
 # "Roughly" the shadow that fits the bumps: nearer to that shadow than to the one of the smooth surface.
 ROUGHLY = 0.5  # of none's distance
 # "Not much different" in cost: at most a tenth.
 HARDLY = 10.0  # % over none
 # "Clearly" cheaper: not by a difference that nobody would notice, however well it is measured.
 CLEARLY = 1.0  # % of none's time
-# "Enough", and "no great difference" between orders: the greater part by far of what there is to gain.
+# "Enough", and "no great difference" between orders: three quarters of what there is to gain.
 MOST = 0.75
 # 1 % of a shadow of 200 x 200 pixels, as large as figure 5's at 640x480, is an edge off by half a pixel all around.
 RIGHT = 1.0  # % wrong pixels
-LARGE_SLOPE = 1.0  # 45 degrees; an order that is right up to here does reach large amplitudes
-# "Expensive" is what one would rather not pay: the double.
+LARGE_SLOPE = 1.0  # 45 degrees; an order that is right up to here can be used for large amplitudes
+# "Costs much": twice as much or more.
 EXPENSIVE = 2.0  # times
 # kage's own, which the project demands of itself.
 FASTER = 40.0  # times
 ORDER_0_COST = 8.0  # % over none
 LEAST_CLOSE = {"self": 99.5, "cast": 99.8}  # % of the pixels within 1/255
-MOST_DIFFERENT = {"mask": 0.1}  # % of the shadow's pixels
+MOST_DIFFERENT = 0.1  # % of the shadow's pixels
 
-LEAST_RUNS = 3  # of fewer runs no interval tells the noise
+LEAST_RUNS = 3  # with fewer runs an interval does not show the noise
 
-Data = dict[str, Any]
-
-
-class Case(TypedDict):
-    """A claim's verdict on one scene, method or peer, and the numbers it is drawn from."""
-
-    case: str
-    verdict: str
-    detail: str
-
-
-class Claim(TypedDict):
-    """As it stands in report.json."""
-
-    id: str
-    who: str  # paper or kage
-    sentence: str
-    source: str
-    test: str
-    verdict: str
-    cases: list[Case]
+Methods = Mapping[str, Quality]  # of a scene
+Costs = Mapping[str, Cost]
 
 
 # Verdicts -------------------------------------------------------------------------------------------
@@ -105,10 +88,10 @@ def at_least(value: Interval, bound: float) -> str:
 
 
 def overall(verdicts: Iterable[str]) -> str:
-    """Of all cases; those that are not measured don't count while others are.
+    """Of all cases. Cases that are not measured count only where all are.
 
-    One case that fails refutes the claim: what is left is that it holds in part, if in any. Where none fails, one case
-    that is undecided leaves the whole undecided.
+    If one case fails, the claim holds in part at best, and only where another case holds. If no case fails, one
+    undecided case makes the whole undecided.
     """
     found = set(verdicts) - {UNMEASURED}
     if not found:
@@ -130,52 +113,55 @@ def unmeasured(name: str, what: str) -> Case:
 # Reading the report ---------------------------------------------------------------------------------
 
 
-def dig(data: Any, *keys: str) -> Any:
-    """What is there under the keys, None where one of them is missing or leads to null."""
-    for key in keys:
-        if data is None:
-            return None
-        data = data.get(key)
-    return data
-
-
-def by_scene(report: Data, part: str) -> dict[str, Data]:
-    """The scenes of a part, quality or cost, by name: what was measured there, by method."""
-    found = dig(report, part, "scenes") or {}
-    if part == "cost":
-        found = {name: dig(scene, "methods") for name, scene in found.items()}
-    return {name: methods for name, methods in found.items() if methods}
-
-
-def grain_of(report: Data, scene: str) -> float:
+def grain_of(report: Report, scene: str) -> float:
     """How many pixels of the scene's masks are as wide as one of a picture that is WIDTH wide."""
     return report["scenes"][scene]["size"][0] / WIDTH
 
 
-def peers(report: Data) -> list[Data]:
-    return dig(report, "cost", "peers") or []
+Value = TypeVar("Value")
 
 
-def shadow_error(scene: Data, methods: Sequence[str], key: str) -> tuple[str, list[float]] | None:
-    """The name of a truth, POV-Ray's where it is known, and a mask metric of each of the methods against it."""
+def complete(values: Sequence[Value | None]) -> list[Value] | None:
+    """The values; None where one is missing."""
+    known = [value for value in values if value is not None]
+    return known if len(known) == len(values) else None
+
+
+def mask_metrics(scene: Methods, methods: Sequence[str], truth: Truth, metric: MaskMetric) -> list[float] | None:
+    """The metric of each method against a truth; None where one is missing."""
+    return complete([data.mask_metric(scene.get(method), truth, metric) for method in methods])
+
+
+def shadow_error(scene: Methods, methods: Sequence[str], metric: MaskMetric) -> tuple[str, list[float]] | None:
+    """The name of the best truth that is known, and the metric of each method against it."""
     for truth, name in TRUTHS.items():
-        values = [dig(scene, method, truth, key) for method in methods]
-        if None not in values:
+        if (values := mask_metrics(scene, methods, truth, metric)) is not None:
             return name, values
     return None
 
 
-def peer_of(report: Data, name: str, scene: str) -> Data | None:
-    return next((peer for peer in peers(report) if (peer["name"], peer["scene"]) == (name, scene)), None)
+def added_times(scene: Costs, *methods: str) -> list[Interval] | None:
+    """% over none of each method; None where one is missing."""
+    return complete([data.added_cost(scene.get(method)) for method in methods])
 
 
-def peer_ns(report: Data, name: str, scene: str) -> Interval | None:
-    return dig(peer_of(report, name, scene), "ns")
+def peer_of(report: Report, name: str, scene: str) -> Peer | None:
+    return next((peer for peer in data.peers(report) if (peer["name"], peer["scene"]) == (name, scene)), None)
+
+
+def peer_ns(report: Report, name: str, scene: str) -> Interval | None:
+    peer = peer_of(report, name, scene)
+    return peer["ns"] if peer else None
+
+
+def peer_times(peer: Peer | None, base: str) -> Interval | None:
+    """How many times as long as the base the peer takes, by the rounds' own ratios."""
+    return (peer.get("times") or {}).get(base) if peer else None
 
 
 def ratio(a: Interval, b: Interval) -> Interval:
-    """How many times b is in a, where the rounds' own ratios are not known. The ends are the worst that both can do, so this is
-    wider than either."""
+    """a / b, where the rounds' own ratios are not known. Each end takes the worse ends of both, so this interval is
+    wider than theirs."""
     return {"median": a["median"] / b["median"], "low": a["low"] / b["high"], "high": a["high"] / b["low"],
             "n": min(a["n"], b["n"])}
 
@@ -192,40 +178,41 @@ def over_none(added: Interval) -> Interval:
             "n": added["n"]}
 
 
-def told(value: Interval, form: str, unit: str) -> str:
+def interval_text(value: Interval, form: str, unit: str) -> str:
     few = f"; of {value['n']} run{'s' * (value['n'] > 1)}, too few" if value["n"] < LEAST_RUNS else ""
     return f"{value['median']:{form}} {unit} ({value['low']:{form}} to {value['high']:{form}}{few})"
 
 
-def told_added(value: Interval) -> str:
-    return told(value, "+.1f", "%")
+def added_text(value: Interval) -> str:
+    return interval_text(value, "+.1f", "%")
 
 
 # The paper's claims ---------------------------------------------------------------------------------
 
 
-def detached_case(name: str, scene: Data, grain: float) -> Case:
-    moved, error = dig(scene, "none", "edge_moved", "mean"), shadow_error(scene, ("none",), "edge_mean")
-    if moved is None or error is None:
+def detached_case(name: str, scene: Methods, grain: float) -> Case:
+    none = scene.get("none")
+    edge, error = none and none["edge_moved"], shadow_error(scene, ("none",), "edge_mean")
+    if edge is None or error is None:
         return unmeasured(name, "the edge of none")
     truth, (away,) = error
-    moved, away = moved / grain, away / grain
+    moved, away = edge["mean"] / grain, away / grain
     return {"case": name, "verdict": decided(moved <= STAYS and away >= SEEN),
             "detail": f"none: edge {moved:.2f} px from that without bumps, {away:.2f} px from that of {truth}"}
 
 
-def detached(report: Data) -> Claim:
+def detached(report: Report) -> Claim:
     return made(
         "detached", "paper",
-        "With bump mapping alone the roughness has no effect on the shadow: it is made without regard to the bumps, "
-        "seems to float, and is unnatural.",
-        "abstract, sections 1, 2 and 5 (figure 4)",
-        f"The edge of none's shadow is on average at most {STAYS:g} px from that of the surface without bumps, and at "
-        f"least {SEEN:g} px from the true one, in pixels of pictures {WIDTH} wide.",
-        [detached_case(name, scene, grain_of(report, name)) for name, scene in by_scene(report, "quality").items()])
+        "With bump mapping alone the bumps do not change the shadow: it seems to float above the surface, and looks "
+        "unnatural.",
+        "abstract, sections 1, 2 and 5, figure 4",
+        f"The edge of none's shadow is on average at most {STAYS:g} px from the edge on the surface without bumps, and "
+        f"at least {SEEN:g} px from the true one, in pixels of a picture {WIDTH} pixels wide.",
+        [detached_case(name, scene, grain_of(report, name)) for name, scene in data.qualities(report).items()])
 
 
-def follows_case(name: str, scene: Data, order: str) -> Case:
+def follows_case(name: str, scene: Methods, order: str) -> Case:
     found = shadow_error(scene, ("none", order), "edge_mean")
     if found is None:
         return unmeasured(f"{name}, {order}", "the edges' distance")
@@ -234,77 +221,85 @@ def follows_case(name: str, scene: Data, order: str) -> Case:
             "detail": f"{ours / none:.2f} times as far from that of {truth}" if none else f"none has {truth}'s edge"}
 
 
-def follows(report: Data) -> Claim:
+def follows(report: Report) -> Claim:
     return made(
         "follows", "paper",
-        "By order 0, 1 and 2 the shadow roughly fits the bumps, and hardly anything seems wrong with where object and "
-        "shadow are.",
-        "section 5 (figures 5 to 7)",
+        "With orders 0, 1 and 2 the shadow roughly fits the bumps, and the positions of object and shadow hardly look "
+        "wrong.",
+        "section 5, figures 5 to 7",
         f"The edge of the order's shadow is on average at most {ROUGHLY:g} times as far from the true one as none's.",
-        [follows_case(name, scene, order) for name, scene in by_scene(report, "quality").items() for order in ORDERS])
+        [follows_case(name, scene, order) for name, scene in data.qualities(report).items() for order in ORDERS])
 
 
-def cheap_case(name: str, scene: Data, order: str) -> Case:
-    added, counted = dig(scene, order, "added"), dig(scene, order, "instructions_added")
-    if added is None:
+def cheap_case(name: str, scene: Costs, order: str) -> Case:
+    times, entry = added_times(scene, order), scene.get(order)
+    if times is None or entry is None:
         return unmeasured(f"{name}, {order}", "the time")
-    # Noise can't touch instructions, but one is not as slow as another: they stand beside, and do not decide.
+    # Instruction counts have no noise, but not all instructions are equally slow: they are shown, and do not decide.
+    counted = entry["instructions_added"]
     beside = "" if counted is None else f"; instructions {counted:+.1f} %"
-    return {"case": f"{name}, {order}", "verdict": at_most(added, HARDLY), "detail": told_added(added) + beside}
+    return {"case": f"{name}, {order}", "verdict": at_most(times[0], HARDLY), "detail": added_text(times[0]) + beside}
 
 
-def cheap(report: Data) -> Claim:
+def cheap(report: Report) -> Claim:
     return made(
         "cheap", "paper",
-        "The cost is not much different from that without regard to the surface's shape.",
+        "The cost is not much higher than without the shape of the surface.",
         "abstract, section 3",
         f"The order's time in kage is at most {HARDLY:g} % over none's, by the interval of the rounds' differences. In "
         "a renderer whose other work takes longer, the same time is a smaller share.",
-        [cheap_case(name, scene, order) for name, scene in by_scene(report, "cost").items() for order in ORDERS])
+        [cheap_case(name, scene, order) for name, scene in data.costs(report).items() for order in ORDERS])
 
 
-def cheapest_case(name: str, scene: Data, other: str) -> Case:
-    zero, dear = (dig(scene, order, "added") for order in ("0", other))
-    if zero is None or dear is None:
+def cheapest_case(name: str, scene: Costs, other: str) -> Case:
+    times = added_times(scene, "0", other)
+    if times is None:
         return unmeasured(f"{name}, 0 and {other}", "the time")
-    return {"case": f"{name}, 0 and {other}", "verdict": at_least(difference(dear, zero), CLEARLY),
-            "detail": f"over none: 0 {told_added(zero)}, {other} {told_added(dear)}"}
+    zero, higher = times
+    return {"case": f"{name}, 0 and {other}", "verdict": at_least(difference(higher, zero), CLEARLY),
+            "detail": f"over none: 0 {added_text(zero)}, {other} {added_text(higher)}"}
 
 
-def cheapest(report: Data) -> Claim:
+def cheapest(report: Report) -> Claim:
     return made(
-        "cheapest", "paper", "As to the cost, order 0 is clearly the best.", "section 5",
-        f"Order 0 takes less time than 1 and than 2, by at least {CLEARLY:g} % of none's and beyond both intervals.",
-        [cheapest_case(name, scene, other)
-         for name, scene in by_scene(report, "cost").items() for other in ORDERS[1:]])
+        "cheapest", "paper", "Order 0 is clearly the cheapest.", "section 5",
+        f"Order 0 takes less time than 1 and than 2, by at least {CLEARLY:g} % of none's time for all values in the "
+        "intervals.",
+        [cheapest_case(name, scene, other) for name, scene in data.costs(report).items() for other in ORDERS[1:]])
 
 
-def second_case(name: str, none: float, zero: float, two: float, unit: str) -> Case:
-    """Of an error, of which less is better."""
+def second_case(name: str, errors: Sequence[float], unit: str) -> Case:
+    """Of the errors of none, 0 and 2."""
+    none, zero, two = errors
     slightly = none - zero >= MOST * (none - two)
     why = "2 is no better" if two >= zero else "" if slightly else "2 is much better"
     detail = f"none {none:.3g}{unit}, 0 {zero:.3g}{unit}, 2 {two:.3g}{unit}"
     return {"case": name, "verdict": decided(not why), "detail": f"{detail}: {why}" if why else detail}
 
 
-def second_cases(name: str, scene: Data) -> list[Case]:
+def flip_of(quality: Quality | None) -> float | None:
+    picture = quality and quality["hybrid"]
+    return picture and picture["flip"]
+
+
+def second_cases(name: str, scene: Methods) -> list[Case]:
     methods = ("none", "0", "2")
-    found, flips = shadow_error(scene, methods, "wrong"), [dig(scene, method, "hybrid", "flip") for method in methods]
+    found, flips = shadow_error(scene, methods, "wrong"), complete([flip_of(scene.get(method)) for method in methods])
     by_mask, by_eye = f"{name}, wrong pixels", f"{name}, FLIP"
-    return [second_case(by_mask, *found[1], " %") if found else unmeasured(by_mask, "wrong pixels"),
-            unmeasured(by_eye, "FLIP") if None in flips else second_case(by_eye, *flips, "")]
+    return [second_case(by_mask, found[1], " %") if found else unmeasured(by_mask, "wrong pixels"),
+            second_case(by_eye, flips, "") if flips else unmeasured(by_eye, "FLIP")]
 
 
-def second_order(report: Data) -> Claim:
+def second_order(report: Report) -> Claim:
     return made(
         "second-order", "paper", "Order 2 is slightly better, but there is no great difference.", "section 5",
-        f"2 has a smaller error than 0, and 0 already takes away at least {MOST:g} of what 2 takes away of none's. The "
-        "error is the share of wrong pixels, and the FLIP of the picture against one with true shadows, as the paper "
-        "judged by eye (and saw the cube alone).",
-        [case for name, scene in by_scene(report, "quality").items() for case in second_cases(name, scene)])
+        f"2 has a smaller error than 0, and 0 removes at least {MOST:g} of the error that 2 removes. There are two "
+        "errors: the share of wrong pixels, and the FLIP of the picture against one with true shadows, as the paper "
+        "judged by eye (and only the cube).",
+        [case for name, scene in data.qualities(report).items() for case in second_cases(name, scene)])
 
 
-def enough_wrong_case(name: str, scene: Data) -> Case:
+def enough_wrong_case(name: str, scene: Methods) -> Case:
     name = f"{name}, wrong pixels"
     found = shadow_error(scene, ("none", "0"), "wrong")
     if found is None:
@@ -317,7 +312,7 @@ def enough_wrong_case(name: str, scene: Data) -> Case:
             "detail": f"none {none:.2f} %, 0 {zero:.2f} %, so {100 * gone:.1f} % of them are gone; against {truth}"}
 
 
-def enough_edge_case(name: str, scene: Data, grain: float) -> Case:
+def enough_edge_case(name: str, scene: Methods, grain: float) -> Case:
     found = shadow_error(scene, ("0",), "edge_mean")
     if found is None:
         return unmeasured(f"{name}, edge", "the edge's distance")
@@ -326,34 +321,35 @@ def enough_edge_case(name: str, scene: Data, grain: float) -> Case:
             "detail": f"{away / grain:.2f} px from that of {truth}"}
 
 
-def enough(report: Data) -> Claim:
+def enough(report: Report) -> Claim:
     return made(
         "enough", "paper", "Order 0 is enough.", "section 5",
-        f"0 takes away at least {MOST:g} of none's wrong pixels, and leaves the edge on average less than {SEEN:g} px "
-        f"from the true one, in pixels of pictures {WIDTH} wide.",
-        [case for name, scene in by_scene(report, "quality").items()
+        f"0 corrects at least {MOST:g} of none's wrong pixels, and its edge is on average less than {SEEN:g} px from "
+        f"the true one, in pixels of a picture {WIDTH} pixels wide.",
+        [case for name, scene in data.qualities(report).items()
          for case in (enough_wrong_case(name, scene), enough_edge_case(name, scene, grain_of(report, name)))])
 
 
-def sweep_lines(sweep: Data) -> list[tuple[str, list[tuple[float, Data]]]]:
-    """For each value of the other axis its label, and the known cells by slope, from flat to steep; nothing where the
-    sweep is not over slopes."""
-    axes = {sweep[axis]["name"]: sweep[axis]["values"] for axis in "xy"}
-    if "slope" not in axes:
+Line = list[tuple[float, Shares]]  # the known cells of a sweep over slopes, from flat to steep
+
+
+def sweep_lines(sweep: Sweep) -> list[tuple[str, Line]]:
+    """A label and a line for each value of the other axis; an empty list where the sweep is not over slopes."""
+    if "slope" not in (sweep["x"]["name"], sweep["y"]["name"]):
         return []
     across = sweep["x"]["name"] == "slope"
-    table = sweep["wrong"] if across else zip(*sweep["wrong"], strict=True)
-    other = sweep["y" if across else "x"]
+    table = sweep["wrong"] if across else [list(column) for column in zip(*sweep["wrong"], strict=True)]
+    slopes, other = (sweep["x"], sweep["y"]) if across else (sweep["y"], sweep["x"])
     lines = []
     for value, cells in zip(other["values"], table, strict=True):
-        known = [(slope, cell) for slope, cell in zip(axes["slope"], cells, strict=True) if cell]
+        known = [(slope, cell) for slope, cell in zip(slopes["values"], cells, strict=True) if cell]
         lines.append((f"{other['name']} {value:g}", sorted(known, key=lambda point: point[0])))
     return lines
 
 
-def reach(line: Sequence[tuple[float, Data]], method: str) -> tuple[str, str]:
-    """Whether large slopes are out of the method's reach on a line of cells, and the last one before it goes wrong."""
-    wrong = [(slope, cell[method]) for slope, cell in line if cell.get(method) is not None]
+def reach(line: Line, method: str) -> tuple[str, str]:
+    """Whether large slopes are out of the method's reach, and the largest slope before it goes wrong."""
+    wrong = [(slope, share) for slope, cell in line if (share := cell.get(method)) is not None]
     if not wrong:
         return UNMEASURED, UNMEASURED
     right = [slope for slope, _ in itertools.takewhile(lambda point: point[1] <= RIGHT, wrong)]
@@ -365,126 +361,129 @@ def reach(line: Sequence[tuple[float, Data]], method: str) -> tuple[str, str]:
     return UNMEASURED, f"{last}, steeper ones not measured"
 
 
-def amplitude_case(sweep: Data, order: str) -> Case:
+def amplitude_case(sweep: Sweep, order: str) -> Case:
     found = [(label, *reach(line, order)) for label, line in sweep_lines(sweep)]
     return {"case": f"{sweep['id']}, {order}", "verdict": overall(verdict for _, verdict, _ in found),
             "detail": "; ".join(f"{label}: {text}" for label, _, text in found)}
 
 
-def amplitude(report: Data) -> Claim:
+def amplitude(report: Report) -> Claim:
     sweeps = [sweep for sweep in report.get("sweeps") or [] if sweep_lines(sweep)]
     return made(
-        "amplitude", "paper", "The method is difficult to apply where the relief is large.", "section 7",
-        f"The order exceeds {RIGHT:g} % wrong pixels (against kage's exact) before slopes of {LARGE_SLOPE:g}, 45 "
-        "degrees. Told is the largest slope before it does.",
+        "amplitude", "paper", "The method is difficult to use where the bumps are high.", "section 7",
+        f"The order has more than {RIGHT:g} % wrong pixels (against kage's exact) at a slope below {LARGE_SLOPE:g}, 45 "
+        "degrees. The cases give the largest slope before that.",
         [amplitude_case(sweep, order) for sweep in sweeps for order in ORDERS])
 
 
-def intersection_case(name: str, scene: Data, dear: str) -> Case:
-    name = f"{name}, {dear}"
-    times = [dig(scene, method, "added") for method in ("0", dear)]
-    if None in times:
+def intersection_case(name: str, scene: Costs, method: str) -> Case:
+    name, times = f"{name}, {method}", added_times(scene, "0", method)
+    if times is None:
         return unmeasured(name, "the time")
     zero, other = map(over_none, times)
     found = ratio(other, zero)
-    return {"case": name, "verdict": at_least(found, EXPENSIVE), "detail": told(found, ".1f", "times order 0")}
+    return {"case": name, "verdict": at_least(found, EXPENSIVE), "detail": interval_text(found, ".1f", "times order 0")}
 
 
-def intersection_peer_case(report: Data, displaced: Data) -> Case:
-    name, ours = f"{displaced['scene']}, {displaced['name']}", dig(displaced, "ns")
+def intersection_peer_case(report: Report, displaced: Peer) -> Case:
+    name, ours = f"{displaced['scene']}, {displaced['name']}", displaced["ns"]
     bases = [(base, ns) for base in FLAT_PEERS if (ns := peer_ns(report, base, displaced["scene"])) is not None]
     if ours is None or not bases:
         return unmeasured(name, "the time")
     base, ns = bases[0]
-    found = dig(displaced, "times", base) or ratio(ours, ns)
+    found = peer_times(displaced, base) or ratio(ours, ns)
     return {"case": name, "verdict": at_least(found, EXPENSIVE),
-            "detail": told(found, ".1f", f"times {base.removeprefix(PEER)}")}
+            "detail": interval_text(found, ".1f", f"times {base.removeprefix(PEER)}")}
 
 
-def intersection(report: Data) -> Claim:
-    displaced = [peer for peer in peers(report) if peer["name"].startswith(PEER) and peer["name"] not in FLAT_PEERS]
+def intersection(report: Report) -> Claim:
+    displaced = [peer for peer in data.peers(report)
+                 if peer["name"].startswith(PEER) and peer["name"] not in FLAT_PEERS]
     return made(
-        "intersection", "paper", "To intersect the rough surface itself costs much, in general.",
+        "intersection", "paper", "To intersect rays with the rough surface itself is expensive in general.",
         "Japanese abstract, sections 1 and 2",
-        f"At least {EXPENSIVE:g} times order 0's time in kage, where exact intersects it for the shadow ray's start "
-        "alone and displaced for every ray; and in POV-Ray, by its every way to displace, that many times what "
-        "bump_map takes (where the scene has none: the smooth surface).",
-        [*(intersection_case(name, scene, dear)
-           for name, scene in by_scene(report, "cost").items() for dear in ("exact", "displaced")),
+        f"In kage at least {EXPENSIVE:g} times order 0's time, by exact, which intersects it only for the start of the "
+        f"shadow ray, and by displaced, which intersects it for every ray. In POV-Ray at least {EXPENSIVE:g} times "
+        "bump_map's time (without one: the smooth surface's), by each of its ways to displace.",
+        [*(intersection_case(name, scene, method)
+           for name, scene in data.costs(report).items() for method in ("exact", "displaced")),
          *(intersection_peer_case(report, peer) for peer in displaced)])
 
 
 # kage's own -----------------------------------------------------------------------------------------
 
 
-def speed_case(report: Data, method: str) -> Case:
-    ours, theirs = dig(by_scene(report, "cost"), PAPER_SCENE, method, "ns"), peer_ns(report, BUMP_MAP, PAPER_SCENE)
+def speed_case(report: Report, method: str) -> Case:
+    entry, theirs = data.cost(report, PAPER_SCENE, method), peer_ns(report, BUMP_MAP, PAPER_SCENE)
+    ours = entry and entry["ns"]
     if ours is None or theirs is None:
         return unmeasured(method, "POV-Ray's time" if theirs is None else "the time")
-    found = dig(peer_of(report, BUMP_MAP, PAPER_SCENE), "times", method) or ratio(theirs, ours)
-    return {"case": method, "verdict": at_least(found, FASTER), "detail": told(found, ".1f", "times as fast")}
+    found = peer_times(peer_of(report, BUMP_MAP, PAPER_SCENE), method) or ratio(theirs, ours)
+    return {"case": method, "verdict": at_least(found, FASTER), "detail": interval_text(found, ".1f", "times as fast")}
 
 
-def speed(report: Data) -> Claim:
+def speed(report: Report) -> Claim:
     return made(
         "speed", "kage",
         f"On figure 5's scene none and order 0 are at least {FASTER:g} times as fast as POV-Ray's bump_map.",
         "README.md, docs/design.md",
-        f"POV-Ray's time is at least {FASTER:g} times kage's; one thread each, the median of the rounds' ratios.",
+        f"POV-Ray's time is at least {FASTER:g} times kage's, by the interval of the rounds' ratios; one thread each.",
         [speed_case(report, method) for method in ("none", "0")])
 
 
-def order_0(report: Data) -> Claim:
-    added = dig(by_scene(report, "cost"), PAPER_SCENE, "0", "added")
+def order_0(report: Report) -> Claim:
+    added = data.added_cost(data.cost(report, PAPER_SCENE, "0"))
     case: Case = (unmeasured(PAPER_SCENE, "the time") if added is None else
-                  {"case": PAPER_SCENE, "verdict": at_most(added, ORDER_0_COST), "detail": told_added(added)})
+                  {"case": PAPER_SCENE, "verdict": at_most(added, ORDER_0_COST), "detail": added_text(added)})
     return made("order-0", "kage", f"On figure 5's scene order 0 costs at most {ORDER_0_COST:g} % over none.",
                 "README.md, docs/design.md",
                 f"At most {ORDER_0_COST:g} % over none's time, by the interval of the rounds' differences.", [case])
 
 
-def merit_case(report: Data, truth: str) -> Case:
+def merit_case(report: Report, truth: Truth) -> Case:
     name = f"against {TRUTHS[truth]}"
-    wrong = [dig(by_scene(report, "quality"), MERIT_SCENE, method, truth, "wrong") for method in MERIT]
-    if None in wrong:
+    wrong = mask_metrics(data.qualities(report).get(MERIT_SCENE, {}), MERIT, truth, "wrong")
+    if wrong is None:
         return unmeasured(name, "wrong pixels")
     shares = zip(MERIT, wrong, strict=True)
-    return {"case": name, "verdict": decided(all(a > b for a, b in zip(wrong, wrong[1:], strict=False))),
+    return {"case": name, "verdict": decided(all(a > b for a, b in itertools.pairwise(wrong))),
             "detail": ", ".join(f"{method} {share:.3f} %" for method, share in shares)}
 
 
-def merit(report: Data) -> Claim:
+def merit(report: Report) -> Claim:
     return made(
-        "merit", "kage", f"On function data ({MERIT_SCENE}) each is better than the one before: {', '.join(MERIT)}.",
-        "docs/method.md", f"Fewer and fewer wrong pixels on {MERIT_SCENE}, from {MERIT[0]} to {MERIT[-1]}.",
+        "merit", "kage",
+        f"On function data ({MERIT_SCENE}) each method is better than the one before: {', '.join(MERIT)}.",
+        "docs/method.md", f"Each of {', '.join(MERIT)} has fewer wrong pixels on {MERIT_SCENE} than the one before.",
         [merit_case(report, truth) for truth in TRUTHS])
 
 
-def parity_case(scene: str, found: Data, kind: str) -> Case:
-    name, value = f"{scene}, {kind}", found.get(kind)
-    if value is None:
-        return unmeasured(name, "the agreement")
-    if kind in LEAST_CLOSE:
-        return {"case": name, "verdict": decided(value >= LEAST_CLOSE[kind]),
-                "detail": f"{value:.2f} % of the pixels within 1/255"}
-    return {"case": name, "verdict": decided(value <= MOST_DIFFERENT[kind]),
-            "detail": f"{value:.3f} % of the shadow's pixels differ"}
+def parity_cases(scene: str, found: Parity) -> list[Case]:
+    cases: list[Case] = []
+    for kind, close in (("self", found["self"]), ("cast", found["cast"])):
+        name = f"{scene}, {kind}"
+        cases.append(unmeasured(name, "the agreement") if close is None else {
+            "case": name, "verdict": decided(close >= LEAST_CLOSE[kind]),
+            "detail": f"{close:.2f} % of the pixels within 1/255"})
+    name, wrong = f"{scene}, mask", found["mask"]
+    cases.append(unmeasured(name, "the agreement") if wrong is None else {
+        "case": name, "verdict": decided(wrong <= MOST_DIFFERENT),
+        "detail": f"{wrong:.3f} % of the shadow's pixels differ"})
+    return cases
 
 
-def parity(report: Data) -> Claim:
-    parities = dig(report, "quality", "parity") or {}
+def parity(report: Report) -> Claim:
     return made(
-        "parity", "kage", "kage's own displacement shows what POV-Ray's does.", "README.md",
-        f"Within 1/255 at least {LEAST_CLOSE['self']:g} % of the pixels where rough surfaces cast shadows too (self), "
-        f"and {LEAST_CLOSE['cast']:g} % where only other objects do (cast); of the shadow's pixels at most "
-        f"{MOST_DIFFERENT['mask']:g} % differ (mask).",
-        [parity_case(scene, found, kind)
-         for scene, found in parities.items() if found for kind in (*LEAST_CLOSE, *MOST_DIFFERENT)])
+        "parity", "kage", "kage's own displacement looks like POV-Ray's.", "README.md",
+        f"At least {LEAST_CLOSE['self']:g} % of the pixels are within 1/255 where rough surfaces also cast shadows "
+        f"(self), and at least {LEAST_CLOSE['cast']:g} % where only other objects do (cast). "
+        f"At most {MOST_DIFFERENT:g} % of the shadow's pixels differ (mask).",
+        [case for scene, found in data.parities(report).items() if found for case in parity_cases(scene, found)])
 
 
 ALL = (detached, follows, cheap, cheapest, second_order, enough, amplitude, intersection, speed, order_0, merit, parity)
 
 
-def claims(report: Data) -> list[Claim]:
-    """All claims, the paper's first, judged by the data of a report, of which any part may be null."""
+def claims(report: Report) -> list[Claim]:
+    """All claims, the paper's first, judged by the data of a report. Any part of it may be missing."""
     return [judge(report) for judge in ALL]

@@ -1,7 +1,8 @@
-"""What the methods cost: times, instructions, memory; and what other programs take for the like.
+"""What the methods cost: time, instructions, memory; and what other programs take for similar work.
 
-A round measures everything once, so that what the machine does beside hits all alike; the methods of a scene stand next to each
-other in it, up and down in turn. kage's time is that of the render, without reading the scene and writing the picture.
+A round measures everything once, so that whatever else the machine does slows all alike. In a round the methods of a
+scene come one after the other; the next round takes them in the opposite order. kage's time is that of the render,
+without reading the scene and writing the picture.
 """
 
 from __future__ import annotations
@@ -20,14 +21,15 @@ from bench.store import Inputs, Value
 
 POVRAY = "POV-Ray"
 POV_SCENES = {"bump_map": "cube_bump_map", "height_field": "cube_height_field"}  # of the scene cube, in bench/
-DISPLACED = {"waves": "isosurface", "torus": "isosurface", "cube": "mesh2"}  # what `kage pov` makes of them; other meshes are larger
+# What `kage pov` makes of a displaced scene. Other scenes give larger meshes, which are not timed.
+DISPLACED = {"waves": "isosurface", "torus": "isosurface", "cube": "mesh2"}
 
 
 # kage ---------------------------------------------------------------------------------------------
 
 
 def command(bench: Bench, scene: Facts, method: str, size: Size, png: Path) -> list[Word]:
-    """An 8-bit PNG is the smallest output that kage has, and is not part of the time."""
+    """Render to an 8-bit PNG, the smallest output that kage has. To write it is not part of the time."""
     options = (*programs.method_options(method), *programs.size_options(size))
     return [bench.kage, "render", scene.file, *options, "-o", png, "--threads", "1", "--stats", "--quiet"]
 
@@ -37,6 +39,7 @@ def shown(bench: Bench, scene: Facts, method: str) -> str:
 
 
 def with_png(work: Callable[[Path], Value]) -> Value:
+    """Do the work with the path of a picture that is soon deleted."""
     with tempfile.TemporaryDirectory() as folder:
         return work(Path(folder) / "a.png")
 
@@ -60,10 +63,15 @@ def count_kage(bench: Bench, scene: Facts, method: str) -> Value:
 
 
 def weigh_kage(bench: Bench, scene: Facts, method: str) -> Value:
-    return with_png(lambda png: {"memory": programs.peak_memory(command(bench, scene, method, bench.level.cost_size, png))})
+    size = bench.level.cost_size
+    return with_png(lambda png: peak_memory(command(bench, scene, method, size, png)))
 
 
-# The others ---------------------------------------------------------------------------------------
+def peak_memory(words: Sequence[Word]) -> Value:
+    return {"memory": programs.peak_memory(words)}
+
+
+# Other programs -----------------------------------------------------------------------------------
 
 
 def time_povray(scene: Path, size: Size) -> Value:
@@ -111,9 +119,10 @@ def kage_round(bench: Bench, number: int) -> list[Job]:
 
 
 def kage_once(bench: Bench) -> list[Job]:
-    """What noise does not touch, or little: instructions and memory."""
+    """What has little or no noise: instructions and memory."""
     level = bench.level
-    counted = [scene for scene in bench.scenes.values() if scene.name in level.count_scenes and shutil.which("valgrind")]
+    names = level.count_scenes if shutil.which("valgrind") else ()
+    counted = [scene for scene in bench.scenes.values() if scene.name in names]
     return [
         Job(f"count {scene.name} {method}", kage_inputs(bench, scene, level.count_size, method=method),
             functools.partial(count_kage, bench, scene, method), Stage.MEASURES, 4)
@@ -152,8 +161,8 @@ def povray_job(bench: Bench, version: str, scene: PovScene, name: str, work: Cal
     kind, _, path, made = scene
     size = bench.level.povray_size
     file = programs.file_digest(path) if made is None else [made.inputs, path.name]
-    return Job(name, machine_inputs(povray=version, size=list(size), file=file), functools.partial(work, path, size), Stage.TIMES,
-               6 if "mesh2" in kind else 1)
+    return Job(name, machine_inputs(povray=version, size=list(size), file=file), functools.partial(work, path, size),
+               Stage.TIMES, 6 if "mesh2" in kind else 1)
 
 
 def povray_round(bench: Bench, number: int, version: str, scenes: Sequence[PovScene]) -> list[Job]:
@@ -161,7 +170,7 @@ def povray_round(bench: Bench, number: int, version: str, scenes: Sequence[PovSc
 
 
 def weigh_povray(scene: Path, size: Size) -> Value:
-    return {"memory": programs.peak_memory(programs.povray_command(scene, size))}
+    return peak_memory(programs.povray_command(scene, size))
 
 
 def povray_memory(bench: Bench, version: str, scenes: Sequence[PovScene]) -> list[Job]:
@@ -173,8 +182,9 @@ FUSED = "fused loop for this scene"
 
 
 def limits(bench: Bench) -> tuple[dict[str, Path], list[str]]:
-    """The yardsticks that build here, and why others do not; they are written for gcc, x86-64 and Embree 3."""
-    built, faults = {}, []
+    """The yardsticks that build here, and why others do not. They need gcc, x86-64 and Embree 3."""
+    built: dict[str, Path] = {}
+    faults: list[str] = []
     for name in ("fused_kernel", "embree_loop"):
         try:
             built[name] = programs.build_limit(name, bench.out / "limits")
@@ -184,15 +194,16 @@ def limits(bench: Bench) -> tuple[dict[str, Path], list[str]]:
 
 
 def limits_round(number: int, built: dict[str, Path]) -> list[Job]:
-    """At 1920 x 1080, the best of several repeats, whatever the level."""
-    found = []
+    """At 1920 x 1080, the best of several repeats, at every level."""
+    found: list[Job] = []
     for program, path in built.items():
         inputs = machine_inputs(source=programs.file_digest(programs.LIMITS / f"{program}.c"))
         if program == "fused_kernel":
-            found.append(Job(f"time cube {FUSED} {number}", inputs, functools.partial(time_fused, path), Stage.TIMES, 2))
+            work = functools.partial(time_fused, path)
+            found.append(Job(f"time cube {FUSED} {number}", inputs, work, Stage.TIMES, 2))
         else:
-            found += [Job(f"time cube {name} {number}", inputs | {"grid": grid}, functools.partial(time_embree, path, grid),
-                          Stage.TIMES, 3) for name, grid in EMBREE.items()]
+            found += [Job(f"time cube {name} {number}", inputs | {"grid": grid},
+                          functools.partial(time_embree, path, grid), Stage.TIMES, 3) for name, grid in EMBREE.items()]
     return found
 
 
@@ -201,6 +212,6 @@ def limits_memory(built: dict[str, Path]) -> list[Job]:
         return []
     inputs = machine_inputs(source=programs.file_digest(programs.LIMITS / "embree_loop.c"))
     path = built["embree_loop"]
-    return [Job(f"memory cube {name}", inputs | {"grid": grid},
-                functools.partial(lambda grid: {"memory": programs.peak_memory([path, str(grid)])}, grid), Stage.TIMES, 3)
+    return [Job(f"memory cube {name}", inputs | {"grid": grid}, functools.partial(peak_memory, [path, str(grid)]),
+                Stage.TIMES, 3)
             for name, grid in EMBREE.items()]

@@ -4,14 +4,13 @@ wrong       pixels that differ, in % of the true shadow's; above 100 where more 
 iou         intersection over union of the two shadows, 0 to 1
 edge_...    distances between the two shadows' edges, in pixels
 
-An edge is the set of the midpoints between two pixels that share a side, are both counted, and of which one is in
-shadow and the other lit. So it lies between pixels, is the same for a shadow and for its negative, and where the
-receiver's silhouette or its unlit side cuts a shadow off is no edge: counting ends there. For each point of either edge
-the distance to the nearest point of the other is taken, and of all these together, of both edges, the mean, the 95th
-percentile and the largest, which is the Hausdorff distance. One stray pixel far from the other edge is enough for a
-large Hausdorff distance.
+An edge is the set of the midpoints between two pixels that share a side, where both are counted, one is in shadow and
+the other is lit. So an edge is the same for a shadow and for its negative. There is no edge where a shadow ends at the
+receiver's silhouette or at its unlit side, as the pixels beyond are not counted. Each point of either edge has a
+distance to the nearest point of the other edge. The metrics are the mean, the 95th percentile and the largest of the
+distances of both edges together. The largest is the Hausdorff distance; one stray pixel can make it large.
 
-None stands for what is not defined: a share of no shadow, a distance from no edge.
+None is a share of no shadow or a distance from no edge.
 """
 
 from __future__ import annotations
@@ -57,7 +56,7 @@ def edge(shadow: np.ndarray, counted: np.ndarray) -> np.ndarray:
     check(shadow, counted)
     down = counted[1:] & counted[:-1] & (shadow[1:] != shadow[:-1])
     right = counted[:, 1:] & counted[:, :-1] & (shadow[:, 1:] != shadow[:, :-1])
-    return np.concatenate([np.argwhere(down) + (0.5, 0.0), np.argwhere(right) + (0.0, 0.5)])
+    return np.concatenate([np.argwhere(down) + np.array([0.5, 0.0]), np.argwhere(right) + np.array([0.0, 0.5])])
 
 
 def edge_distances(a: np.ndarray, b: np.ndarray, counted: np.ndarray) -> Distances | None:

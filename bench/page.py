@@ -1,7 +1,7 @@
-"""A report as one HTML page that needs nothing beside it: pictures, plots, style and script are inside.
+"""A report as one HTML page that needs no other file: pictures, plots, style and script are inside.
 
-Each picture is in it once, in the contact sheets; the script of the slider takes them from there. Without a script
-there is all but the slider.
+Each picture is in it once, in the contact sheets; the slider's script takes them from there. Without scripts the page
+lacks only the slider.
 """
 
 from __future__ import annotations
@@ -12,18 +12,19 @@ import re
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
-from bench import plots, tables
-from bench.tables import Report, dig, method_name
+from bench import data, plots, tables
+from bench.data import Report, Sweep, dig
+from bench.tables import method_name
 
 if TYPE_CHECKING:
     from PIL import Image
 
 TEMPLATES = Path(__file__).resolve().parent / "templates"
-QUALITY = 95  # of WebP: no difference to be seen, a tenth of PNG's size
+QUALITY = 95  # of WebP: no visible difference, a tenth of PNG's size
 
-# What the levels of a `wrong` picture are laid over the grey picture as: red, green, blue, opacity.
+# The colour of each level of a `wrong` picture, over the grey picture: red, green, blue, opacity.
 OVERLAY = (
     (255, 255, 255, 150),  # not counted: faded
     (0, 0, 0, 0),  # right and lit
@@ -40,7 +41,7 @@ VERDICTS = {  # symbol, class in the style
 
 @dataclass(frozen=True)
 class Picture:
-    """One picture of a contact sheet. `over` are its wrong pixels, to be laid over it."""
+    """One picture of a contact sheet. `over` shows its wrong pixels; the page draws that over it."""
 
     name: str
     alt: str
@@ -63,9 +64,10 @@ class Sheet:
 # Pictures -----------------------------------------------------------------------------------------------------
 
 
-def data_uri(picture: Image.Image, **how: object) -> str:
+def data_uri(picture: Image.Image, **options: bool | int) -> str:
+    """The picture as WebP; the options are Pillow's."""
     out = io.BytesIO()
-    picture.save(out, format="WEBP", **how)
+    picture.save(out, format="WEBP", **options)
     return "data:image/webp;base64," + base64.b64encode(out.getvalue()).decode()
 
 
@@ -77,7 +79,7 @@ def embed_picture(path: Path) -> tuple[str, tuple[int, int]]:
 
 
 def embed_wrong(path: Path) -> str:
-    """The levels as colours. Lossless, as the pixels are what it is about."""
+    """The levels as colours. Lossless, as each pixel counts."""
     import numpy as np
     from PIL import Image
 
@@ -88,17 +90,21 @@ def embed_wrong(path: Path) -> str:
 
 
 def method_caption(report: Report, scene: str, method: str) -> str:
+    """The method's wrong pixels and added time, where they are known."""
     wrong = tables.wrong_pixels(report, scene, method)
-    cost = dig(tables.added_cost(report, scene, method), "median")
-    parts = [f"{tables.share(wrong)} % wrong"] * (wrong is not None)
-    parts += [f"{tables.added(cost)} % time"] * (cost is not None)
+    added = data.median(tables.added_cost(report, scene, method))
+    parts = [f"{tables.share(wrong)} % wrong"] if wrong is not None else []
+    parts += [f"{tables.added(added)} % time"] if added is not None else []
     return ", ".join(parts).replace(" %", "\N{NO-BREAK SPACE}%")
 
 
-def make_sheets(report: Report, folder: Path, missing: Callable[[str], None]) -> list[Sheet]:
-    """A sheet for each scene. `missing` is told of what can't be read."""
+Embedded = TypeVar("Embedded")
 
-    def read(embed: Callable, name: str | None) -> object:
+
+def make_sheets(report: Report, folder: Path, missing: Callable[[str], None]) -> list[Sheet]:
+    """A sheet for each scene. `missing` gets a line for each picture that can't be read."""
+
+    def read(embed: Callable[[Path], Embedded], name: str | None) -> Embedded | None:
         if name is None:
             return None
         try:
@@ -108,16 +114,15 @@ def make_sheets(report: Report, folder: Path, missing: Callable[[str], None]) ->
             return None
 
     sheets = []
-    for scene, entry in (dig(report, "pictures", "scenes") or {}).items():
+    for scene, entry in report["pictures"]["scenes"].items():
         sheet = Sheet(scene, tables.scene_title(report, scene))
-        for reference in entry.get("references") or []:
+        for reference in entry["references"]:
             if found := read(embed_picture, reference["file"]):
                 name = reference["name"]
                 sheet.references.append(Picture(name, f"{sheet.title}: {name}", *found, None, "reference"))
-        for method in report["methods"]:
-            files = dig(entry, "methods", method)
-            if files and (found := read(embed_picture, files["file"])):
-                name, over = method_name(method), read(embed_wrong, files.get("wrong"))
+        for method, files in tables.in_order(report, entry["methods"]).items():
+            if found := read(embed_picture, files["file"]):
+                name, over = method_name(method), read(embed_wrong, files["wrong"])
                 sheet.methods.append(Picture(name, f"{sheet.title}: {name}", *found, over,
                                              method_caption(report, scene, method)))
         if sheet.references or sheet.methods:
@@ -130,7 +135,7 @@ def make_sheets(report: Report, folder: Path, missing: Callable[[str], None]) ->
 
 @dataclass
 class Plots:
-    """SVG by scene, or by sweep; empty where matplotlib is missing."""
+    """SVG texts, by scene; maps by sweep, with their bounds. Empty where matplotlib is missing."""
 
     cost_error: dict[str, str] = field(default_factory=dict)
     stages: dict[str, str] = field(default_factory=dict)
@@ -153,8 +158,8 @@ def make_plots(report: Report) -> Plots:
     return found
 
 
-def map_legend(sweep: dict) -> list[tuple[str, str, str]]:
-    """Colour, sign and meaning of what is in a sweep's maps."""
+def map_legend(sweep: Sweep) -> list[tuple[str, str, str]]:
+    """The colour, sign and meaning of each kind of cell in a sweep's maps."""
     cells = [cell for row in sweep["wrong"] for cell in row if cell is not None]
     used = {tables.cheapest(cell, sweep["by_cost"], bound) for cell in cells for bound in tables.BOUNDS}
     legend = [(plots.cell_colour(m), m, tables.method_about(m)) for m in sweep["by_cost"] if m in used]
@@ -167,8 +172,8 @@ def map_legend(sweep: dict) -> list[tuple[str, str, str]]:
 
 
 def sections(report: Report, sheets: list[Sheet]) -> list[tuple[str, str]]:
-    """Ids and titles of the parts that there is something to show of."""
-    return [(name, title) for name, title, there in (
+    """Ids and titles of the parts that have something to show."""
+    parts: tuple[tuple[str, str, object], ...] = (
         ("answer", "The answer", report.get("answer")),
         ("table", "All methods", True),
         ("cost-error", "Cost against error", True),
@@ -177,21 +182,22 @@ def sections(report: Report, sheets: list[Sheet]) -> list[tuple[str, str]]:
         ("sweeps", "Where which method is enough", report.get("sweeps")),
         ("slopes", "How fast the error shrinks", report.get("slopes")),
         ("claims", "The claims", report.get("claims")),
-        ("quality", "Quality in detail", dig(report, "quality", "scenes")),
-        ("cost", "Cost in detail", dig(report, "cost", "scenes")),
+        ("quality", "Quality in detail", data.qualities(report)),
+        ("cost", "Cost in detail", data.costs(report)),
         ("measured", "How it was measured", True),
-    ) if there]
+    )
+    return [(name, title) for name, title, there in parts if there]
 
 
 def code(text: str) -> str:
-    """As HTML, with what stands between backticks as code."""
+    """As HTML, with text between backticks as code."""
     from markupsafe import Markup, escape
 
-    return Markup(re.sub(r"`([^`]+)`", r"<code>\1</code>", str(escape(text))))
+    return Markup(re.sub(r"`([^`]+)`", r"<code>\1</code>", str(escape(text))))  # noqa: S704 - escaped just here
 
 
 def render(report: Report, folder: Path) -> tuple[str, list[str]]:
-    """The page, and a line for each thing that had to be left out of it. Without Jinja2: an ImportError."""
+    """The page, and a line for each thing that is left out of it. Without Jinja2: an ImportError."""
     import jinja2
 
     messages: list[str] = []

@@ -7,9 +7,10 @@ from pathlib import Path
 
 from bench import programs
 from bench.programs import TOP, Size
+from reference.references import scene_digest
 
-METHODS = ("none", "0", "1", "1 bare", "2", "2 bare", "2+", "iter:2", "iter:4", "march:2", "march:4", "march:8", "exact",
-           "displaced")
+METHODS = ("none", "0", "1", "1 bare", "2", "2 bare", "2+", "iter:2", "iter:4", "march:2", "march:4", "march:8",
+           "exact", "displaced")
 FEWER = ("none", "0", "1", "2", "2+", "march:4", "exact", "displaced")
 
 TITLES = {
@@ -30,11 +31,11 @@ class Level:
     rounds: int  # of everything that is timed
     cost_size: Size
     povray_size: Size  # per pixel it is the same at any
-    mesh_size: Size | None  # that the meshes for POV-Ray are made for; None: without them, as POV-Ray parses them for seconds
-    yardsticks: bool  # bench/limits, too
+    mesh_size: Size | None  # the meshes for POV-Ray are as fine as this picture needs; None: no meshes, they take long
+    yardsticks: bool  # whether those of bench/limits are timed
     count_size: Size  # for valgrind
     count_scenes: tuple[str, ...]
-    reference_scale: int  # the references are so many times as wide and high as those that are kept in reference/
+    reference_scale: int  # the references' width and height, in those of reference/
     slopes: tuple[float, ...]  # of the sweeps
     angles: tuple[float, ...]
     frequencies: tuple[float, ...]
@@ -60,7 +61,7 @@ LEVELS = {
 
 @dataclass(frozen=True)
 class Facts:
-    """What `kage check` tells of a scene, and a digest of all it is made of."""
+    """What `kage check` prints of a scene, and a digest of all its files."""
 
     name: str
     light: str
@@ -77,7 +78,7 @@ class Facts:
 
 @dataclass(frozen=True)
 class Bench:
-    """All that a job may ask for."""
+    """What the jobs depend on."""
 
     kage: Path
     kage_digest: str
@@ -90,18 +91,16 @@ class Bench:
         return TOP / "reference" if self.level.reference_scale == 1 else self.out / "reference"
 
     def picture(self, scene: str, name: str) -> Path:
-        """A PNG that the report shows; the size is in the path, so that levels don't overwrite each other's."""
+        """A PNG for the report. The scale is in the path, so that one level does not overwrite another's."""
         return self.out / "pictures" / f"{self.level.reference_scale}x" / scene / f"{name}.png"
 
     def truth(self, scene: str, name: str) -> Path:
-        """A render that others are compared with, by what it depends on."""
+        """A render that others are compared with. All that it depends on is in the path."""
         return self.out / "truths" / f"{scene}-{name}-{self.kage_digest}-{self.scenes[scene].digest[:16]}" \
                                      f"-{self.level.reference_scale}x.exr"
 
 
 def facts(kage: Path, name: str) -> Facts:
-    from reference.references import scene_digest
-
     scene = f"scenes/{name}.yaml"
     found = programs.parse_check(programs.run([kage, "check", scene]))
-    return Facts(name=name, digest=scene_digest(TOP / scene), **found)  # type: ignore[arg-type]
+    return Facts(name=name, digest=scene_digest(TOP / scene), **found)

@@ -1,7 +1,7 @@
-"""A report's plots, as SVG that stands inside the page.
+"""A report's plots, as SVG inside the page.
 
-The same data give the same bytes: no date, and ids salted by a fixed string. Text stays text, in the page's own font;
-matplotlib sets it by the metrics of DejaVu Sans, which is wider than most, so what has room here has room there.
+The same data give the same bytes: no date, and ids from a fixed salt. Text stays text, in the page's own font. Its
+place is computed for DejaVu Sans, which is wider than most fonts, so text that has room here has room on the page.
 Colours are names of the page's CSS (`var(--orders)`), the ink is `currentColor`: one plot serves the dark page and the
 light one.
 
@@ -18,17 +18,22 @@ import re
 import textwrap
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, Any, ParamSpec, TypedDict, TypeVar
 
-from bench import tables
-from bench.tables import MISSING, Report, cheapest, dig, method_name
+import numpy as np
+
+from bench import data, images, tables
+from bench.data import Report, Slopes, Sweep
+from bench.tables import MISSING, cheapest, method_name
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+    from matplotlib.patches import Rectangle
+    from matplotlib.ticker import Locator
 
-# Okabe and Ito's colours, and the names that the page's CSS gives them. Ink and page are unlikely colours, to be found
-# again.
+# Okabe and Ito's colours, and their names in the page's CSS. Ink and page are colours that nothing else has, so that
+# they can be found and replaced.
 INK, PAGE = "#0a0b0c", "#fdfeff"
 NAMED = {INK: "currentColor", PAGE: "var(--page)"}
 BLUE, GREEN, VERMILLION, PURPLE, GREY = "#0072b2", "#009e73", "#d55e00", "#cc79a7", "#999999"
@@ -38,7 +43,7 @@ FAMILIES = {  # colour, marker, the colour's name in CSS
 }
 NAMED |= {colour: f"var({name})" for colour, _, name in FAMILIES.values() if name}
 
-CELLS = {  # of the sweeps' maps, the same on the dark page and the light one: the text in them tells as much
+CELLS = {  # of the sweeps' maps, the same on the dark page and the light one: the text in them says the same
     "none": "#e4e4e4", "0": "#b9dff5", "1": "#6fbdea", "1 bare": "#a3bccb", "2": "#2b86bd", "2 bare": "#7596ab",
     "2+": "#dba3c3", "iter:2": "#9fdcc8", "iter:4": "#2fae8a", "march:2": "#fbdc94", "march:4": "#eeac2b",
     "march:8": "#de7a2a", "exact": "#f0e442", "displaced": "#c2b280",
@@ -47,10 +52,11 @@ CELL_FAMILY = {"iter": "#2fae8a", "march": "#de7a2a"}
 CELL_NONE_GOOD = "#4a4a4a"
 CELL_DARK, CELL_LIGHT = "#010203", "#fafbfc"  # text in a cell
 
-# Of the stages' bars, the same on both pages, too; a step beside the colours above, which the page's CSS may change.
+# Of the stages' bars, the same on both pages too. Each differs by one from the colours above, which the page's CSS may
+# change.
 STAGES = ("#c8c8c8", "#e69f01", "#f0e443", "#8c6d46", "#56b4ea", "#cc79a8", "#d55e01", "#0072b3", "#009e74", "#6b6b6b")
 
-SETTINGS = {
+SETTINGS: dict[Any, object] = {  # the keys are matplotlib's
     "svg.fonttype": "none", "svg.hashsalt": "kage", "font.family": "DejaVu Sans", "font.size": 9.5, "text.color": INK,
     "axes.edgecolor": INK, "axes.labelcolor": INK, "xtick.color": INK, "ytick.color": INK, "axes.spines.top": False,
     "axes.spines.right": False, "axes.linewidth": 0.7, "xtick.major.width": 0.7, "ytick.major.width": 0.7,
@@ -85,20 +91,21 @@ def cell_colour(method: str | None) -> str:
 # From matplotlib to the page ----------------------------------------------------------------------------------
 
 
-Plot = TypeVar("Plot", bound=Callable)
+Arguments = ParamSpec("Arguments")
+Drawn = TypeVar("Drawn")
 
 
-def styled(plot: Plot) -> Plot:
+def styled(plot: Callable[Arguments, Drawn]) -> Callable[Arguments, Drawn]:
     """Draw with the settings above and matplotlib's own defaults, whatever the user's are."""
 
     @functools.wraps(plot)
-    def draw(*arguments: object) -> str | None:
+    def draw(*arguments: Arguments.args, **named: Arguments.kwargs) -> Drawn:
         import matplotlib
 
         with matplotlib.rc_context():
             matplotlib.rcdefaults()
             matplotlib.rcParams.update(SETTINGS)
-            return plot(*arguments)
+            return plot(*arguments, **named)
 
     return draw
 
@@ -113,14 +120,14 @@ def new_figure(width: float, height: float) -> tuple[Figure, Axes]:
     return figure, figure.add_subplot()
 
 
-def place(axes: Axes, left: float, bottom: float, right: float, top: float) -> None:
+def place(figure: Figure, axes: Axes, left: float, bottom: float, right: float, top: float) -> None:
     """Leave these margins, in points."""
-    width, height = axes.figure.get_size_inches() * 72
+    width, height = figure.get_size_inches() * 72
     axes.set_position((left / width, bottom / height, (width - left - right) / width, (height - bottom - top) / height))
 
 
 def svg(figure: Figure, key: str, label: str) -> str:
-    """The figure as an element of HTML. `key` keeps its ids apart from those of the page's other plots."""
+    """The figure as an HTML element. `key` makes its ids differ from those of the page's other plots."""
     out = io.StringIO()
     figure.savefig(out, format="svg", metadata={"Date": None, "Creator": None, "Format": None, "Type": None})
     text = out.getvalue()
@@ -134,11 +141,10 @@ def svg(figure: Figure, key: str, label: str) -> str:
     text = re.sub(r"(font: [^;\"]*?)'DejaVu Sans'", lambda m: m[1] + FONT, text)
     for colour, name in NAMED.items():
         text = text.replace(colour, name)
-    box = re.search(r"viewBox=\"[^\"]*\"", text)
-    assert box, "matplotlib's SVG has a viewBox"
+    (box,) = re.findall(r"viewBox=\"[^\"]*\"", text)
     escaped = label.replace("&", "&amp;").replace("<", "&lt;").replace('"', "&quot;")
     least, most = (figure.get_size_inches()[0] * 72 * scale for scale in SCALES)
-    head = (f'<svg xmlns="http://www.w3.org/2000/svg" {box[0]} style="min-width:{least:.0f}px;max-width:{most:.0f}px" '
+    head = (f'<svg xmlns="http://www.w3.org/2000/svg" {box} style="min-width:{least:.0f}px;max-width:{most:.0f}px" '
             f'role="img" aria-label="{escaped}">')
     return re.sub(r"^<svg[^>]*>", lambda _: head, text, count=1).strip()
 
@@ -151,6 +157,8 @@ CHOICES, PASSES = 40, 6  # places that a label may have, and how often all label
 
 @dataclass(frozen=True)
 class Box:
+    """A rectangle along the axes."""
+
     x0: float
     y0: float
     x1: float
@@ -186,14 +194,14 @@ def spots(x: float, y: float, width: float, height: float) -> list[Spot]:
         angle = turn * math.pi / 8
         dx, dy = math.cos(angle), math.sin(angle)
         align = "center" if abs(dx) < 0.3 else "left" if dx > 0 else "right"
-        left = x + dx * distance - {"left": 0, "center": width / 2, "right": width}[align]
+        left = x + dx * distance - {"left": 0.0, "center": width / 2, "right": width}[align]
         bottom = y + dy * distance - height / 2 + (dy * height / 2 if align == "center" else 0)
         found.append(Spot(Box(left, bottom, left + width, bottom + height), align, distance + (2 if dx < 0.9 else 0)))
     return found
 
 
 def crosses(box: Box, line: tuple[float, float, float, float]) -> bool:
-    """Whether the line from (x0, y0) to (x1, y1) goes through the box: what is left of it between the box's sides."""
+    """Whether the line from (x0, y0) to (x1, y1) goes through the box: whether any of it is left when clipped."""
     x0, y0, x1, y1 = line
     start, end = 0.0, 1.0
     for at, step, low, high in ((x0, x1 - x0, box.x0, box.x1), (y0, y1 - y0, box.y0, box.y1)):
@@ -208,9 +216,9 @@ def crosses(box: Box, line: tuple[float, float, float, float]) -> bool:
 
 def spread_labels(at: Sequence[tuple[float, float]], sizes: Sequence[tuple[float, float]], frame: Box,
                   lines: Sequence[tuple[float, float, float, float]]) -> list[Spot]:
-    """A place for each label: near its point, in the frame, off other labels, points and, if it can be, lines.
+    """A place for each label: near its point, in the frame, away from other labels, points and, if possible, lines.
 
-    Each in turn moves to where it is best while the others stay, a few times over: few labels need no more.
+    Each label in turn takes its best place while the others stay. A few such passes are enough for a few labels.
     """
     marks = [Box(x - 5, y - 5, x + 5, y + 5) for x, y in at]
     fixed = []
@@ -240,9 +248,16 @@ def spread_labels(at: Sequence[tuple[float, float]], sizes: Sequence[tuple[float
     return chosen
 
 
-def text_size(axes: Axes, text: str, **style: object) -> tuple[float, float]:
+class TextStyle(TypedDict):
+    """Arguments of axes.text."""
+
+    fontsize: float
+    fontweight: str
+
+
+def text_size(axes: Axes, text: str, style: TextStyle) -> tuple[float, float]:
     artist = axes.text(0, 0, text, **style)
-    box = artist.get_window_extent(axes.figure.canvas.get_renderer())
+    box = artist.get_window_extent()
     artist.remove()
     return box.width + 2, box.height + 1
 
@@ -283,7 +298,7 @@ def cost_error(report: Report, scene: str) -> str | None:
     if len(points) < 2:
         return None
     figure, axes = new_figure(410, 330)
-    place(axes, 66, 40, 10, 10)
+    place(figure, axes, 66, 40, 10, 10)
     scale = ErrorAxis([wrong for _, wrong in points.values()])
     scale.apply(axes)
     costs = [cost for cost, _ in points.values()]
@@ -292,7 +307,7 @@ def cost_error(report: Report, scene: str) -> str | None:
     axes.set_xticks([t for t in COST_TICKS if t < axes.get_xlim()[1]],
                     [f"+{t}" if t else "0" for t in COST_TICKS if t < axes.get_xlim()[1]])
     axes.xaxis.set_minor_locator(_no_ticks())
-    axes.set_xlabel(f"time added to none, %  (log; linear below {LINEAR_COST:g})")
+    axes.set_xlabel(f"added time, % of none's  (log; linear below {LINEAR_COST:g})")
     axes.set_ylabel("wrong pixels of the cast shadow", rotation=90, rotation_mode="anchor", labelpad=6)
     axes.grid(True)
 
@@ -307,17 +322,24 @@ def cost_error(report: Report, scene: str) -> str | None:
             axes.plot([bar["low"], bar["high"]], [y, y], color=colour, linewidth=1.4, solid_capstyle="butt", zorder=2)
         axes.plot([x], [y], marker=marker, markersize=9 if marker == "*" else 6.5, color=colour, linestyle="none",
                   markerfacecolor=colour if filled else PAGE, markeredgewidth=1.2, zorder=3)
-    pixels = axes.transData.transform
-    corners = [tuple(pixels(corner)) for corner in zip(stairs_x, stairs_y, strict=True)]
+    corners = [_pixels(axes, corner) for corner in zip(stairs_x, stairs_y, strict=True)]
     lines = [(*a, *b) for a, b in itertools.pairwise(corners)]
     if scale.has_zero:
-        lines.append((*pixels((axes.get_xlim()[0], scale.border)), *pixels((axes.get_xlim()[1], scale.border))))
-    _label_points(axes, {m: tuple(pixels(p)) for m, p in at.items()}, ahead, lines)
-    told = "; ".join(f"{method_name(m)} {tables.added(c)} %, {tables.share(w)} % wrong" for m, (c, w) in points.items())
-    return svg(figure, f"cost-error-{scene}", f"Cost against error, {tables.scene_title(report, scene)}: {told}")
+        left, right = ((x, scale.border) for x in axes.get_xlim())
+        lines.append((*_pixels(axes, left), *_pixels(axes, right)))
+    _label_points(axes, {m: _pixels(axes, p) for m, p in at.items()}, ahead, lines)
+    values = (f"{method_name(m)} {tables.added(c)} %, {tables.share(w)} % wrong" for m, (c, w) in points.items())
+    return svg(figure, f"cost-error-{scene}",
+               f"Cost against error, {tables.scene_title(report, scene)}: {'; '.join(values)}")
 
 
-def _no_ticks() -> object:
+def _pixels(axes: Axes, point: tuple[float, float]) -> tuple[float, float]:
+    """Where a point of the data is, in pixels."""
+    x, y = axes.transData.transform(point)
+    return float(x), float(y)
+
+
+def _no_ticks() -> Locator:
     from matplotlib.ticker import NullLocator
 
     return NullLocator()
@@ -334,9 +356,9 @@ def _stairs(points: Sequence[tuple[float, float]], end: float) -> tuple[list[flo
 
 def _label_points(axes: Axes, at: dict[str, tuple[float, float]], bold: Sequence[str],
                   lines: Sequence[tuple[float, float, float, float]]) -> None:
-    """Name the points, given in pixels, with a thin line to those whose name stands apart."""
-    styles = {m: {"fontsize": 9.5, "fontweight": "bold" if m in bold else "normal"} for m in at}
-    sizes = [text_size(axes, method_name(m), **styles[m]) for m in at]
+    """Name the points, given in pixels, with a thin line where a name is far from its point."""
+    styles: dict[str, TextStyle] = {m: {"fontsize": 9.5, "fontweight": "bold" if m in bold else "normal"} for m in at}
+    sizes = [text_size(axes, method_name(m), styles[m]) for m in at]
     area = axes.get_window_extent()
     placed = spread_labels(list(at.values()), sizes, Box(area.x0, area.y0 + 1, area.x1, area.y1), lines)
     for (method, (x, y)), spot in zip(at.items(), placed, strict=True):
@@ -352,51 +374,53 @@ def _label_points(axes: Axes, at: dict[str, tuple[float, float]], bold: Sequence
 # Stages -------------------------------------------------------------------------------------------------------
 
 LEGEND_COLUMNS = 5
-LONGEST_BAR = 4.0  # times none: what takes longer is cut off, or the rest would be invisible
+LONGEST_BAR = 4.0  # times none: longer bars are cut off, or the others would be too short to see
 
 
 @styled
 def stage_bars(report: Report, scene: str) -> str | None:
     """What each stage takes, one bar for a method; the interval of the whole at its end."""
-    methods = dig(report, "cost", "scenes", scene, "methods") or {}
-    shown = [m for m in report["methods"] if dig(methods, m, "stages") and dig(methods, m, "ns")]
-    if not shown:
+    costs = data.costs(report).get(scene, {})
+    times = {method: (ns, stages) for method, stages in tables.stage_times(report, scene).items()
+             if (ns := costs[method]["ns"])}
+    if not times:
         return None
-    totals = {m: methods[m]["ns"]["median"] for m in shown}
+    totals = {m: ns["median"] for m, (ns, _) in times.items()}
     limit = LONGEST_BAR * min(totals.values())
-    end = 1.08 * max([value for value in totals.values() if value <= limit])
+    end = 1.08 * max(value for value in totals.values() if value <= limit)
     names = tables.stages(report, scene)
     legend_rows = math.ceil(len(names) / LEGEND_COLUMNS)
-    figure, axes = new_figure(430, 19 * len(shown) + 46 + 17 * legend_rows)
-    place(axes, 78, 38, 54, 10 + 17 * legend_rows)
-    colours = dict(zip(names, itertools.cycle(STAGES)))
-    for row, method in enumerate(shown):
+    figure, axes = new_figure(430, 19 * len(times) + 46 + 17 * legend_rows)
+    place(figure, axes, 78, 38, 54, 10 + 17 * legend_rows)
+    colours = dict(zip(names, itertools.cycle(STAGES), strict=False))  # as many as there are names
+    for row, (ns, stages) in enumerate(times.values()):
         start = 0.0
         for name in names:
-            width = min(methods[method]["stages"].get(name) or 0.0, end - start)
+            width = min(stages.get(name) or 0.0, end - start)
             axes.barh(row, width, left=start, height=0.7, color=colours[name], edgecolor=PAGE, linewidth=0.6,
                       label=name if row == 0 else None)
             start += width
-        median, low, high = (methods[method]["ns"][name] for name in ("median", "low", "high"))
+        median, low, high = ns["median"], ns["low"], ns["high"]
         if median > end:
-            told, at, gap = f"▸ {median:.0f}", end, 3
+            text, at, gap = f"▸ {median:.0f}", end, 3
         else:
-            told, at, gap = f"{median:.1f}", high, 6
+            text, at, gap = f"{median:.1f}", high, 6
             axes.errorbar(median, row, xerr=[[median - low], [high - median]], color=INK, capsize=2.5, linewidth=1.1)
-        axes.annotate(told, (at, row), xytext=(gap, 0), textcoords="offset points", va="center_baseline", ha="left",
+        axes.annotate(text, (at, row), xytext=(gap, 0), textcoords="offset points", va="center_baseline", ha="left",
                       fontsize=9)
     axes.set_xlim(0, end)
-    axes.set_yticks(range(len(shown)), [method_name(m) for m in shown])
+    axes.set_yticks(range(len(times)), [method_name(m) for m in times])
     axes.tick_params(axis="y", length=0)
     axes.invert_yaxis()
     axes.set_xlabel("ns a pixel, one thread")
     axes.grid(True, axis="x")
     handles, labels = axes.get_legend_handles_labels()
-    order = [i for column in range(LEGEND_COLUMNS) for i in range(column, len(labels), LEGEND_COLUMNS)]  # read in rows
+    # matplotlib fills a legend by columns; so ordered, it reads by rows.
+    order = [i for column in range(LEGEND_COLUMNS) for i in range(column, len(labels), LEGEND_COLUMNS)]
     axes.legend([handles[i] for i in order], [labels[i] for i in order], loc="lower left", bbox_to_anchor=(-0.02, 1),
                 ncols=LEGEND_COLUMNS, fontsize=9, handlelength=1.1, handleheight=1.0, columnspacing=1.2, borderpad=0.2)
-    told = "; ".join(f"{method_name(m)} {totals[m]:.1f} ns" for m in shown)
-    return svg(figure, f"stages-{scene}", f"Stages, {tables.scene_title(report, scene)}: {told}")
+    values = "; ".join(f"{method_name(m)} {total:.1f} ns" for m, total in totals.items())
+    return svg(figure, f"stages-{scene}", f"Stages, {tables.scene_title(report, scene)}: {values}")
 
 
 # Maps of sweeps -----------------------------------------------------------------------------------------------
@@ -410,17 +434,17 @@ def wrapped(text: str, width: float) -> str:
 
 
 @styled
-def sweep_map(sweep: dict, bound: float) -> str:
+def sweep_map(sweep: Sweep, bound: float) -> str:
     """Which method is the cheapest with at most `bound` % wrong, for each x and y."""
     xs, ys = sweep["x"]["values"], sweep["y"]["values"]
     width, height = CELL[0] * max(len(xs), 3), CELL[1] * max(len(ys), 3)
     x_label, y_label = wrapped(sweep["x"]["label"], width + 40), wrapped(sweep["y"]["label"], height + 30)
     left, bottom = (34 + LINE * (label.count("\n") + 1) for label in (y_label, x_label))
     figure, axes = new_figure(width + left + 6, height + bottom + 6)
-    place(axes, left, bottom, 6, 6)
+    place(figure, axes, left, bottom, 6, 6)
     axes.set_xlim(0, len(xs))
     axes.set_ylim(0, len(ys))
-    for (row, _), (column, _) in itertools.product(enumerate(ys), enumerate(xs)):
+    for row, column in itertools.product(range(len(ys)), range(len(xs))):
         wrong = sweep["wrong"][row][column]
         if wrong is None:
             axes.add_patch(_cell(column, row, facecolor="none", edgecolor=INK, hatch="/////", alpha=0.45, linewidth=0))
@@ -441,20 +465,17 @@ def sweep_map(sweep: dict, bound: float) -> str:
                f"{sweep['title']}: the cheapest method with at most {bound:g} % wrong pixels")
 
 
-def _cell(column: int, row: int, **style: object) -> object:
+def _cell(column: int, row: int, **style: Any) -> Rectangle:
+    """A square of the map; `style` is matplotlib's."""
     from matplotlib.patches import Rectangle
 
     return Rectangle((column, row), 1, 1, **style)
 
 
 def _luminance(colour: str) -> float:
-    """Relative luminance, as WCAG has it."""
-    def linear(value: int) -> float:
-        x = value / 255
-        return x / 12.92 if x <= 0.04045 else ((x + 0.055) / 1.055) ** 2.4
-
-    r, g, b = (linear(int(colour[i:i + 2], 16)) for i in (1, 3, 5))
-    return 0.2126 * r + 0.7152 * g + 0.0722 * b
+    """Relative luminance by WCAG, of a colour `#rrggbb`."""
+    r, g, b = images.linear_of_srgb(np.array([int(colour[i:i + 2], 16) / 255 for i in (1, 3, 5)]))
+    return float(0.2126 * r + 0.7152 * g + 0.0722 * b)
 
 
 # Slopes of the error ------------------------------------------------------------------------------------------
@@ -462,26 +483,33 @@ def _luminance(colour: str) -> float:
 DASHES = ("solid", (0, (5, 2)), (0, (5, 2, 1, 2)), (0, (1, 1.5)), (0, (8, 2)))
 
 
-def slope_label(slopes: dict, method: str) -> str:
+def slope_label(slopes: Slopes, method: str) -> str:
     """The fitted exponent, and in brackets that of theory."""
-    fit, theory = dig(slopes, "fit", method), dig(slopes, "theory", method)
-    told = MISSING if fit is None else f"{fit:.2f}"
-    return f"{method_name(method)}: {told}" + (f" ({theory:g})" if theory is not None else "")
+    fit, theory = slopes["fit"].get(method), slopes["theory"].get(method)
+    text = MISSING if fit is None else f"{fit:.2f}"
+    return f"{method_name(method)}: {text}" + (f" ({theory:g})" if theory is not None else "")
 
 
-@styled
-def error_slopes(report: Report, scene: str) -> str | None:
-    """The error of τ over the bumps' amplitude, both logarithmic: an exponent is a slope. Fit and theory are beside."""
-    slopes = report["slopes"][scene]
+def known_errors(slopes: Slopes) -> dict[str, list[tuple[float, float]]]:
+    """Amplitude and error by method, of the errors that a logarithmic axis can show."""
     lines = {}
     for method, errors in slopes["error"].items():
         known = [(a, e) for a, e in zip(slopes["amplitude"], errors, strict=True) if e is not None and e > 0]
         if known:
             lines[method] = sorted(known)
+    return lines
+
+
+@styled
+def error_slopes(report: Report, scene: str) -> str | None:
+    """The error of τ over the bumps' amplitude, both logarithmic, so that an exponent is a slope. Beside each line are
+    the fitted exponent and that of theory."""
+    slopes = report["slopes"][scene]
+    lines = known_errors(slopes)
     if not lines:
         return None
     figure, axes = new_figure(410, 310)
-    place(axes, 54, 40, 116, 10)
+    place(figure, axes, 54, 40, 116, 10)
     axes.set_xscale("log")
     axes.set_yscale("log")
     styles: dict[str, int] = {}
@@ -489,9 +517,9 @@ def error_slopes(report: Report, scene: str) -> str | None:
         colour, marker, filled = look(method)
         number = styles.setdefault(family(method), 0)
         styles[family(method)] += 1
-        axes.plot(*zip(*known, strict=True), color=colour, linestyle=DASHES[number % len(DASHES)], linewidth=1.4,
-                  marker=marker, markersize=4.5, markerfacecolor=colour if filled else PAGE)
-    floor = slopes.get("floor")
+        axes.plot([a for a, _ in known], [e for _, e in known], color=colour, linestyle=DASHES[number % len(DASHES)],
+                  linewidth=1.4, marker=marker, markersize=4.5, markerfacecolor=colour if filled else PAGE)
+    floor = slopes["floor"]
     if floor:
         axes.axhline(floor, color=INK, linewidth=0.8, linestyle=(0, (1, 2)))
         axes.text(0.98, floor, "floor of rounding", transform=axes.get_yaxis_transform(), ha="right", va="bottom",
@@ -508,27 +536,27 @@ def error_slopes(report: Report, scene: str) -> str | None:
     axes.set_ylabel("error of τ", rotation=90, rotation_mode="anchor", labelpad=6)
     axes.grid(True)
     _label_ends(axes, {method: known[-1] for method, known in lines.items()}, slopes)
-    told = "; ".join(slope_label(slopes, method) for method in lines)
-    return svg(figure, f"slopes-{scene}", f"Error of tau over amplitude, {tables.scene_title(report, scene)}: {told}")
+    labels = "; ".join(slope_label(slopes, method) for method in lines)
+    return svg(figure, f"slopes-{scene}", f"Error of tau over amplitude, {tables.scene_title(report, scene)}: {labels}")
 
 
 def _log_ticks(values: Sequence[float]) -> list[float]:
-    """1, 2, 5 and their tenfolds within the values' range."""
+    """1, 2 and 5 times powers of ten, in the values' range."""
     low, high = math.log10(min(values)), math.log10(max(values))
     ticks = [m * 10.0 ** p for p in range(math.floor(low) - 1, math.ceil(high) + 1) for m in (1, 2, 5)]
     return [t for t in ticks if low - 0.05 <= math.log10(t) <= high + 0.05]
 
 
-def _label_ends(axes: Axes, ends: dict[str, tuple[float, float]], slopes: dict) -> None:
+def _label_ends(axes: Axes, ends: dict[str, tuple[float, float]], slopes: Slopes) -> None:
     """Name the lines at their right ends, one below the other, in the margin beside the plot."""
     gap = 14.0
     area = axes.get_window_extent()
-    at = sorted(((tuple(axes.transData.transform(end)), m) for m, end in ends.items()), key=lambda item: -item[0][1])
+    at = sorted(((_pixels(axes, end), m) for m, end in ends.items()), key=lambda item: -item[0][1])
     heights = [min(y, area.y1 - 5) for (_, y), _ in at]
     for i in range(1, len(heights)):
         heights[i] = min(heights[i], heights[i - 1] - gap)
     low = area.y0 + 4
-    for i in reversed(range(len(heights))):  # what has been pushed out below goes up again
+    for i in reversed(range(len(heights))):  # labels that are now below the margin go up again
         heights[i] = max(heights[i], low)
         low = heights[i] + gap
     for ((x, y), method), height in zip(at, heights, strict=True):

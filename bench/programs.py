@@ -1,4 +1,4 @@
-"""Running the programs that are measured, and reading what they print."""
+"""Runs the programs that are measured, and reads what they print."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ import sys
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
+from typing import TypedDict
 
 TOP = Path(__file__).resolve().parent.parent
 LIMITS = TOP / "bench" / "limits"
@@ -25,14 +26,14 @@ Word = str | Path
 
 
 class MeasureError(Exception):
-    """Something could not be measured; the message says what and why."""
+    """What could not be measured, and why."""
 
 
 # Running ------------------------------------------------------------------------------------------
 
 
 def shown(command: Sequence[Word]) -> str:
-    """A command to be typed in the project's top."""
+    """A command as a line for a shell in the project's top."""
     return shlex.join(str(word).removeprefix(f"{TOP}/") for word in command)
 
 
@@ -50,22 +51,22 @@ def run(command: Sequence[Word], environment: Mapping[str, str] = os.environ) ->
     return done.stdout
 
 
-# A process begins with the peak memory of the one it comes from. This one is smaller than all that are measured.
+# A process starts with the peak memory of the process that starts it. This one is smaller than all that are measured.
 LAUNCHER = "import os, sys; _, s, u = os.wait4(os.spawnvp(os.P_NOWAIT, sys.argv[1], sys.argv[1:]), 0); " \
            "print('peak', u.ru_maxrss, 'kB'); sys.exit(os.waitstatus_to_exitcode(s))"
 
 
 def peak_memory(command: Sequence[Word]) -> int:
-    """Bytes, at their highest. Not below the 10 MB of the Python that starts the command."""
+    """The highest memory in bytes. Not below the 10 MB of the Python that starts the command."""
     found = re.search(r"^peak (\d+) kB$", run([sys.executable, "-I", "-S", "-c", LAUNCHER, *command]), re.MULTILINE)
     if not found:
-        raise MeasureError(f"{shown(command)}: its peak memory is not known")
+        raise MeasureError(f"{shown(command)}: no line 'peak' with its memory")
     return int(found[1]) * (1 if sys.platform == "darwin" else 1024)
 
 
 @contextlib.contextmanager
 def pinned() -> Iterator[None]:
-    """All that is started meanwhile runs on one processor, the last; where the system has no such thing, anywhere."""
+    """Programs that are started inside run on one processor, the last, if the system can do that."""
     if not hasattr(os, "sched_setaffinity"):
         yield
         return
@@ -78,7 +79,7 @@ def pinned() -> Iterator[None]:
 
 
 def version(command: Sequence[Word], pattern: str = r".+") -> str:
-    """The first match in what a command prints; nothing where it fails."""
+    """The first match in what a command prints; empty where it fails."""
     try:
         found = re.search(pattern, run(command))
     except MeasureError:
@@ -87,7 +88,7 @@ def version(command: Sequence[Word], pattern: str = r".+") -> str:
 
 
 def commit() -> str:
-    """That is checked out, with -dirty behind it where files differ from it; nothing outside of git."""
+    """The commit that is checked out, with -dirty where files differ from it; empty outside of git."""
     return version(["git", "describe", "--always", "--dirty"])
 
 
@@ -108,7 +109,7 @@ def processor() -> str:
 
 
 def method_options(method: str) -> Options:
-    """The options of kage for one of the bench's names: `2 bare` is order 2 without the guard."""
+    """kage's options for a method by its name in the bench: `2 bare` is order 2 without the guard."""
     if method == "displaced":
         return ("--surface", "displaced")
     name, _, bare = method.partition(" ")
@@ -124,7 +125,7 @@ def set_options(sets: dict[str, object]) -> Options:
 
 
 def parse_kage(text: str) -> dict[str, float]:
-    """ns a sample of the whole `render` and of each stage, from `kage render --stats`."""
+    """From `kage render --stats`: ns a sample of the whole `render` and of each stage."""
     found = re.findall(r"^ *(\w+) .*?([0-9.]+) ns a (?:sample|pixel)", text, re.MULTILINE)
     times = {name: float(value) for name, value in found}
     if times.get("render", 0) <= 0:
@@ -133,7 +134,7 @@ def parse_kage(text: str) -> dict[str, float]:
 
 
 def parse_counts(text: str) -> dict[str, int]:
-    """What `kage render --stats` counts: rays, shadow_rays, lookups, bumped, fell_back."""
+    """From `kage render --stats`: its counts of rays, shadow_rays, lookups, bumped and fell_back."""
     rays = re.search(r"^camera rays (\d+), shadow rays (\d+), height look-ups (\d+)$", text, re.MULTILINE)
     bumped = re.search(r"^bumped samples (\d+) by .*?, fell back (\d+)", text, re.MULTILINE)
     if not rays or not bumped:
@@ -142,16 +143,27 @@ def parse_counts(text: str) -> dict[str, int]:
     return {name: int(value) for name, value in zip(names, rays.groups() + bumped.groups(), strict=True)}
 
 
-def parse_check(text: str) -> dict[str, object]:
-    """A scene's one light, its one bumped object, and the slopes of that, from `kage check`."""
+class Checked(TypedDict):
+    """A scene's light and bumped object."""
+
+    light: str
+    at: tuple[float, float, float]
+    receiver: str
+    slope_median: float
+    slope_95: float
+
+
+def parse_check(text: str) -> Checked:
+    """From `kage check`: the scene's one light, its one bumped object, and the slopes of that."""
     lights = re.findall(r"^light (\S+) at (.*)$", text, re.MULTILINE)
     bumped = re.findall(r"^object (\S+): .*, bump by", text, re.MULTILINE)
     slopes = re.findall(r"^ +slope +median ([0-9.e-]+), 95 % below ([0-9.e-]+)", text, re.MULTILINE)
     if not len(lights) == len(bumped) == len(slopes) == 1:
-        raise MeasureError(f"the bench is made for scenes of one light and one bumped object, here are {len(lights)} and "
-                           f"{len(bumped)}")
+        raise MeasureError(f"the scene has {len(lights)} lights and {len(bumped)} bumped objects; the bench needs one "
+                           "of each")
     (light, at), (median, most) = lights[0], slopes[0]
-    return {"light": light, "at": tuple(float(x) for x in at.split(",")), "receiver": bumped[0], "slope_median": float(median),
+    x, y, z = (float(word) for word in at.split(","))
+    return {"light": light, "at": (x, y, z), "receiver": bumped[0], "slope_median": float(median),
             "slope_95": float(most)}
 
 
@@ -159,9 +171,11 @@ def parse_callgrind(text: str) -> int:
     """The number of instructions that callgrind collected."""
     found = re.search(r"Collected *: *(\d+)", text)
     if not found or int(found[1]) == 0:
-        raise MeasureError("callgrind collected nothing: has kage still a function `render`, and its symbols?")
+        raise MeasureError(f"callgrind collected nothing: kage must have symbols, and a function `{COUNTED}`")
     return int(found[1])
 
+
+COUNTED = "render"  # the function of kage whose instructions are counted
 
 # All that callgrind sees of the environment: the stack begins below the environment's text, and memset takes some
 # instructions more or fewer by the place of an array.
@@ -169,10 +183,11 @@ COUNTED_WITH = ("PATH", "LD_LIBRARY_PATH", "VALGRIND_LIB")
 
 
 def count_instructions(command: Sequence[Word]) -> int:
-    """In the function `render` of kage."""
+    """Of kage's function COUNTED and all that it calls."""
     environment = {name: os.environ[name] for name in COUNTED_WITH if name in os.environ}
     with tempfile.TemporaryDirectory() as folder:
-        callgrind = ["valgrind", "--tool=callgrind", f"--callgrind-out-file={folder}/callgrind", "--toggle-collect=render"]
+        callgrind = ["valgrind", "--tool=callgrind", f"--callgrind-out-file={folder}/callgrind",
+                     f"--toggle-collect={COUNTED}"]
         return parse_callgrind(run([*callgrind, *command], environment))
 
 
@@ -180,14 +195,13 @@ def count_instructions(command: Sequence[Word]) -> int:
 
 
 def povray_command(scene: Path, size: Size) -> list[Word]:
-    """No file, no display, no antialiasing, one thread; -V for no count of pixels on the way."""
-    return ["povray", f"+I{str(scene).removeprefix(f'{TOP}/')}", f"+W{size[0]}", f"+H{size[1]}", "+WT1", "-A", "-D", "-F", "-P",
-            "-V"]
+    """No file, no display, no antialiasing, one thread, and no progress messages (-V)."""
+    return ["povray", f"+I{str(scene).removeprefix(f'{TOP}/')}", f"+W{size[0]}", f"+H{size[1]}", "+WT1", "-A", "-D",
+            "-F", "-P", "-V"]
 
 
 def parse_povray(text: str) -> dict[str, float]:
-    """Seconds of POV-Ray's parsing and of its trace. Its first lines name a certain Aaron too: only the statistics have the
-    brackets."""
+    """Seconds of POV-Ray's parsing and of its trace. Only its statistics have the time in brackets."""
     times = {}
     for name in ("Parse", "Trace"):
         found = re.search(rf"{name} Time:.*\(([0-9.]+) seconds\)", text)
@@ -205,7 +219,7 @@ def has_povray() -> bool:
 
 
 def parse_fused(text: str) -> dict[str, float]:
-    """ns a pixel of each order of the hand-fused loop; it calls none -1."""
+    """From fused_kernel: ns a pixel of each order of the hand-fused loop. It calls none -1."""
     found = re.findall(r"^order +(-?\d+) .*?([0-9.]+) ns/pixel", text, re.MULTILINE)
     if not found:
         raise MeasureError(f"fused_kernel: no 'ns/pixel' in {text[:200]!r}")
@@ -213,7 +227,7 @@ def parse_fused(text: str) -> dict[str, float]:
 
 
 def parse_embree(text: str) -> dict[str, float]:
-    """ns a pixel of the loop over Embree, and the seconds of its build."""
+    """From embree_loop: ns a pixel of the loop over Embree, and the seconds of its build."""
     ns, build = re.search(r"([0-9.]+) ns/pixel", text), re.search(r"build ([0-9.]+) ms", text)
     if not ns or not build:
         raise MeasureError(f"embree_loop: no 'ns/pixel' or no 'build' in {text[:200]!r}")

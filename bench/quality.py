@@ -1,8 +1,8 @@
-"""What the methods' pictures are worth: their shadows against POV-Ray's true displacement, and against kage's own.
+"""How good the methods' pictures are: their shadows against POV-Ray's true displacement, and against kage's own.
 
-A pixel of a shadow counts where both programs see the receiver there, and where it faces the light: the smooth surface in kage,
-the rough one in POV-Ray, as turned away there is no cast shadow to be seen. kage shades the smooth hit of the very same viewing
-ray, so pixels are compared one to one.
+A pixel of a shadow counts where both programs see the receiver and it faces the light: the smooth surface in kage, the
+rough one in POV-Ray. Where a surface is turned away no cast shadow can be seen. kage shades the smooth hit of the same
+viewing ray, so pixels are compared one to one.
 """
 
 from __future__ import annotations
@@ -10,11 +10,12 @@ from __future__ import annotations
 import functools
 import re
 import tempfile
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
 
-from bench import images, masks, plan, programs
+from bench import images, masks, programs
 from bench.plan import Bench, Facts
 from bench.programs import TOP, MeasureError, Options, Size
 from bench.runner import Job, Stage
@@ -23,7 +24,8 @@ from reference import references
 
 Layers = dict[str, np.ndarray]
 
-ORDER_CODES = {"none": -1, "0": 0, "1": 1, "2": 2, "2+": 3, "iter": 4, "march": 5, "exact": 6}  # of the layer `order`
+# The values of the layer `order`.
+ORDER_CODES = {"none": -1, "0": 0, "1": 1, "2": 2, "2+": 3, "iter": 4, "march": 5, "exact": 6}
 CLOSE = 1 / 255
 OTHERS = "--no-self-shadow"  # the method is about the shadows of other objects
 TRUTH_LAYERS = "color,tau,order,visibility"
@@ -32,17 +34,18 @@ CODE = programs.file_digest(*(Path(module.__file__ or "") for module in (images,
 
 
 def slug(method: str) -> str:
-    """A method's name as part of a file's."""
+    """A method's name for a file name."""
     return method.replace(":", "").replace(" ", "-").replace("+", "plus")
 
 
 def command(bench: Bench, scene: Facts, options: Options, *outputs: Path) -> list[str | Path]:
-    """As it is shown to the reader, who may give it more threads: the picture is the same."""
+    """As the report shows it. With more threads the picture is the same."""
     words = [word for path in outputs for word in ("-o", path)]
     return [bench.kage, "render", scene.file, *options, *words, "--threads", "1", "--quiet"]
 
 
 def render(bench: Bench, scene: Facts, size: Size, options: Options, layers: str, png: Path | None = None) -> Layers:
+    """The layers of a render, which may also be kept as a PNG."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "a.exr"
         outputs = [path] if png is None else [path, png]
@@ -56,10 +59,11 @@ def render(bench: Bench, scene: Facts, size: Size, options: Options, layers: str
 
 @functools.lru_cache(maxsize=4)
 def reference(folder: Path, scene: str) -> references.Reference:
-    """POV-Ray's. It must be of the scene as it is now."""
+    """POV-Ray's. The scene must not have changed since."""
     entry = references.read_manifest(folder).get(scene, {})
     if entry.get("scene") != references.scene_digest(TOP / "scenes" / f"{scene}.yaml"):
-        raise MeasureError(f"POV-Ray's reference of {scene} is not of the scene as it is now: `make reference` makes it again")
+        raise MeasureError(f"POV-Ray's reference of {scene} is of another version of the scene: `make reference` makes "
+                           "it again")
     try:
         return references.load(scene, folder)
     except references.ReferenceError as error:
@@ -71,19 +75,24 @@ def read_truth(path: Path) -> Layers:
     return references.read_exr(path)
 
 
+def scaled(size: Size, scale: int) -> Size:
+    return size[0] * scale, size[1] * scale
+
+
 def mask_size(bench: Bench) -> Size:
-    return tuple(x * bench.level.reference_scale for x in references.MASK_SIZE)
+    return scaled(references.MASK_SIZE, bench.level.reference_scale)
 
 
 def picture_size(bench: Bench) -> Size:
-    return tuple(x * bench.level.reference_scale for x in references.PICTURE_SIZE)
+    return scaled(references.PICTURE_SIZE, bench.level.reference_scale)
 
 
 def make_truth(bench: Bench, scene: Facts, name: str) -> Value:
+    """Render what the methods are compared with: `exact` by the method of that name, `flat` without bumps."""
+    level = programs.set_options({f"objects.{scene.receiver}.bump.scale": 0})
     options, layers = {
         "exact": ((*programs.method_options("exact"), OTHERS), TRUTH_LAYERS),
-        "flat": ((OTHERS, *programs.method_options("none"), *programs.set_options({f"objects.{scene.receiver}.bump.scale": 0})),
-                 FLAT_LAYERS),
+        "flat": ((OTHERS, *programs.method_options("none"), *level), FLAT_LAYERS),
     }[name]
     path = bench.truth(scene.name, name)
     path.parent.mkdir(parents=True, exist_ok=True)
@@ -93,25 +102,27 @@ def make_truth(bench: Bench, scene: Facts, name: str) -> Value:
 
 
 def in_shadow(layers: Layers, scene: Facts) -> np.ndarray:
-    return layers[f"visibility.{scene.light}"] == 0
+    shadow: np.ndarray = layers[f"visibility.{scene.light}"] == 0
+    return shadow
 
 
 def faces_light(flat: Layers, scene: Facts) -> np.ndarray:
-    """Where the smooth surface does; in a picture without bumps N is its normal."""
+    """Where the smooth surface faces the light; in a picture without bumps N is its normal."""
     n, p = (np.stack([flat[f"{v}.{axis}"] for axis in "XYZ"], axis=-1) for v in "NP")
-    return ((np.array(scene.at) - p) * n).sum(axis=-1) > 0
+    facing: np.ndarray = ((np.array(scene.at) - p) * n).sum(axis=-1) > 0
+    return facing
 
 
 # Measures -----------------------------------------------------------------------------------------
 
 
-def rounded(values: dict[str, float | None]) -> dict[str, float | None]:
-    """Enough digits to tell, and few enough that another processor's sums give the same."""
-    return {name: None if value is None else float(f"{value:.6g}") for name, value in values.items()}
+def rounded(values: Mapping[str, object]) -> dict[str, float | None]:
+    """To 6 digits, so few that another processor's sums give the same. The values are floats or None."""
+    return {name: float(f"{value:.6g}") if isinstance(value, float) else None for name, value in values.items()}
 
 
 def measure_tau(method: str, got: Layers, exact: Layers) -> Value:
-    """Where the ray meets the rough surface at all, and where bumps are, respectively."""
+    """The error of tau where the ray meets the rough surface, and the share that fell back of all that has bumps."""
     found, bumped = exact["order"] == ORDER_CODES["exact"], exact["order"] >= 0
     error = np.abs(got["tau"] - exact["tau"])[found]
     code = ORDER_CODES[re.split("[ :]", method)[0]]
@@ -120,7 +131,7 @@ def measure_tau(method: str, got: Layers, exact: Layers) -> Value:
 
 
 def measure_mask(got: np.ndarray, truth: np.ndarray, counted: np.ndarray) -> dict[str, float | None]:
-    return rounded(dict(masks.measure(got, truth, counted)))
+    return rounded(masks.measure(got, truth, counted))
 
 
 def against_povray(bench: Bench, scene: Facts, got: Layers, counted: np.ndarray) -> dict[str, object]:
@@ -132,19 +143,19 @@ def against_povray(bench: Bench, scene: Facts, got: Layers, counted: np.ndarray)
 
 
 def against_displacement(bench: Bench, scene: Facts, method: str) -> dict[str, object]:
-    """The picture against POV-Ray's with rough surfaces, whose own shadows are cast (`self`) or not (`cast`)."""
+    """The picture against POV-Ray's two: rough surfaces cast shadows (`self`), or only other objects do (`cast`)."""
     truth = reference(bench.references, scene.name).pictures
     found: dict[str, object] = {}
     for kind in references.PICTURES:
         options = (*programs.method_options(method), *([OTHERS] if kind == "cast" else []))
         got = references.stack(render(bench, scene, picture_size(bench), options, "color"))
-        found[kind] = rounded(dict(images.measure(got, truth[kind])))
+        found[kind] = rounded(images.measure(got, truth[kind]))
         found[f"{kind}_close"] = 100 * float((np.abs(got - truth[kind]) <= CLOSE).all(axis=-1).mean())
     return found
 
 
 def measure(bench: Bench, scene: Facts, method: str) -> Value:
-    """All about one method. What needs POV-Ray's reference is left out where that is missing, and `why` says so."""
+    """All measures of one method. Those against POV-Ray's reference are left out where it is missing; `why` says so."""
     exact, flat = (read_truth(bench.truth(scene.name, name)) for name in ("exact", "flat"))
     png = bench.picture(scene.name, slug(method))
     png.parent.mkdir(parents=True, exist_ok=True)
@@ -158,8 +169,8 @@ def measure(bench: Bench, scene: Facts, method: str) -> Value:
     moved = masks.edge_distances(ours, smooth, counted)
     value: Value = {
         "exact": measure_mask(ours, theirs, counted),
-        "edge_moved": rounded(dict(moved)) if moved else None,
-        "hybrid": rounded(dict(images.measure(references.stack(got), references.stack(exact)))),
+        "edge_moved": rounded(moved) if moved else None,
+        "hybrid": rounded(images.measure(references.stack(got), references.stack(exact))),
         "tau": None, "fell_back": None,
         "command": programs.shown(command(bench, scene, (*options, *programs.size_options(mask_size(bench))),
                                           Path(f"{scene.name}-{slug(method)}.png"))),
@@ -188,7 +199,7 @@ def save_levels(levels: np.ndarray, path: Path) -> None:
 
 
 def save_references(bench: Bench, scene: Facts) -> Value:
-    """POV-Ray's pictures, as PNG for the report."""
+    """Write POV-Ray's pictures as PNG, for the report."""
     for kind, picture in reference(bench.references, scene.name).pictures.items():
         save_levels(np.rint(255 * images.srgb(picture)).astype(np.uint8), bench.picture(scene.name, f"povray-{kind}"))
     return {}
@@ -211,8 +222,8 @@ def jobs(bench: Bench) -> list[Job]:
                              functools.partial(make_truth, bench, scene, name), Stage.TRUTHS, 0.6,
                              (bench.truth(scene.name, name),)))
         shown = tuple(bench.picture(scene.name, f"povray-{kind}") for kind in references.PICTURES)
-        found.append(Job(f"reference {scene.name}", inputs(bench, scene), functools.partial(save_references, bench, scene),
-                         Stage.MEASURES, 0.1, shown))
+        found.append(Job(f"reference {scene.name}", inputs(bench, scene),
+                         functools.partial(save_references, bench, scene), Stage.MEASURES, 0.1, shown))
         for method in bench.level.methods:
             files = tuple(bench.picture(scene.name, name) for name in (slug(method), f"{slug(method)}.wrong"))
             found.append(Job(f"quality {scene.name} {method}", inputs(bench, scene, method=method),

@@ -1,9 +1,9 @@
 """The tables and pictures of the README and of docs/, from a bench's result.
 
     scripts/venv python -m bench.readme           keep out/bench's result in bench/result.json, and write all from it
-    scripts/venv python -m bench.readme --check   only tell what disagrees with bench/result.json (a test does)
+    scripts/venv python -m bench.readme --check   only name the files that disagree with bench/result.json (for a test)
 
-`make readme` renders and measures first. What is generated stands between <!-- bench:NAME --> and <!-- /bench:NAME -->.
+`make readme` renders and measures first. Generated text is between <!-- bench:NAME --> and <!-- /bench:NAME -->.
 
 status: 0 all agrees, 1 something does not (--check) or there is no result, 2 wrong usage
 """
@@ -15,52 +15,54 @@ import hashlib
 import json
 import re
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
+from bench import data as reading
+from bench.data import Kept, Report
+from bench.plan import METHODS
 from bench.programs import TOP
-
-Data = dict[str, Any]
+from bench.stats import Interval
 
 RESULT = TOP / "bench" / "result.json"
 SHEETS = ("figures.png", "gallery.png")  # in docs/, from `make render`, which makes them in out/
 PLOT = "docs/cost-error.svg"
 PLOTTED = "cube"
 README_METHODS = ("none", "0", "1", "2", "2+", "march:4", "exact")
-DETAILS = ("none", "0", "1", "1 bare", "2", "2 bare", "2+", "iter:2", "iter:4", "march:2", "march:4", "march:8", "exact")
+DETAILS = tuple(method for method in METHODS if method != "displaced")
 
 
 class ReadmeError(Exception):
-    """What can't be generated, in one line."""
+    """Why something can't be generated, in one line."""
 
 
 # What is kept -------------------------------------------------------------------------------------
 
 
-def picked(data: Data, *keys: str) -> Data:
-    return {key: data[key] for key in keys}
+def picked(found: Mapping[str, Any], *keys: str) -> dict[str, Any]:
+    return {key: found[key] for key in keys}
 
 
-def kept(report: Data, sheets: Data) -> Data:
+def kept(report: Report, sheets: dict[str, str]) -> Kept:
     """What the tables and the plot need of a report, and the digests of the sheets' pixels."""
-    costs = {scene: {"methods": {m: picked(c, "ns", "added", "instructions_added") for m, c in found["methods"].items()}}
-             for scene, found in report["cost"]["scenes"].items()}
+    costs = {scene: {"methods": {m: picked(c, "ns", "added", "instructions_added") for m, c in methods.items()}}
+             for scene, methods in reading.costs(report).items()}
     quality = {scene: {m: picked(q, "mask", "exact") for m, q in methods.items()}
-               for scene, methods in report["quality"]["scenes"].items()}
-    return picked(report, "level", "circumstances", "methods", "scenes") | {
-        "cost": {"size": report["cost"]["size"], "scenes": costs,
-                 "peers": [picked(peer, "name", "scene", "ns", "build_s", "memory") for peer in report["cost"]["peers"]]},
+               for scene, methods in reading.qualities(report).items()}
+    peers = [picked(peer, "name", "scene", "ns", "build_s", "memory") for peer in reading.peers(report)]
+    return cast(Kept, picked(report, "level", "circumstances", "methods", "scenes") | {
+        "cost": {"size": report["cost"]["size"], "scenes": costs, "peers": peers},
         "quality": picked(report["quality"], "truth", "parity") | {"scenes": quality},
         "claims": [picked(claim, "id", "who", "sentence", "source", "verdict") for claim in report["claims"]],
         "sheets": sheets,
-    }
+    })
 
 
 def pixels_digest(path: Path) -> str:
-    """Not of the bytes, which may change with the library that packs them."""
+    """Not of the file's bytes, as another version of the library may compress them otherwise."""
     from PIL import Image
 
     with Image.open(path) as image:
@@ -76,34 +78,34 @@ def table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
     return "\n".join(lines + ["| " + " | ".join(row) + " |" for row in rows])
 
 
-def percent(value: float | None, digits: int = 2) -> str:
-    return "–" if value is None else f"{value:.{digits}f} %"
+def percent(value: float | None) -> str:
+    return "–" if value is None else f"{value:.2f} %"
 
 
-def wrong_table(data: Data, methods: Sequence[str]) -> str:
+def wrong_table(data: Kept, methods: Sequence[str]) -> str:
     rows = []
-    for scene, found in data["quality"]["scenes"].items():
+    for scene, found in reading.qualities(data).items():
         about = data["scenes"][scene]
         name = f"{about['title']}; slopes {about['slope_median']:.2f}, {about['slope_95']:.2f}"
-        rows.append([name, *(percent(found[m]["mask"] and found[m]["mask"]["wrong"]) for m in methods if m in found)])
+        rows.append([name, *(percent(reading.mask_metric(found[m], "mask", "wrong")) for m in methods if m in found)])
     return table(["scene; slope: median, 95 % below", *(m for m in methods if m in data["methods"])], rows)
 
 
-def parity_text(data: Data) -> str:
-    parity = data["quality"]["parity"].values()
+def parity_text(data: Kept) -> str:
+    parity = reading.parities(data).values()
     differs, shadow = sum(p["mask_differs"] for p in parity), sum(p["mask_shadow"] for p in parity)
-    cast, own = (min(p[kind] for p in parity) for kind in ("cast", "self"))
-    return ("kage's own displacement (`--surface displaced`) is within 1/255 of POV-Ray's on "
-            f"{cast:.2f} % of the pixels\nand more, and on {own:.2f} % with rough surfaces' own shadows; of {shadow} pixels of "
-            f"cast shadow {differs} {'differs' if differs == 1 else 'differ'}.")
+    others, own = min(p["cast"] for p in parity), min(p["self"] for p in parity)
+    return ("In each scene kage's own displacement (`--surface displaced`) is within 1/255 of POV-Ray's on at least\n"
+            f"{others:.2f} % of the pixels, or {own:.2f} % where rough surfaces also cast shadows. "
+            f"Of {shadow} pixels of cast shadow {differs} {'differs' if differs == 1 else 'differ'}.")
 
 
-def interval_text(value: Data | None, form: str) -> str:
+def interval_text(value: Interval | None, form: str) -> str:
     return "" if value is None else f"{value['median']:{form}} ({value['low']:{form}} to {value['high']:{form}})"
 
 
-def cost_rows(data: Data, methods: Sequence[str]) -> list[list[str]]:
-    found = data["cost"]["scenes"][PLOTTED]["methods"]
+def cost_rows(data: Kept, methods: Sequence[str]) -> list[list[str]]:
+    found = reading.costs(data)[PLOTTED]
     rows = []
     for method in methods:
         cost = found.get(method)
@@ -114,27 +116,28 @@ def cost_rows(data: Data, methods: Sequence[str]) -> list[list[str]]:
     return rows
 
 
-def peer_rows(data: Data) -> list[list[str]]:
-    return [[peer["name"], f"{peer['ns']['median']:.0f}", "", ""] for peer in data["cost"]["peers"] if peer["scene"] == PLOTTED]
+def peer_rows(data: Kept) -> list[list[str]]:
+    return [[peer["name"], f"{ns['median']:.0f}", "", ""] for peer in reading.peers(data)
+            if peer["scene"] == PLOTTED and (ns := peer["ns"])]
 
 
-def cost_table(data: Data, methods: Sequence[str]) -> str:
+def cost_table(data: Kept, methods: Sequence[str]) -> str:
     width, height = data["cost"]["size"]
     about = data["circumstances"]
-    where = (f"{width} x {height} pixels on one thread of {about['processor'].partition(',')[0]}, {about['date']}, commit "
-             f"{about['commit']};\nmedians, in brackets the bootstrap 95 % interval.")
-    return where + "\n\n" + table(["figure 5's scene", "ns a pixel", "% over none", "by instructions"],
+    where = (f"{width} x {height} pixels on one thread of {about['processor'].partition(',')[0]}, {about['date']}, "
+             f"commit {about['commit']}.\nMedians; the bootstrap 95 % interval is in brackets.")
+    return where + "\n\n" + table(["figure 5's scene", "ns a pixel", "% over none", "instructions, % over none"],
                                   cost_rows(data, methods) + peer_rows(data))
 
 
-def claims_table(data: Data) -> str:
+def claims_table(data: Kept) -> str:
     rows = [[f"{claim['sentence']} ({claim['source']})", claim["verdict"]] for claim in data["claims"]]
     return table(["claim", "verdict"], rows)
 
 
-# Where they stand ---------------------------------------------------------------------------------
+# Where they are -----------------------------------------------------------------------------------
 
-REGIONS: dict[str, dict[str, Callable[[Data], str]]] = {
+REGIONS: dict[str, dict[str, Callable[[Kept], str]]] = {
     "README.md": {
         "quality": lambda data: wrong_table(data, README_METHODS),
         "parity": parity_text,
@@ -142,7 +145,7 @@ REGIONS: dict[str, dict[str, Callable[[Data], str]]] = {
         "claims": claims_table,
     },
     "docs/method.md": {"quality": lambda data: wrong_table(data, DETAILS)},
-    "docs/design.md": {"cost": lambda data: cost_table(data, (*DETAILS, "displaced"))},
+    "docs/design.md": {"cost": lambda data: cost_table(data, METHODS)},
 }
 
 
@@ -150,23 +153,24 @@ def generated(text: str, name: str, content: str) -> str:
     """The text with the region's content replaced. There must be one such region."""
     pattern = re.compile(rf"(<!-- bench:{name} -->\n).*?(<!-- /bench:{name} -->)", re.DOTALL)
     if len(pattern.findall(text)) != 1:
-        raise ReadmeError(f"no place, or more than one, between <!-- bench:{name} --> and <!-- /bench:{name} -->")
+        raise ReadmeError(f"no place, or more than one, between <!-- bench:{name} --> and <!-- /bench:{name} -->, "
+                          "expected one")
     return pattern.sub(lambda found: f"{found[1]}{content}\n{found[2]}", text)
 
 
 def light_colours() -> dict[str, str]:
-    """Those of the report's page in the light; the dark ones come after them."""
+    """The colours of the report's light page, by name. The dark page's come later in the file; the first wins."""
     style = (Path(__file__).parent / "templates" / "style.css").read_text(encoding="utf-8")
     return dict(reversed(re.findall(r"--(\w+): (#\w+);", style)))
 
 
-def plot(data: Data) -> str:
-    """On white, as a README's background is not known, and with its colours in it."""
+def plot(data: Kept) -> str:
+    """On white, as a README's background is not known, with the colours written out."""
     from bench import plots
 
     drawn = plots.cost_error(data, PLOTTED)
     if drawn is None:
-        raise ReadmeError(f"the result has no costs or no errors of {PLOTTED} to be plotted")
+        raise ReadmeError(f"the result has no costs or no errors of {PLOTTED} to plot")
     head, rest = drawn.split(">", 1)
     if "xmlns=" not in head:
         head += ' xmlns="http://www.w3.org/2000/svg"'
@@ -175,7 +179,7 @@ def plot(data: Data) -> str:
     return re.sub(r"var\(--(\w+)\)", lambda found: colours[found[1]], text)
 
 
-def files(data: Data) -> dict[str, str]:
+def files(data: Kept) -> dict[str, str]:
     """What each generated file must hold."""
     found = {PLOT: plot(data)}
     for name, regions in REGIONS.items():
@@ -186,7 +190,8 @@ def files(data: Data) -> dict[str, str]:
     return found
 
 
-def disagreements(data: Data) -> list[str]:
+def disagreements(data: Kept) -> list[str]:
+    """The generated files that are not what the result says."""
     found = [name for name, text in files(data).items()
              if not (TOP / name).exists() or (TOP / name).read_text(encoding="utf-8") != text]
     return found + [f"docs/{sheet}" for sheet in SHEETS if pixels_digest(TOP / "docs" / sheet) != data["sheets"][sheet]]
@@ -198,8 +203,8 @@ def write(path: Path, content: bytes) -> None:
     aside.replace(path)
 
 
-def update(report: Data, rendered: Path) -> None:
-    """rendered: the folder of the sheets."""
+def update(report: Report, rendered: Path) -> None:
+    """Write the result and all that is generated from it. `rendered` is the folder of the sheets."""
     data = kept(report, {sheet: pixels_digest(rendered / sheet) for sheet in SHEETS})
     texts = files(data)
     write(RESULT, (json.dumps(data, indent=1) + "\n").encode())
@@ -216,7 +221,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     about, _, status = (__doc__ or "").partition("\nstatus:")
     parser = argparse.ArgumentParser(prog="python -m bench.readme", description=about, epilog="status:" + status,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--check", action="store_true", help="only tell what disagrees")
+    parser.add_argument("--check", action="store_true", help="only name the files that disagree")
     options = parser.parse_args(arguments)
     try:
         if options.check:

@@ -1,6 +1,6 @@
-"""report.json's data as files to read: a page, the same in Markdown, and tables for other programs.
+"""A report's files: a page, the same in Markdown, and tables for other programs.
 
-    index.html      everything, in one file that needs no network (bench/page.py; wants Jinja2 and matplotlib)
+    index.html      everything, in one file that needs no network (bench/page.py; needs Jinja2 and matplotlib)
     report.md       answer, tables and claims
     cost.csv        a line for each scene and method, and for each other program
     quality.csv     a line for each scene and method
@@ -15,13 +15,13 @@ from __future__ import annotations
 
 import csv
 import io
-import os
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
-from bench import tables
-from bench.tables import Cell, Report, Table, dig
+from bench import data, tables
+from bench.data import Report
+from bench.tables import Cell, Table
 
 Row = dict[str, object]
 
@@ -38,26 +38,26 @@ def flat(value: Mapping[str, object], prefix: str = "") -> Row:
 
 
 def cost_rows(report: Report) -> Iterator[Row]:
-    for scene, entry in (dig(report, "cost", "scenes") or {}).items():
-        for method, values in entry["methods"].items():
-            yield {"scene": scene, "program": "kage", "method": method} | flat(values or {})
-    for peer in dig(report, "cost", "peers") or []:
+    for scene, methods in data.costs(report).items():
+        for method, values in methods.items():
+            yield {"scene": scene, "program": "kage", "method": method} | flat(values)
+    for peer in data.peers(report):
         yield {"scene": peer["scene"], "program": peer["name"], "method": None} | flat(
             {key: value for key, value in peer.items() if key not in ("name", "scene")})
 
 
 def quality_rows(report: Report) -> Iterator[Row]:
-    for scene, methods in (dig(report, "quality", "scenes") or {}).items():
+    for scene, methods in data.qualities(report).items():
         for method, values in methods.items():
-            yield {"scene": scene, "method": method} | flat(values or {})
+            yield {"scene": scene, "method": method} | flat(values)
 
 
 def sweep_rows(report: Report) -> Iterator[Row]:
     for sweep in report.get("sweeps") or []:
         for j, y in enumerate(sweep["y"]["values"]):
             for i, x in enumerate(sweep["x"]["values"]):
-                cell = {"sweep": sweep["id"], "scene": sweep["scene"], "x_name": sweep["x"]["name"], "x": x,
-                        "y_name": sweep["y"]["name"], "y": y, "shadow_pixels": sweep["shadow_pixels"][j][i]}
+                cell: Row = {"sweep": sweep["id"], "scene": sweep["scene"], "x_name": sweep["x"]["name"], "x": x,
+                             "y_name": sweep["y"]["name"], "y": y, "shadow_pixels": sweep["shadow_pixels"][j][i]}
                 wrong = sweep["wrong"][j][i] or {}
                 for method in sweep["by_cost"]:
                     yield cell | {"method": method, "wrong": wrong.get(method)}
@@ -68,8 +68,8 @@ def slope_rows(report: Report) -> Iterator[Row]:
         for method, errors in slopes["error"].items():
             for amplitude, error in zip(slopes["amplitude"], errors, strict=True):
                 yield {"scene": scene, "method": method, "amplitude": amplitude, "error": error,
-                       "fit": dig(slopes, "fit", method), "theory": dig(slopes, "theory", method),
-                       "floor": slopes.get("floor")}
+                       "fit": slopes["fit"].get(method), "theory": slopes["theory"].get(method),
+                       "floor": slopes["floor"]}
 
 
 def csv_text(rows: Iterator[Row]) -> str:
@@ -87,7 +87,7 @@ def csv_text(rows: Iterator[Row]) -> str:
 
 
 def md_escape(text: str) -> str:
-    """As text in a line or a cell: no HTML, no new column, no new line. What stands between backticks stays code."""
+    """As text in a line or a cell: no HTML, no new column, no new line. Text between backticks stays code."""
     parts = re.split(r"(`[^`]+`)", " ".join(text.split()))
     parts[::2] = (re.sub(r"([\\*_`])", r"\\\1", part).replace("&", "&amp;").replace("<", "&lt;") for part in parts[::2])
     return "".join(parts).replace("|", "\\|")
@@ -130,11 +130,11 @@ def md_parts(report: Report) -> Iterator[str]:
     for sweep in report.get("sweeps") or []:
         yield f"## {md_escape(sweep['title'])}: {sweep['scene']}"
         yield md_escape(sweep["about"])
-        yield f"At most {tables.RULE_BOUND:g} % wrong, up to which {md_escape(sweep['x']['label'])}:"
+        yield f"Each method with its largest {md_escape(sweep['x']['label'])}, at most {tables.RULE_BOUND:g} % wrong:"
         yield md_list([f"{sweep['y']['label']} {y}: {rule}" for y, rule in tables.rules(sweep)])
     if report.get("claims"):
         yield from md_claims(report)
-    for scene in dig(report, "quality", "scenes") or {}:
+    for scene in data.qualities(report):
         yield f"## Quality: {md_escape(tables.scene_title(report, scene))}"
         for table in tables.quality_tables(report, scene):
             yield f"### {table.title}"
@@ -142,7 +142,7 @@ def md_parts(report: Report) -> Iterator[str]:
     if parity := tables.parity_table(report):
         yield f"## {parity.title}"
         yield md_table(parity)
-    for scene in dig(report, "cost", "scenes") or {}:
+    for scene in data.costs(report):
         yield f"## Cost: {md_escape(tables.scene_title(report, scene))}"
         yield md_table(tables.cost_table(report, scene))
         yield md_table(tables.stage_table(report, scene))
@@ -163,20 +163,20 @@ def md_list(lines: Sequence[str]) -> str:
 
 
 def write_all(folder: Path, texts: Mapping[str, str]) -> None:
-    """All of them or, but for the moment of renaming, none: an interruption leaves the files of before, whole."""
+    """All of them or none: an interruption leaves the old files whole, unless it comes while new ones are renamed."""
     aside = {folder / name: folder / f".{name}.new" for name in texts}
     try:
         for path, new in aside.items():
             new.write_text(texts[path.name], encoding="utf-8")
         for path, new in aside.items():
-            os.replace(new, path)
+            new.replace(path)
     finally:
         for new in aside.values():
             new.unlink(missing_ok=True)
 
 
 def write(report: Report, folder: Path) -> list[str]:
-    """Write the report's files into the folder, where its pictures are. A line for each thing that was left out."""
+    """Write the report's files into the folder of its pictures. Returns a line for each thing that is left out."""
     texts = {
         "cost.csv": csv_text(cost_rows(report)),
         "quality.csv": csv_text(quality_rows(report)),
@@ -190,7 +190,7 @@ def write(report: Report, folder: Path) -> list[str]:
         texts["index.html"], messages = page.render(report, folder)
     except ImportError:
         messages = ["Jinja2 is missing: index.html is left out (scripts/venv)"]
-        (folder / "index.html").unlink(missing_ok=True)  # it would be of another result
+        (folder / "index.html").unlink(missing_ok=True)  # an old page would show another result
     folder.mkdir(parents=True, exist_ok=True)
     write_all(folder, texts)
     return messages

@@ -1,11 +1,13 @@
-"""Doing what is not done yet.
+"""Runs the jobs that are not done yet.
 
-Jobs come in stages, one after the other, as later ones need files of earlier ones. Within a stage they share the processors,
-but for what is timed: such a job runs alone and pinned, in the order of the plan, which interleaves what is to be compared.
+Jobs come in stages, one after the other, as later ones need files of earlier ones. The jobs of a stage share the
+processors, except jobs that measure time: each of those runs alone and pinned. They run in the order of the plan, in
+which jobs that are compared are neighbours.
 """
 
 from __future__ import annotations
 
+import functools
 import os
 import sys
 import time
@@ -22,6 +24,8 @@ from bench.store import Inputs, Store, Value
 
 
 class Stage(IntEnum):
+    """When a job runs."""
+
     TRUTHS = 0  # pictures that others are compared with
     MEASURES = 1
     TIMES = 2  # alone
@@ -36,7 +40,7 @@ class Job:
     work: Callable[[], Value]
     stage: Stage
     seconds: float  # expected, for the time left
-    files: tuple[Path, ...] = ()  # also made by it: without them it is not done
+    files: tuple[Path, ...] = ()  # that it makes; it is done only where they exist
 
 
 def is_done(job: Job, store: Store) -> bool:
@@ -52,7 +56,7 @@ class Progress:
             try:
                 from tqdm import tqdm
             except ImportError:
-                return  # told with the other missing packages
+                return  # the report names missing packages
             form = "{percentage:3.0f} % |{bar}| {elapsed} gone, {remaining} left  {desc}"
             self.bar = tqdm(total=self.total, bar_format=form, dynamic_ncols=True, leave=False)
 
@@ -71,7 +75,7 @@ class Progress:
 
 
 class Runner:
-    """Does jobs and keeps their values. `failed` tells of those that could not be done."""
+    """Does jobs and keeps their values. `failed` has the jobs that could not be done, each with its reason."""
 
     def __init__(self, store: Store) -> None:
         self.store, self.commit = store, programs.commit()
@@ -103,7 +107,7 @@ class Runner:
     def alone(self, jobs: Sequence[Job], progress: Progress) -> None:
         with pinned():
             for job in jobs:
-                self.finish(job, lambda job=job: timed(job))
+                self.finish(job, functools.partial(timed, job))
                 progress.done(job)
 
     def run(self, jobs: Iterable[Job]) -> None:
@@ -119,6 +123,7 @@ class Runner:
 
 
 def timed(job: Job) -> tuple[Value, float]:
+    """The job's value, and the seconds it took."""
     start = time.monotonic()
     value = job.work()
     return value, time.monotonic() - start

@@ -1,8 +1,8 @@
 """The results, kept as they come: a file of JSON lines that only grows.
 
-Each line is one finished job: its name, what it depended on (`inputs`), when, by which commit and how long it took, and its
-value. A job whose line is there with the same inputs is not done again, whatever else was measured since. A line that a crash
-has torn is passed over: its job was not finished.
+Each line is one finished job: its name, what it depends on (`inputs`), the date, the commit, the seconds it took, and
+its value. A job that has a line with the same inputs is not done again. A line that a crash cut short is skipped: its
+job was not finished.
 """
 
 from __future__ import annotations
@@ -18,11 +18,11 @@ Value = dict[str, object]
 
 
 class StoreError(Exception):
-    """The results can't be kept; the message says why."""
+    """Why the results can't be kept."""
 
 
 def parse(line: str) -> dict[str, object] | None:
-    """A line's record; None where it is torn or none of ours."""
+    """A line's record; None where the line is cut short or not a result."""
     try:
         record = json.loads(line)
     except ValueError:
@@ -36,7 +36,7 @@ def key(job: object, inputs: object) -> str:
 
 
 class Store:
-    """Open for one bench at a time. To be closed, or used as a context."""
+    """Open for one bench at a time. Close it, or use it as a context."""
 
     def __init__(self, path: Path) -> None:
         self.records: dict[str, dict[str, object]] = {}
@@ -63,15 +63,15 @@ class Store:
         self.file.close()
 
     def get(self, job: str, inputs: Inputs) -> Value | None:
-        """The value of a finished job, if it depended on the same."""
+        """The value of a finished job with these inputs."""
         record = self.records.get(key(job, inputs))
         value = record and record["value"]
         return value if isinstance(value, dict) else None
 
     def add(self, record: dict[str, object]) -> None:
-        """On the disk when this returns."""
+        """The record is on the disk when this returns."""
         line = json.dumps(record, sort_keys=True)
         self.file.write(line + "\n")
         self.file.flush()
         os.fsync(self.file.fileno())
-        self.records[key(record["job"], record["inputs"])] = json.loads(line)  # as it would be read: tuples are lists then
+        self.records[key(record["job"], record["inputs"])] = json.loads(line)  # as when read: tuples become lists

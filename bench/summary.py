@@ -1,37 +1,58 @@
-"""The report's data, from the results: one dictionary, which report.json holds.
+"""The report's data (bench/data.py), made from the results. report.json holds it.
 
-What could not be measured is None, and `incomplete` says why, a line each.
+What could not be measured is None, and `incomplete` says why, in a line for each reason.
 """
 
 from __future__ import annotations
 
-import importlib
 import importlib.metadata
 import os
 import platform
 import shutil
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from datetime import UTC, datetime
-from pathlib import Path
 from typing import Any
 
-from bench import cost, programs, quality, stats, sweep, tables
+from bench import cost, images, programs, quality, stats, sweep, tables
+from bench.data import (
+    Circumstances,
+    Claim,
+    Cost,
+    CostPart,
+    MethodPicture,
+    Parity,
+    Peer,
+    Pictures,
+    Quality,
+    QualityPart,
+    ReferencePicture,
+    Report,
+    SceneCosts,
+    ScenePictures,
+    Shares,
+    Slopes,
+    Sweep,
+    added_cost,
+)
+from bench.data import cost as cost_of
 from bench.plan import TITLES, Bench
-from bench.programs import TOP
+from bench.runner import Job
+from bench.stats import Interval
 from bench.store import Store
+from reference import references
 
-Data = dict[str, Any]
+Data = dict[str, Any]  # the value of a job
 SCHEMA = 1
-NOISY = 5.0  # % of the median; above it, small differences of cost can't be told
-PACKAGES = {"scikit-image": "skimage.metrics", "flip-evaluator": "flip_evaluator", "OpenEXR": "OpenEXR", "pillow": "PIL",
-            "tqdm": "tqdm"}  # that measure, as pip calls them and as Python does
+NOISY = 5.0  # % of the median; above it, small differences of cost are not seen
+# The packages that are needed to measure: their names for pip and for Python.
+PACKAGES = images.PACKAGES | {"OpenEXR": "OpenEXR", "pillow": "PIL", "tqdm": "tqdm"}
 FLOOR = 2.4e-7  # of an error of tau, in scene units: two roundings of a float near 1
 
 
 class Results:
-    """The values of finished jobs, by what the plan calls them now."""
+    """The values of finished jobs, by the names that the plan gives them now."""
 
-    def __init__(self, store: Store, jobs: Sequence[Any]) -> None:
+    def __init__(self, store: Store, jobs: Sequence[Job]) -> None:
         self.values: dict[str, Data] = {}
         for job in jobs:
             value = store.get(job.name, job.inputs)
@@ -42,7 +63,7 @@ class Results:
         return self.values.get(" ".join(map(str, words)))
 
     def rounds(self, *words: object, count: int) -> list[Data]:
-        """The values of `words 0`, `words 1` ...; none where one is missing, as they are compared pair by pair."""
+        """The values of `words 0`, `words 1` ...; an empty list where one is missing, as they are compared in pairs."""
         found = [self.get(*words, number) for number in range(count)]
         return [value for value in found if value] if all(found) else []
 
@@ -51,14 +72,7 @@ class Results:
 
 
 def missing_packages() -> list[str]:
-    def lacks(module: str) -> bool:
-        try:
-            importlib.import_module(module)
-        except ImportError:
-            return True
-        return False
-
-    return [name for name, module in PACKAGES.items() if lacks(module)]
+    return images.missing(PACKAGES)
 
 
 def package_version(name: str) -> str | None:
@@ -68,21 +82,22 @@ def package_version(name: str) -> str | None:
         return None
 
 
-def circumstances(bench: Bench) -> Data:
+def circumstances(bench: Bench) -> Circumstances:
     describe = programs.commit()
     memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
     return {
         "date": datetime.now(UTC).date().isoformat(), "kage": programs.version([bench.kage, "--version"]),
-        "commit": describe.removesuffix("-dirty"), "dirty": describe.endswith("-dirty"), "processor": programs.processor(),
-        "memory": memory, "system": f"{platform.system()} {platform.release()}",
+        "commit": describe.removesuffix("-dirty"), "dirty": describe.endswith("-dirty"),
+        "processor": programs.processor(), "memory": memory, "system": f"{platform.system()} {platform.release()}",
         "compiler": programs.version(["gcc", "--version"]),
         "povray": programs.version(["povray", "--version"], r"POV-Ray \d\S*") or None,
-        "packages": {name: package_version(name) for name in ("numpy", *PACKAGES)}, "load": os.getloadavg(),
+        "packages": {name: package_version(name) for name in ("numpy", *PACKAGES)}, "load": list(os.getloadavg()),
         "command": f"make bench BENCH={bench.level.name}",
     }
 
 
-def incomplete(bench: Bench, failed: dict[str, str]) -> list[str]:
+def incomplete(failed: dict[str, str]) -> list[str]:
+    """A line for each reason why the report is not whole. `failed`: jobs and why they could not be done."""
     lines = []
     if not programs.has_povray():
         lines.append("POV-Ray is missing: its times are left out (`scripts/bootstrap povray` installs it)")
@@ -94,7 +109,7 @@ def incomplete(bench: Bench, failed: dict[str, str]) -> list[str]:
         lines.append("valgrind is missing: instructions are not counted (Debian: valgrind)")
     reasons: dict[str, list[str]] = {}
     for name, why in failed.items():
-        if not any(PACKAGES[package].partition(".")[0] in why for package in packages):  # that is told already
+        if not any(PACKAGES[package].partition(".")[0] in why for package in packages):  # the line above says that
             reasons.setdefault(why, []).append(name)
     return lines + [f"{names[0]}{f' and {len(names) - 1} more' if len(names) > 1 else ''}: {why}"
                     for why, names in reasons.items()]
@@ -103,20 +118,22 @@ def incomplete(bench: Bench, failed: dict[str, str]) -> list[str]:
 # Cost ---------------------------------------------------------------------------------------------
 
 
-def kage_cost(bench: Bench, results: Results, scene: str, method: str, base: list[Data]) -> Data:
+def kage_cost(bench: Bench, results: Results, scene: str, method: str, base: list[Data]) -> Cost:
     level = bench.level
     times = results.rounds("time", scene, method, count=level.rounds)
     counted, none_counted = results.get("count", scene, method), results.get("count", scene, "none")
     weighed = results.get("memory", scene, method)
-    found: Data = {"ns": None, "added": None, "stages": None, "shadow_rays": None, "lookups": None, "instructions": None,
-                   "instructions_added": None, "memory": weighed and weighed["memory"], "build_s": 0.0,
-                   "command": cost.shown(bench, bench.scenes[scene], method)}
+    found: Cost = {"ns": None, "added": None, "stages": None, "shadow_rays": None, "lookups": None,
+                   "instructions": None, "instructions_added": None, "memory": weighed["memory"] if weighed else None,
+                   "build_s": 0.0, "command": cost.shown(bench, bench.scenes[scene], method)}
     if times:
         ns = [t["ns"]["render"] for t in times]
         counts = times[0]["counts"]
         stages = [name for name in times[0]["ns"] if name != "render"]
-        found |= {"ns": stats.interval(ns), "stages": {name: median([t["ns"][name] for t in times]) for name in stages},
-                  "shadow_rays": counts["shadow_rays"] / counts["rays"], "lookups": counts["lookups"] / max(counts["bumped"], 1)}
+        found["ns"] = stats.interval(ns)
+        found["stages"] = {name: median([t["ns"][name] for t in times]) for name in stages}
+        found["shadow_rays"] = counts["shadow_rays"] / counts["rays"]
+        found["lookups"] = counts["lookups"] / max(counts["bumped"], 1)
         if base and method != "none":
             found["added"] = stats.paired_interval(ns, [t["ns"]["render"] for t in base])
     if counted:
@@ -131,17 +148,19 @@ def median(values: Sequence[float]) -> float:
 
 
 def peer(name: str, scene: str, command: str, note: str, times: Sequence[float], build: Sequence[float],
-         memory: Data | None) -> Data:
+         memory: Data | None) -> Peer:
     return {"name": name, "scene": scene, "ns": stats.interval(times) if times else None,
-            "build_s": median(build) if build else None, "memory": memory and memory["memory"], "command": command, "note": note}
+            "build_s": median(build) if build else None, "memory": memory["memory"] if memory else None,
+            "command": command, "note": note}
 
 
-def ratios(ns: Sequence[float], bases: dict[str, Sequence[float]]) -> Data:
-    """How many times each base is in it: round by round, as what slows the machine hits both."""
-    return {base: stats.interval([a / b for a, b in zip(ns, others, strict=True)]) for base, others in bases.items() if ns and others}
+def ratios(ns: Sequence[float], bases: Mapping[str, Sequence[float]]) -> dict[str, Interval]:
+    """How many times as long it takes as each base: round by round, as what slows the machine slows both."""
+    return {base: stats.interval([a / b for a, b in zip(ns, others, strict=True)])
+            for base, others in bases.items() if ns and others}
 
 
-def povray_peers(bench: Bench, results: Results) -> list[Data]:
+def povray_peers(bench: Bench, results: Results) -> list[Peer]:
     size, rounds = bench.level.povray_size, bench.level.rounds
     scenes = cost.povray_scenes(bench)
     found = []
@@ -153,13 +172,14 @@ def povray_peers(bench: Bench, results: Results) -> list[Data]:
         note = f"{size[0]} x {size[1]} pixels; build is its parsing"
         if made and "mesh2" in name and bench.level.mesh_size:
             note += f"; a mesh as fine as {bench.level.mesh_size[0]} x {bench.level.mesh_size[1]} pixels need"
-        found.append(peer(name, scene, programs.shown(programs.povray_command(path, size)), note, [t["ns"] for t in times],
-                          [t["build_s"] for t in times], results.get("memory", scene, name))
-                     | {"times": ratios([t["ns"] for t in times], bases)})
+        one = peer(name, scene, programs.shown(programs.povray_command(path, size)), note, [t["ns"] for t in times],
+                   [t["build_s"] for t in times], results.get("memory", scene, name))
+        one["times"] = ratios([t["ns"] for t in times], bases)
+        found.append(one)
     return [p for p in found if p["ns"]]
 
 
-def limit_peers(bench: Bench, results: Results) -> list[Data]:
+def limit_peers(bench: Bench, results: Results) -> list[Peer]:
     note = "1920 x 1080 pixels, the best of several repeats"
     found = []
     fused = results.rounds("time cube", cost.FUSED, count=bench.level.rounds)
@@ -173,8 +193,9 @@ def limit_peers(bench: Bench, results: Results) -> list[Data]:
     return [p for p in found if p["ns"]]
 
 
-def costs(bench: Bench, results: Results) -> Data:
-    scenes, noise = {}, {}
+def costs(bench: Bench, results: Results) -> CostPart:
+    scenes: dict[str, SceneCosts] = {}
+    noise: dict[str, float | None] = {}
     for scene in bench.scenes:
         base = results.rounds("time", scene, "none", count=bench.level.rounds)
         scenes[scene] = {"methods": {m: kage_cost(bench, results, scene, m, base) for m in bench.level.methods}}
@@ -183,23 +204,28 @@ def costs(bench: Bench, results: Results) -> Data:
             "peers": povray_peers(bench, results) + limit_peers(bench, results)}
 
 
-def notes(data: Data) -> list[str]:
-    return [f"{scene}: repeats of the same render were {noise:.1f} % apart (half the interquartile range): the machine was too "
-            "noisy for small differences of cost; instruction counts are not touched by that"
-            for scene, noise in data["cost"]["noise"].items() if noise is not None and noise > NOISY]
+def notes(noise: Mapping[str, float | None]) -> list[str]:
+    return [f"{scene}: repeats of the same render were {share:.1f} % apart (half the interquartile range): the machine "
+            "was too noisy for small differences of time; instruction counts have no such noise"
+            for scene, share in noise.items() if share is not None and share > NOISY]
 
 
 # Quality ------------------------------------------------------------------------------------------
 
-QUALITY = ("mask", "exact", "tau", "fell_back", "edge_moved", "hybrid", "cast", "self", "command")
+
+def quality_entry(value: Data) -> Quality:
+    """What the report shows of the value of a job of bench/quality.py."""
+    return {"mask": value.get("mask"), "exact": value.get("exact"), "tau": value.get("tau"),
+            "fell_back": value.get("fell_back"), "edge_moved": value.get("edge_moved"), "hybrid": value.get("hybrid"),
+            "cast": value.get("cast"), "self": value.get("self"), "command": value.get("command")}
 
 
-def quality_of(bench: Bench, results: Results) -> Data:
-    scenes: Data = {}
-    parity: Data = {}
+def quality_of(bench: Bench, results: Results) -> QualityPart:
+    scenes: dict[str, dict[str, Quality]] = {}
+    parity: dict[str, Parity] = {}
     for scene in bench.scenes:
         found = {method: results.get("quality", scene, method) or {} for method in bench.level.methods}
-        scenes[scene] = {method: {key: value.get(key) for key in QUALITY} for method, value in found.items()}
+        scenes[scene] = {method: quality_entry(value) for method, value in found.items()}
         own = found.get("displaced", {})
         if "mask_differs" in own:
             parity[scene] = {"self": own["self_close"], "cast": own["cast_close"], "mask": own["mask"]["wrong"],
@@ -209,73 +235,80 @@ def quality_of(bench: Bench, results: Results) -> Data:
 
 
 def povray_of_references(bench: Bench) -> str | None:
-    from reference import references
-
     versions = {str(entry.get("povray")) for entry in references.read_manifest(bench.references).values()}
     return ", ".join(sorted(versions)) or None
 
 
 def why_left_out(bench: Bench, results: Results) -> dict[str, str]:
-    """Jobs that were done in part."""
+    """By the name of a job that was done in part."""
     found = {f"quality {scene} {method}": results.get("quality", scene, method) or {}
              for scene in bench.scenes for method in bench.level.methods}
     return {name: str(value["why"]) for name, value in found.items() if "why" in value}
 
 
-def pictures(bench: Bench) -> Data:
-    def relative(path: Path) -> str | None:
+REFERENCES = {"cast": "POV-Ray, displaced, only other objects' shadows", "self": "POV-Ray, displaced, all shadows"}
+
+
+def scene_pictures(bench: Bench, scene: str) -> ScenePictures:
+    def relative(name: str) -> str | None:
+        path = bench.picture(scene, name)
         return str(path.relative_to(bench.out)) if path.exists() else None
 
-    scenes: Data = {}
-    for scene in bench.scenes:
-        methods = {m: {"file": relative(bench.picture(scene, quality.slug(m))),
-                       "wrong": relative(bench.picture(scene, f"{quality.slug(m)}.wrong"))} for m in bench.level.methods}
-        names = {"cast": "POV-Ray, displaced, only other objects' shadows", "self": "POV-Ray, displaced, all shadows"}
-        shown = [{"name": name, "file": relative(bench.picture(scene, f"povray-{kind}"))} for kind, name in names.items()]
-        scenes[scene] = {"methods": {m: p for m, p in methods.items() if p["file"]},
-                         "references": [p for p in shown if p["file"]]}
+    methods: dict[str, MethodPicture] = {}
+    for method in bench.level.methods:
+        if (file := relative(quality.slug(method))) is not None:
+            methods[method] = {"file": file, "wrong": relative(f"{quality.slug(method)}.wrong")}
+    shown: list[ReferencePicture] = [{"name": name, "file": file} for kind, name in REFERENCES.items()
+                                     if (file := relative(f"povray-{kind}")) is not None]
+    return {"methods": methods, "references": shown}
+
+
+def pictures(bench: Bench) -> Pictures:
+    scenes = {scene: scene_pictures(bench, scene) for scene in bench.scenes}
     return {"size": list(quality.mask_size(bench)), "scenes": scenes}
 
 
 # Sweeps and slopes --------------------------------------------------------------------------------
 
 
-def costs_of(data: Data, scene: str) -> dict[str, float]:
+def costs_of(methods: Mapping[str, Cost]) -> dict[str, float]:
     """By instructions, which are the same each time; by time where they were not counted."""
-    methods = data["cost"]["scenes"][scene]["methods"]
     counted = {m: c["instructions"] for m, c in methods.items() if c["instructions"]}
     return counted or {m: c["ns"]["median"] for m, c in methods.items() if c["ns"]}
 
 
-def cell(value: Data | None) -> Data | None:
+def cell(value: Data | None) -> Shares | None:
     if value is None or value["shadow"] < sweep.LEAST_SHADOW:
         return None
     return {method: 100 * wrong / value["shadow"] for method, wrong in value["wrong"].items()}
 
 
-def sweeps(bench: Bench, results: Results, data: Data) -> list[Data]:
-    found = []
+def sweeps(bench: Bench, results: Results, costs: Mapping[str, SceneCosts]) -> list[Sweep]:
+    found: list[Sweep] = []
+    compared = [m for m in sweep.methods(bench) if not m.endswith(" bare")]
     for one in sweep.sweeps(bench):
-        values = [[results.get(sweep.cell_job(bench, one, i, j).name) for i in range(len(one.xs))] for j in range(len(one.ys))]
+        values = [[results.get(sweep.cell_job(bench, one, i, j).name) for i in range(len(one.xs))]
+                  for j in range(len(one.ys))]
         found.append({
             "id": f"{one.scene}-{one.id}", "scene": one.scene, "title": sweep.TITLES[one.id], "about": one.about(),
             "x": {"name": one.x, "label": sweep.AXES[one.x], "values": list(one.xs)},
             "y": {"name": one.y, "label": sweep.AXES[one.y], "values": list(one.ys)},
-            "by_cost": sweep.by_cost(costs_of(data, one.scene), [m for m in sweep.methods(bench) if not m.endswith(" bare")]),
+            "by_cost": sweep.by_cost(costs_of(costs[one.scene]["methods"]), compared),
             "wrong": [[cell(value) for value in row] for row in values],
-            "shadow_pixels": [[value and value["shadow"] for value in row] for row in values],
+            "shadow_pixels": [[value["shadow"] if value else None for value in row] for row in values],
         })
     return found
 
 
-def slopes(bench: Bench, results: Results) -> Data:
-    found: Data = {}
+def slopes(bench: Bench, results: Results) -> dict[str, Slopes]:
+    found: dict[str, Slopes] = {}
     for scene in sweep.sloped(bench):
         values = [results.get(sweep.amplitude_job(bench, scene, slope).name) for slope in sweep.AMPLITUDES]
-        error = {m: [value and value["error"][m] for value in values] for m in sweep.SLOPE_METHODS}
+        error: dict[str, list[float | None]] = {
+            m: [value["error"][m] if value else None for value in values] for m in sweep.SLOPE_METHODS}
         found[scene.name] = {
             "amplitude": list(sweep.AMPLITUDES), "label": "amplitude, as the slope that 95 % are below", "error": error,
-            "floor": FLOOR, "theory": sweep.THEORY[scene.name],
+            "floor": FLOOR, "theory": dict(sweep.THEORY[scene.name]),
             "fit": {m: stats.fit_exponent(sweep.AMPLITUDES, error[m], FLOOR) for m in sweep.SLOPE_METHODS},
         }
     return found
@@ -284,88 +317,88 @@ def slopes(bench: Bench, results: Results) -> Data:
 # The whole ----------------------------------------------------------------------------------------
 
 
-def answer(data: Data) -> list[str]:
-    """What a reader should take away, in five lines."""
-    cube = data["cost"]["scenes"].get("cube", {"methods": {}})["methods"]
-    lines = []
-
-    def added(method: str) -> str:
-        interval = cube.get(method, {}).get("added")
-        return f"{interval['median']:+.0f} %" if interval else "not measured"
-
-    def wrong(scene: str, method: str) -> float | None:
-        found = data["quality"]["scenes"].get(scene, {}).get(method, {})
-        measure = found.get("mask") or found.get("exact")
-        return measure and measure["wrong"]
-
-    lines.append(f"Cost: over bump mapping alone, order 0 takes {added('0')} in figure 5's scene, 1 {added('1')}, "
-                 f"2 {added('2')}, march:4 {added('march:4')}; the true hit for the shadow's origin {added('exact')}.")
-    shares = {scene: (wrong(scene, "none"), wrong(scene, "0")) for scene in data["scenes"]}
-    removed = [100 * (1 - after / before) for before, after in shares.values() if before and after is not None]
-    if removed:
-        lines.append(f"Quality: order 0 puts {min(removed):.0f} to {max(removed):.0f} % of the wrong shadow pixels right: "
-                     + ", ".join(f"{scene} {a:.2g} to {b:.2g} %" for scene, (a, b) in shares.items() if a and b is not None)
-                     + ".")
+def answer(data: Report) -> list[str]:
+    """What a reader should take away: a line each for cost, quality, orders, slopes and displacement."""
+    lines = [cost_line(data)]
+    shares = {scene: (tables.wrong_pixels(data, scene, "none"), tables.wrong_pixels(data, scene, "0"))
+              for scene in data["scenes"]}
+    known = {scene: (before, after) for scene, (before, after) in shares.items() if before and after is not None}
+    if known:
+        removed = [100 * (1 - after / before) for before, after in known.values()]
+        lines.append(f"Quality: order 0 corrects {min(removed):.0f} to {max(removed):.0f} % of the wrong pixels: "
+                     + ", ".join(f"{scene} {a:.2g} to {b:.2g} %" for scene, (a, b) in known.items()) + ".")
     best = {}
     for scene in data["scenes"]:
-        ranked = [(value, m) for m in ("0", "1", "2", "2+") if (value := wrong(scene, m)) is not None]
+        ranked = [(value, m) for m in ("0", "1", "2", "2+")
+                  if (value := tables.wrong_pixels(data, scene, m)) is not None]
         if ranked:
             best[scene] = min(ranked)[1]
     if best:
-        lines.append("Orders: the fewest wrong pixels of 0, 1, 2 and 2+ has "
+        lines.append("Orders: of 0, 1, 2 and 2+ these have the fewest wrong pixels: "
                      + ", ".join(f"{m} on {scene}" for scene, m in best.items())
-                     + "; on steep samples a higher order is no better, and a few steps of march are.")
-    lines.append(rule(data))
-    lines.append("Direct intersection: displacing the surface truly takes "
-                 + ", ".join(f"{times:.0f} times none on {scene}" for scene, times in displaced_times(data).items())
-                 + "." if displaced_times(data) else "Direct intersection: not measured.")
+                     + ". On steep samples a higher order is no better, but a few steps of march are.")
+    lines.append(rule(data["sweeps"]))
+    times = displaced_times(data)
+    lines.append("Direct intersection: to render the displaced surface takes "
+                 + ", ".join(f"{many:.0f} times as long as none on {scene}" for scene, many in times.items()) + "."
+                 if times else "Direct intersection: not measured.")
     return lines
 
 
-def displaced_times(data: Data) -> dict[str, float]:
+def cost_line(data: Report) -> str:
+    def added(method: str) -> str:
+        interval = added_cost(cost_of(data, "cube", method))
+        return f"{interval['median']:+.0f} %" if interval else "not measured"
+
+    return (f"Cost, over bump mapping alone in figure 5's scene: order 0 {added('0')}, order 1 {added('1')}, "
+            f"order 2 {added('2')}, march:4 {added('march:4')}, exact (the shadow ray starts at the true hit) "
+            f"{added('exact')}.")
+
+
+def displaced_times(data: Report) -> dict[str, float]:
     found = {}
-    for scene, cost_of in data["cost"]["scenes"].items():
-        none, own = (cost_of["methods"].get(m, {}).get("ns") for m in ("none", "displaced"))
-        if none and own:
-            found[scene] = own["median"] / none["median"]
+    for scene in data["scenes"]:
+        none, own = (cost_of(data, scene, m) for m in ("none", "displaced"))
+        if none and none["ns"] and own and own["ns"]:
+            found[scene] = own["ns"]["median"] / none["ns"]["median"]
     return found
 
 
-def rule(data: Data, most: float = 1.0, least_view: float = 30) -> str:
-    """The largest slope up to which a method is good enough at every height of the eye from least_view on."""
-    for one in data["sweeps"]:
+def rule(sweeps: Sequence[Sweep], most: float = 1.0, least_view: float = 30) -> str:
+    """The largest slope up to which a method is good enough, wherever the eye is least_view degrees high or higher."""
+    for one in sweeps:
         if (one["x"]["name"], one["y"]["name"]) != ("slope", "view"):
             continue
         rows = [j for j, view in enumerate(one["y"]["values"]) if view >= least_view]
         texts = []
         for method in ("0", "2", "march:4"):
             reached = [tables.reach(one, row, method, most) for row in rows]
-            if reached and None not in reached:
-                texts.append(f"{method} up to slope {min(reached):g}")
+            known = [slope for slope in reached if slope is not None]
+            if known and len(known) == len(reached):
+                texts.append(f"{method} up to slope {min(known):g}")
         if texts:
-            return (f"When: with the eye {least_view:g} degrees and more above the ground, at most {most:g} % of the shadow is wrong "
-                    f"by {', '.join(texts)} ({one['scene']}).")
+            return (f"When: if the eye is {least_view:g} degrees above the ground or higher, at most {most:g} % of the "
+                    f"shadow is wrong by {', '.join(texts)} ({one['scene']}).")
     return "When: not measured."
 
 
-def summarise(bench: Bench, store: Store, jobs: Sequence[Any], failed: dict[str, str],
-              judge: Callable[[Data], list[Any]]) -> Data:
+def summarise(bench: Bench, store: Store, jobs: Sequence[Job], failed: dict[str, str],
+              judge: Callable[[Report], list[Claim]]) -> Report:
     """`judge` makes the claims from the rest."""
     results = Results(store, jobs)
-    failed = failed | why_left_out(bench, results)
-    lines = incomplete(bench, failed)
-    data: Data = {
+    lines = incomplete(failed | why_left_out(bench, results))
+    cost_part = costs(bench, results)
+    data: Report = {
         "schema": SCHEMA, "level": bench.level.name, "complete": not lines, "incomplete": lines,
+        "notes": notes(cost_part["noise"]),
         "circumstances": circumstances(bench), "methods": list(bench.level.methods),
         "scenes": {name: {"title": TITLES.get(name, name), "slope_median": f.slope_median, "slope_95": f.slope_95,
                           "receiver": f.receiver, "size": list(quality.mask_size(bench)),
                           "shadow_pixels": (results.get("quality", name, "none") or {}).get("mask_shadow")}
                    for name, f in bench.scenes.items()},
-        "cost": costs(bench, results), "quality": quality_of(bench, results), "pictures": pictures(bench),
+        "cost": cost_part, "quality": quality_of(bench, results), "pictures": pictures(bench),
+        "sweeps": sweeps(bench, results, cost_part["scenes"]), "slopes": slopes(bench, results),
     }
-    data["notes"] = notes(data)
-    data["sweeps"] = sweeps(bench, results, data)
-    data["slopes"] = slopes(bench, results)
     data["claims"] = judge(data)
     data["answer"] = answer(data)
     return data

@@ -1,14 +1,13 @@
-"""When to use which: wrong shadow pixels over slopes, angles and frequencies; and the error's slope in the amplitude.
+"""When to use which method: wrong shadow pixels over slopes, angles and frequencies; the error over the amplitude.
 
-The scenes are `waves` (a function) and `cube` (samples), with a cube over a plane. The light goes up and down around the cube,
-the eye around the middle of the shadow. Truth is kage's `exact`.
+The scenes are `waves` (a function) and `cube` (samples), with a cube over a plane. The light moves up and down around
+the cube, and the eye around the middle of the shadow. The truth is kage's `exact`.
 """
 
 from __future__ import annotations
 
 import functools
 import math
-import tempfile
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -33,7 +32,7 @@ SIZE = (320, 240)
 
 @dataclass(frozen=True)
 class Place:
-    """Where in a sweep. Angles in degrees above the ground; slope: 95 % are below it, in the scene's own view."""
+    """Where in a sweep. Angles are in degrees above the ground. `slope`: 95 % of the slopes in the view are below."""
 
     slope: float = 0.35
     view: float = 40
@@ -56,7 +55,7 @@ def vector(v: np.ndarray) -> str:
 
 
 def changes(scene: Facts, place: Place) -> dict[str, object]:
-    """Of the scene's file, for a place in a sweep."""
+    """What to set in the scene's file for a place in a sweep."""
     height, f = CENTRE[scene.name], place.frequency
     light = np.array([0, height, 0]) + LIGHT_DISTANCE * direction(LIGHT_FROM, place.light)
     shadow = -light * height / (light[1] - height)  # of the cube's middle on the ground
@@ -64,7 +63,8 @@ def changes(scene: Facts, place: Place) -> dict[str, object]:
     eye = target + EYE_DISTANCE * direction(EYE_FROM, place.view)
     bump = f"objects.{scene.receiver}.bump"
     sets: dict[str, object] = {
-        f"lights.{scene.light}.at": vector(light), "camera.from": vector(eye), "camera.at": vector(target), "camera.fov": 42,
+        f"lights.{scene.light}.at": vector(light),
+        "camera.from": vector(eye), "camera.at": vector(target), "camera.fov": 42,
         f"{bump}.scale": f"{SCALE[scene.name] * place.slope / scene.slope_95 / f:.8g}",
     }
     if f != 1 and scene.name == "waves":
@@ -97,6 +97,8 @@ TITLES = {
 
 @dataclass(frozen=True)
 class Sweep:
+    """Places in a scene: each x with each y."""
+
     scene: str
     x: str
     y: str
@@ -130,7 +132,7 @@ def methods(bench: Bench) -> tuple[str, ...]:
 
 
 def measure_cell(bench: Bench, scene: Facts, place: Place) -> Value:
-    """Wrong pixels of each method, and those of the shadow. Any plane faces a light above it: all that is seen counts."""
+    """Wrong pixels of each method, and pixels of the shadow. The plane faces the light, so all its pixels count."""
     layers = "visibility,order"
     sets = changes(scene, place)
     exact = render(bench, scene, sets, place.size, "exact", layers)
@@ -144,10 +146,14 @@ def measure_cell(bench: Bench, scene: Facts, place: Place) -> Value:
 
 # The error's slope in the amplitude ---------------------------------------------------------------
 
-AMPLITUDES = tuple(0.35 * 2 ** (-k / 2) for k in range(8))  # as the steepest 5 % of slopes
+AMPLITUDES = tuple(0.35 * 2 ** (-k / 2) for k in range(8))  # as the slope that 95 % are below
 SLOPE_METHODS = ("0", "1", "2", "2+", "iter:2")
-THEORY = {"waves": {"0": 2, "1": 3, "2": 3, "2+": 4, "iter:2": 3}, "sphere": {"0": 2, "1": 2, "2": 2, "2+": 3, "iter:2": 2}}
-ON_SPHERE = "{function: '0.04*sin(9*u)*sin(8*w) + 0.02*sin(5*u + 6*w)', scale: 1}"  # a smooth function in place of the map
+THEORY: dict[str, dict[str, float]] = {
+    "waves": {"0": 2, "1": 3, "2": 3, "2+": 4, "iter:2": 3},
+    "sphere": {"0": 2, "1": 2, "2": 2, "2+": 3, "iter:2": 2},
+}
+# A smooth function in place of the map.
+ON_SPHERE = "{function: '0.04*sin(9*u)*sin(8*w) + 0.02*sin(5*u + 6*w)', scale: 1}"
 ON_SPHERE_SLOPE = 0.30  # 95 % below, by `kage check`
 
 
@@ -179,9 +185,10 @@ def inputs(bench: Bench, scene: Facts, **more: object) -> Inputs:
 
 def cell_job(bench: Bench, sweep: Sweep, i: int, j: int) -> Job:
     scene, place = bench.scenes[sweep.scene], sweep.place(i, j)
+    seconds = 0.4 * (place.width / SIZE[0]) ** 2 + 0.2
     return Job(f"sweep {sweep.scene} {sweep.id} {sweep.xs[i]:g} {sweep.ys[j]:g}",
                inputs(bench, scene, methods=list(methods(bench))),
-               functools.partial(measure_cell, bench, scene, place), Stage.MEASURES, 0.4 * (place.width / SIZE[0]) ** 2 + 0.2)
+               functools.partial(measure_cell, bench, scene, place), Stage.MEASURES, seconds)
 
 
 def amplitude_job(bench: Bench, scene: Facts, slope: float) -> Job:
@@ -194,10 +201,11 @@ def sloped(bench: Bench) -> list[Facts]:
 
 
 def jobs(bench: Bench) -> list[Job]:
-    cells = [cell_job(bench, sweep, i, j) for sweep in sweeps(bench) for j in range(len(sweep.ys)) for i in range(len(sweep.xs))]
+    cells = [cell_job(bench, sweep, i, j)
+             for sweep in sweeps(bench) for j in range(len(sweep.ys)) for i in range(len(sweep.xs))]
     return cells + [amplitude_job(bench, scene, slope) for scene in sloped(bench) for slope in AMPLITUDES]
 
 
 def by_cost(costs: dict[str, float], names: Sequence[str]) -> list[str]:
-    """Methods from cheap to dear, those whose cost is not known last."""
+    """The names, the cheapest first; those whose cost is not known come last."""
     return sorted(names, key=lambda name: costs.get(name, math.inf))

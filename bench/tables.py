@@ -1,21 +1,23 @@
 """The numbers of a report as tables and sentences, for the page and for Markdown alike.
 
-A report is the dict that bench/summary.py makes; any value in it may be None, where it could not be measured. `dig`
-reads it so that a missing branch is None too. What is computed here from the report's numbers (which method is best, on
-the front, cheapest for a bound, good up to which slope) is computed nowhere else.
+A report is that of bench/data.py; any value in it may be None, where it could not be measured. What is computed here
+from the report's numbers (which method is best, on the front, cheapest for a bound, good up to which slope) is computed
+nowhere else.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import TypeVar
 
-from bench import stats
+from bench import data, stats
+from bench.data import Report, Sweep, Truth, dig
+from bench.stats import Interval
 
-Report = dict
 MISSING = "–"
-TRUE = ("exact", "displaced")  # they find the true hit: no competitors for the fewest wrong pixels
+TRUE = ("exact", "displaced")  # they find the true hit, so they do not compete for the fewest wrong pixels
 BOUNDS = (0.5, 1.0)  # % of wrong pixels that the sweeps' maps allow
 RULE_BOUND = 1.0  # the same for the rule of thumb
 
@@ -38,7 +40,7 @@ ABOUT_FAMILY = {
 
 @dataclass(frozen=True)
 class Cell:
-    """What stands in a table: the value, a smaller remark below it, and marks that say more than a colour."""
+    """A cell of a table: the value, a smaller remark below it, and marks, which need no colour to be seen."""
 
     text: str
     note: str = ""
@@ -51,8 +53,7 @@ class Cell:
 
 @dataclass(frozen=True)
 class Column:
-    """Columns in a row with the same group stand under one head. `words` are set from the left, numbers from the right.
-    """
+    """Neighbours with the same group stand under one head. `words` are aligned left, numbers right."""
 
     head: str
     group: str = ""
@@ -83,17 +84,8 @@ class Table:
 # Reading ------------------------------------------------------------------------------------------------------
 
 
-def dig(data: object, *keys: str) -> object:
-    """The value at the end of these keys, or None where the way ends before."""
-    for key in keys:
-        if not isinstance(data, dict):
-            return None
-        data = data.get(key)
-    return data
-
-
 def scene_title(report: Report, scene: str) -> str:
-    return str(dig(report, "scenes", scene, "title") or scene)
+    return report["scenes"][scene]["title"] if scene in report["scenes"] else scene
 
 
 def method_name(method: str) -> str:
@@ -106,31 +98,31 @@ def method_about(method: str) -> str:
     return ABOUT.get(method) or ABOUT_FAMILY.get(family, "").format(n=n)
 
 
-def truth_key(report: Report, scene: str) -> str:
-    """Against what a scene's wrong pixels are told: POV-Ray's mask, or kage's own `exact` where there is no mask."""
-    methods = dig(report, "quality", "scenes", scene) or {}
-    return "mask" if any(dig(entry, "mask") for entry in methods.values()) else "exact"
+def truth_key(report: Report, scene: str) -> Truth:
+    """The truth of a scene's wrong pixels: POV-Ray's mask, or kage's own `exact` where there is no mask."""
+    methods = data.qualities(report).get(scene, {})
+    return "mask" if any(entry["mask"] for entry in methods.values()) else "exact"
 
 
 def truth_name(report: Report, scene: str) -> str:
     if truth_key(report, scene) == "exact":
         return "kage's exact"
-    return f"{dig(report, 'quality', 'truth') or 'POV-Ray'}'s true displacement"
+    return f"{data.truth_version(report) or 'POV-Ray'}'s true displacement"
 
 
 def wrong_pixels(report: Report, scene: str, method: str) -> float | None:
-    return dig(report, "quality", "scenes", scene, method, truth_key(report, scene), "wrong")
+    return data.mask_metric(data.quality(report, scene, method), truth_key(report, scene), "wrong")
 
 
-def added_cost(report: Report, scene: str, method: str) -> dict | None:
-    return dig(report, "cost", "scenes", scene, "methods", method, "added")
+def added_cost(report: Report, scene: str, method: str) -> Interval | None:
+    return data.added_cost(data.cost(report, scene, method))
 
 
 def points(report: Report, scene: str) -> dict[str, tuple[float, float]]:
     """Cost (% over none) and wrong pixels (%) of the methods that have both, in the report's order."""
     found = {}
     for method in report["methods"]:
-        cost = 0.0 if method == "none" else dig(added_cost(report, scene, method), "median")
+        cost = 0.0 if method == "none" else data.median(added_cost(report, scene, method))
         wrong = wrong_pixels(report, scene, method)
         if cost is not None and wrong is not None:
             found[method] = (cost, wrong)
@@ -138,7 +130,7 @@ def points(report: Report, scene: str) -> dict[str, tuple[float, float]]:
 
 
 def front(report: Report, scene: str) -> list[str]:
-    """The methods that no other one beats in cost and error, from cheap to dear."""
+    """The methods that no other one beats in cost and error, the cheapest first."""
     found = points(report, scene)
     names = list(found)
     return [names[i] for i in stats.pareto(list(found.values()))]
@@ -147,39 +139,42 @@ def front(report: Report, scene: str) -> list[str]:
 # Sweeps -------------------------------------------------------------------------------------------------------
 
 
-def cheapest(wrong: dict[str, float | None] | None, by_cost: Sequence[str], bound: float) -> str | None:
-    """The first method in `by_cost` with at most `bound` % wrong; None where none is good enough."""
-    return next((m for m in by_cost if (value := dig(wrong, m)) is not None and value <= bound), None)
+def cheapest(wrong: Mapping[str, float | None] | None, by_cost: Sequence[str], bound: float) -> str | None:
+    """The first method in `by_cost` with at most `bound` % wrong; None where no method is good enough."""
+    known = wrong or {}
+    return next((m for m in by_cost if (value := known.get(m)) is not None and value <= bound), None)
 
 
-def reach(sweep: dict, row: int, method: str, bound: float) -> float | None:
+def reach(sweep: Sweep, row: int, method: str, bound: float) -> float | None:
     """The largest x up to which the method stays within `bound`, over the cells of that row that were measured."""
     last = None
     for x, cell in sorted(zip(sweep["x"]["values"], sweep["wrong"][row], strict=True), key=lambda pair: pair[0]):
-        value = dig(cell, method)
+        value = cell.get(method) if cell else None
         if value is not None and value > bound:
             break
         last = x if value is not None else last
     return last
 
 
-def rule_of_thumb(sweep: dict, row: int, bound: float = RULE_BOUND) -> str:
-    """Up to which x which method serves, from cheap to dear, without those that reach no further than a cheaper one."""
+def rule_of_thumb(sweep: Sweep, row: int, bound: float = RULE_BOUND) -> str:
+    """Each method with the largest x it is good for, the cheapest first, without those that reach no further than a
+    cheaper one."""
     measured = [x for x, cell in zip(sweep["x"]["values"], sweep["wrong"][row], strict=True) if cell is not None]
     if not measured:
         return "nothing measured"
-    parts, best = [], -math.inf
+    parts: list[str] = []
+    best = -math.inf
     for method in sweep["by_cost"]:
         limit = reach(sweep, row, method, bound)
         if limit is not None and limit > best:
             parts.append(f"{method_name(method)} to {short(limit)}")
             best = limit
         if best == max(measured):
-            return ", ".join(parts[:-1] + [f"{method_name(method)} to the end ({short(best)})"])
+            return ", ".join([*parts[:-1], f"{method_name(method)} to the end ({short(best)})"])
     return ", ".join(parts) + ("; beyond, none of these" if parts else "none of these is good enough")
 
 
-def rules(sweep: dict) -> list[tuple[str, str]]:
+def rules(sweep: Sweep) -> list[tuple[str, str]]:
     """A rule of thumb for each y."""
     return [(short(y), rule_of_thumb(sweep, row)) for row, y in enumerate(sweep["y"]["values"])]
 
@@ -194,7 +189,7 @@ def minus(text: str) -> str:
 
 
 def share(value: float | None) -> str:
-    """In %, two decimals, which is about a pixel of a shadow; what is less, but not 0, is told to be so."""
+    """In %, with two decimals, which is about a pixel of a shadow; a smaller value that is not 0 is `<0.01`."""
     if value is None:
         return MISSING
     return "<0.01" if 0 < value < 0.005 else f"{value:.2f}"
@@ -205,7 +200,7 @@ def added(value: float | None) -> str:
     if value is None:
         return MISSING
     digits = 0 if abs(value) >= 99.95 else 1
-    return f"{value:+.{digits}f}".replace("-", "−")
+    return minus(f"{value:+.{digits}f}")
 
 
 def short(value: float | None) -> str:
@@ -225,7 +220,7 @@ def short(value: float | None) -> str:
 
 
 def fixed(digits: int) -> Callable[[float | None], str]:
-    """A format with so many decimals, for columns that are to be compared."""
+    """A format with so many decimals, so that the values of a column can be compared."""
 
     def text(value: float | None) -> str:
         if value is None:
@@ -239,7 +234,7 @@ def memory(value: float | None) -> str:
     return MISSING if value is None else f"{value / 2**20:.1f}"
 
 
-def interval(value: dict | None, text: Callable[[float], str]) -> Cell:
+def interval(value: Interval | None, text: Callable[[float], str]) -> Cell:
     """The median, and the interval as a remark."""
     if value is None:
         return Cell(MISSING)
@@ -250,10 +245,10 @@ def interval(value: dict | None, text: Callable[[float], str]) -> Cell:
 
 BEST, FRONT = "★", "◆"
 MAIN_ABOUT = (
-    "wrong: pixels of the cast shadow that are lit or dark by mistake, in % of the shadow. added: time over none's, "
-    f"in %, with its 95 % interval below. {BEST} the fewest wrong of the methods that do not solve for the true hit, "
-    f"and the least added after none. {FRONT} on the Pareto front: no other method is both cheaper and better. "
-    f"{MISSING} not measured."
+    "wrong: pixels of the cast shadow that are lit or dark by mistake, in % of the shadow. added: the time above "
+    f"none's, in %, with its 95 % interval below. {BEST} the fewest wrong pixels of the methods that do not find the "
+    f"true hit, and the least added time of all except none. {FRONT} on the Pareto front: no other method is both "
+    f"cheaper and better. {MISSING} not measured."
 )
 
 
@@ -262,7 +257,7 @@ def head(method: str) -> Cell:
 
 
 def least(values: Iterable[tuple[str, float | None]], without: Sequence[str], text: Callable[[float], str]) -> set[str]:
-    """The methods with the smallest value; those that look the same in the table are equally good."""
+    """The methods with the smallest value; values that look the same in the table are equally good."""
     known = [(method, value) for method, value in values if value is not None and method not in without]
     if not known:
         return set()
@@ -278,7 +273,7 @@ def main_table(report: Report) -> Table:
         wrong = {m: wrong_pixels(report, scene, m) for m in methods}
         cost = {m: added_cost(report, scene, m) for m in methods}
         fewest = least(wrong.items(), TRUE, share)
-        cheap = least(((m, dig(c, "median")) for m, c in cost.items()), ("none",), added)
+        cheap = least(((m, data.median(c)) for m, c in cost.items()), ("none",), added)
         ahead = front(report, scene)
         for row, method in zip(rows, methods, strict=True):
             marks = (BEST if method in fewest else "") + (FRONT if method in ahead else "")
@@ -294,8 +289,8 @@ def main_table(report: Report) -> Table:
 Field = tuple[Column, Sequence[str], Callable[[float | None], str]]  # a column, the keys of its value, its format
 
 
-def field_table(title: str, about: str, entries: dict[str, object], fields: Sequence[Field]) -> Table:
-    """Methods by fields; a column of which nothing is known is left out."""
+def field_table(title: str, about: str, entries: Mapping[str, object], fields: Sequence[Field]) -> Table:
+    """Methods by fields, without the columns where nothing is known."""
     known = [field for field in fields if any(dig(entry, *field[1]) is not None for entry in entries.values())]
     rows = [[head(m), *(Cell(text(dig(entry, *keys))) for _, keys, text in known)] for m, entry in entries.items()]
     return Table(title, [Column("method", words=True), *(column for column, _, _ in known)], rows, about)
@@ -313,17 +308,19 @@ def image_fields(group: str, key: str) -> list[Field]:
     return [(Column(name, group), (key, measure), text) for measure, (name, text) in heads.items()]
 
 
-SHADOW_ABOUT = "IoU: shadow in both over shadow in either. Edges: distance between the shadows' edges, in pixels."
-OFFSET_ABOUT = ("τ: how far along the viewing ray the shadow ray starts from the smooth hit; its error is told against "
-                "exact's. Fell back: the guard chose a lower order. Edge moved: from where it is without bumps.")
-IMAGE_ABOUT = ("Hybrid: smooth shading with true shadows, by which a method is to be judged. Cast and self: the truly "
+SHADOW_ABOUT = ("IoU: pixels in both shadows over pixels in either. Edges: the distance between the shadows' edges, in "
+                "pixels.")
+OFFSET_ABOUT = ("τ: how far along the viewing ray the shadow ray starts from the smooth hit; its error is the "
+                "difference from exact's. Fell back: the guard chose a lower order. Edge moved: the distance from the "
+                "edge without bumps.")
+IMAGE_ABOUT = ("Hybrid: smooth shading with true shadows; judge a method by this one. Cast and self: the truly "
                "displaced surface without and with its own shadows; most of that error is shading, which no method "
-               "here touches. RMSE, SSIM and FLIP from 0 to 1, PSNR in dB.")
+               "here changes. RMSE, SSIM and FLIP from 0 to 1, PSNR in dB.")
 
 
 def quality_tables(report: Report, scene: str) -> list[Table]:
-    entries = {m: e for m in report["methods"] if (e := dig(report, "quality", "scenes", scene, m)) is not None}
-    truth = str(dig(report, "quality", "truth") or "POV-Ray")
+    entries = in_order(report, data.qualities(report).get(scene, {}))
+    truth = data.truth_version(report) or "POV-Ray"
     shadow = [*mask_fields(f"against {truth}", "mask"), *mask_fields("against kage's exact", "exact")]
     offset = [
         (Column("median", "error of τ, scene units"), ("tau", "median"), short),
@@ -341,68 +338,79 @@ def quality_tables(report: Report, scene: str) -> list[Table]:
     ]
 
 
+Value = TypeVar("Value")
+
+
+def in_order(report: Report, found: Mapping[str, Value]) -> dict[str, Value]:
+    """What was found by method, in the report's order."""
+    return {method: found[method] for method in report["methods"] if method in found}
+
+
 def parity_table(report: Report) -> Table | None:
-    """How true the truth is: kage's own displacement against POV-Ray's."""
-    parity = dig(report, "quality", "parity") or {}
+    """How far the truth can be trusted: kage's own displacement against POV-Ray's."""
+    parity = data.parities(report)
     if not parity:
         return None
-    rows = [[Cell(scene), Cell(share(dig(p, "self"))), Cell(share(dig(p, "cast"))),
-             Cell(f"{dig(p, 'mask_differs')} of {dig(p, 'mask_shadow')}" if dig(p, "mask_shadow") else MISSING)]
+    rows = [[Cell(scene), Cell(share(p["self"])), Cell(share(p["cast"])),
+             Cell(f"{p['mask_differs']} of {p['mask_shadow']}" if p["mask_shadow"] else MISSING)]
             for scene, p in parity.items()]
     return Table("kage's own displacement against POV-Ray's",
                  [Column("scene", words=True), Column("with own shadows", "pixels within 1/255, %"),
                   Column("without", "pixels within 1/255, %"), Column("shadow pixels that differ")], rows,
-                 "Two programs, one truth: where they agree, the reference is to be trusted.")
+                 "The two programs share no code: where they agree, the reference can be trusted.")
 
 
 def cost_table(report: Report, scene: str) -> Table:
-    entries = {m: e for m in report["methods"] if (e := dig(report, "cost", "scenes", scene, "methods", m)) is not None}
     rows = []
-    for method, entry in entries.items():
+    for method, entry in in_order(report, data.costs(report).get(scene, {})).items():
         rows.append([
-            head(method), interval(dig(entry, "ns"), fixed(1)), interval(dig(entry, "added"), added),
-            Cell(fixed(0)(dig(entry, "instructions"))), Cell(added(dig(entry, "instructions_added"))),
-            Cell(fixed(2)(dig(entry, "shadow_rays"))), Cell(fixed(2)(dig(entry, "lookups"))),
-            Cell(memory(dig(entry, "memory"))), Cell(fixed(2)(dig(entry, "build_s")))])
+            head(method), interval(entry["ns"], fixed(1)), interval(entry["added"], added),
+            Cell(fixed(0)(entry["instructions"])), Cell(added(entry["instructions_added"])),
+            Cell(fixed(2)(entry["shadow_rays"])), Cell(fixed(2)(entry["lookups"])),
+            Cell(memory(entry["memory"])), Cell(fixed(2)(entry["build_s"]))])
     columns = [Column("method", words=True), Column("ns", "time a pixel"), Column("added, %", "time a pixel"),
                Column("a pixel", "instructions"), Column("added, %", "instructions"), Column("shadow rays"),
                Column("look-ups"), Column("memory, MB"), Column("build, s")]
     return Table("Time, instructions, memory", columns, rows,
-                 "Medians with their 95 % intervals. Shadow rays a pixel; look-ups of the height a bumped sample; peak "
-                 "memory of the whole program; build: what is made before the first ray.")
+                 "Medians with their 95 % intervals. Shadow rays: per pixel. Look-ups: of the height, per bumped "
+                 "sample. Memory: the peak of the whole program. Build: the time before the first ray.")
+
+
+def stage_times(report: Report, scene: str) -> dict[str, dict[str, float]]:
+    """By method and stage, of the methods whose stages were timed, in the report's order."""
+    methods = in_order(report, data.costs(report).get(scene, {}))
+    return {method: entry["stages"] for method, entry in methods.items() if entry["stages"]}
 
 
 def stages(report: Report, scene: str) -> list[str]:
-    """The stages' names in kage's order, of all methods."""
-    methods = dig(report, "cost", "scenes", scene, "methods") or {}
-    return list(dict.fromkeys(stage for entry in methods.values() for stage in dig(entry, "stages") or {}))
+    """The names of all methods' stages, in kage's order."""
+    return list(dict.fromkeys(stage for times in stage_times(report, scene).values() for stage in times))
 
 
 def stage_table(report: Report, scene: str) -> Table:
     names = stages(report, scene)
-    methods = dig(report, "cost", "scenes", scene, "methods") or {}
-    rows = [[head(m), *(Cell(fixed(2)(dig(methods[m], "stages", name))) for name in names)]
-            for m in report["methods"] if dig(methods, m, "stages")]
+    rows = [[head(method), *(Cell(fixed(2)(times.get(name))) for name in names)]
+            for method, times in stage_times(report, scene).items()]
     return Table("Stages, ns a pixel", [Column("method", words=True), *(Column(name) for name in names)], rows)
 
 
 def peer_table(report: Report) -> Table | None:
-    """Other programs beside kage's none on the same scene."""
-    peers = dig(report, "cost", "peers") or []
+    """Other programs, and kage's none on the same scenes."""
+    peers = data.peers(report)
     if not peers:
         return None
     rows = []
     for peer in peers:
-        none = dig(report, "cost", "scenes", peer["scene"], "methods", "none", "ns", "median")
-        ns = dig(peer, "ns", "median")
-        times = f"{short(ns / none)}×" if ns and none else MISSING
+        none = data.cost(report, peer["scene"], "none")
+        base, ns = data.median(none and none["ns"]), data.median(peer["ns"])
+        times = f"{short(ns / base)}×" if ns and base else MISSING
         rows.append([
-            Cell(peer["name"]), Cell(peer["scene"]), interval(dig(peer, "ns"), fixed(1)), Cell(times),
-            Cell(fixed(2)(dig(peer, "build_s"))), Cell(memory(dig(peer, "memory"))), Cell(peer.get("note") or "")])
+            Cell(peer["name"]), Cell(peer["scene"]), interval(peer["ns"], fixed(1)), Cell(times),
+            Cell(fixed(2)(peer["build_s"])), Cell(memory(peer["memory"])), Cell(peer.get("note") or "")])
     return Table("Other programs on the same scenes",
                  [Column("program", words=True), Column("scene", words=True), Column("ns a pixel"),
                   Column("of kage's none"), Column("build, s"), Column("memory, MB"), Column("note", words=True)], rows,
-                 "Across renderers cost says little: these are yardsticks, and no claim rests on them.")
+                 "Renderers differ in too much for these times to judge a method: they show the order of magnitude.")
 
 
 def method_table(report: Report) -> Table:
@@ -414,28 +422,26 @@ def command_table(report: Report, scene: str) -> Table:
     """What to type for a scene's pictures and times."""
     rows = []
     for method in report["methods"]:
-        for what, keys in (("picture", ("quality", "scenes", scene, method, "command")),
-                           ("time", ("cost", "scenes", scene, "methods", method, "command"))):
-            command = dig(report, *keys)
+        picture, time = data.quality(report, scene, method), data.cost(report, scene, method)
+        for what, command in (("picture", picture and picture["command"]), ("time", time and time["command"])):
             if command:
-                rows.append([head(method), Cell(what), Cell(str(command))])
+                rows.append([head(method), Cell(what), Cell(command)])
     columns = [Column("method", words=True), Column("for", words=True), Column("command", words=True)]
     return Table(f"{scene}: commands", columns, rows)
 
 
 def circumstance_table(report: Report) -> Table:
     about = report["circumstances"]
-    packages = ", ".join(f"{name} {version or 'missing'}" for name, version in (about.get("packages") or {}).items())
-    load = ", ".join(short(value) for value in about.get("load") or [])
-    ram = about.get("memory")
-    commit = f"{about.get('commit')}{' with changes not committed' if about.get('dirty') else ''}"
+    packages = ", ".join(f"{name} {version or 'missing'}" for name, version in (about["packages"] or {}).items())
+    load = ", ".join(short(value) for value in about["load"] or [])
+    ram = about["memory"]
+    commit = f"{about['commit']}{' with changes not committed' if about['dirty'] else ''}"
     values = {
-        "date": about.get("date"), "command": about.get("command"), "level": report.get("level"),
-        "kage": about.get("kage"), "commit": commit if about.get("commit") else None,
-        "processor": about.get("processor"), "processors": about.get("processors"),
-        "memory": f"{ram / 2**30:.1f} GB" if ram else None, "system": about.get("system"),
-        "compiler": about.get("compiler"), "POV-Ray": about.get("povray"),
-        "packages": packages, "load when it began": load,
+        "date": about["date"], "command": about["command"], "level": report["level"], "kage": about["kage"],
+        "commit": commit if about["commit"] else None, "processor": about["processor"],
+        "memory": f"{ram / 2**30:.1f} GB" if ram else None, "system": about["system"],
+        "compiler": about["compiler"], "POV-Ray": about["povray"],
+        "packages": packages, "load when the report was made": load,
     }
     rows = [[Cell(name), Cell(str(value or MISSING))] for name, value in values.items()]
     return Table("The machine and the programs", [Column("", words=True), Column("", words=True)], rows)

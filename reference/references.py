@@ -1,13 +1,13 @@
-"""The references: what POV-Ray made of each scene with its bumps truly displaced, as the project keeps it.
+"""The references: each scene with its bumps truly displaced, rendered by POV-Ray and kept in the project.
 
 For a scene NAME this folder holds
 
-    NAME.exr        two pictures in linear light, half floats: `self.R` and so on, where rough surfaces cast shadows too,
-                    and `cast.R` and so on, where only the other objects do (the method's case)
-    NAME.mask.png   for each pixel, what it shows: one of the levels below
+    NAME.exr        two pictures in linear light, half floats: `self.R` and so on, where rough surfaces also cast
+                    shadows, and `cast.R` and so on, where only the other objects do (the method's case)
+    NAME.mask.png   what each pixel shows: one of the levels below
     manifest.json   what these were made from, by which commands, and digests of their pixels
 
-The rest of the project reads them through this file alone; reference/render.py makes them.
+The rest of the project reads them only through this file; reference/render.py makes them.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ class Reference:
     mask: np.ndarray
 
     def digest(self) -> str:
-        """Of the pixels alone: a file's bytes may also tell of the library that wrote it."""
+        """Of the pixels only: a file's bytes also depend on the library that wrote it."""
         sha = hashlib.sha256()
         for array in (*(self.pictures[name].astype("<f2") for name in PICTURES), self.mask):
             sha.update(repr(array.shape).encode() + array.tobytes())
@@ -57,14 +57,14 @@ class Reference:
 
 
 def read_exr(path: Path) -> dict[str, np.ndarray]:
-    import OpenEXR  # only where pictures are read and written: the bench goes on without it, and measures less
+    import OpenEXR  # here, as without it the bench still runs, and measures less
 
     with OpenEXR.File(str(path), separate_channels=True) as file:
         return {name: channel.pixels.copy() for name, channel in file.channels().items()}
 
 
 def write_exr(path: Path, channels: dict[str, np.ndarray]) -> None:
-    """As half floats. ZIP packs rows of all channels together, so that what two pictures share costs little."""
+    """As half floats. ZIP packs rows of all channels together, so that two similar pictures need little space."""
     import OpenEXR
 
     header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
@@ -72,7 +72,7 @@ def write_exr(path: Path, channels: dict[str, np.ndarray]) -> None:
 
 
 def stack(layers: dict[str, np.ndarray], prefix: str = "") -> np.ndarray:
-    """The picture among the layers: height x width x 3."""
+    """The picture in the layers PREFIXR, PREFIXG and PREFIXB: height x width x 3."""
     return np.stack([layers[prefix + c].astype(np.float32) for c in "RGB"], axis=-1)
 
 
@@ -103,7 +103,7 @@ def save(name: str, reference: Reference, folder: Path) -> None:
 
 
 def scene_digest(scene: Path) -> str:
-    """Of all that a scene is made of: its text, and the maps it names."""
+    """Of a scene's text and of the maps it names."""
     text = scene.read_text(encoding="utf-8")
     sha = hashlib.sha256(text.encode())
     for name in re.findall(r"\bfile:\s*([^\s,}]+)", text):
@@ -112,7 +112,7 @@ def scene_digest(scene: Path) -> str:
 
 
 def read_manifest(folder: Path = FOLDER) -> Manifest:
-    """By scene; empty where there is none, or one that was broken by hand."""
+    """By scene; empty where there is no manifest, or a broken one."""
     try:
         content = json.loads((folder / "manifest.json").read_text())
     except (OSError, ValueError):
@@ -127,7 +127,7 @@ def write_manifest(manifest: Manifest, folder: Path) -> None:
 
 
 def why_stale(name: str, wanted: dict[str, object], folder: Path = FOLDER) -> str:
-    """Why a reference must be made again; empty where it is good. `wanted` is what its entry in the manifest must say."""
+    """Why a reference must be made again; empty where it is good. Its entry in the manifest must have all `wanted`."""
     entry = read_manifest(folder).get(name)
     if entry is None:
         return "not in the manifest"

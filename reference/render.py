@@ -8,10 +8,10 @@
              where `cast` and `nocast` (no object casts a shadow) differ is the shadow; where `nocast` and `dark` (no
              light) do not, the surface is turned away from the light; and in `dark` each object has its own flat colour
 
-A reference is good while its scene, its maps, what `kage pov` writes for it, the commands and the version of POV-Ray are
-those of reference/manifest.json, and its pixels too (pixels, not bytes: POV-Ray's files carry their date). The others are
-stale, and only they are made again. Files are written aside and renamed, the manifest last: what an interruption leaves
-behind is a good reference or a stale one, never a bad one that passes for good.
+A reference is good while its scene, its maps, what `kage pov` writes for it, the commands, the version of POV-Ray and
+its pixels are those of reference/manifest.json (pixels, not bytes: POV-Ray's files carry their date). The others are
+stale, and only they are made again. Files are written under other names and renamed, the manifest last: so after an
+interruption a reference is good or stale, and a bad one is never taken for good.
 
 status: 0 all references are good, 1 some are stale (--check) or can't be made, 2 wrong usage, 130 interrupted
 """
@@ -31,19 +31,24 @@ import tempfile
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
-import references
-from references import AWAY, ELSEWHERE, FOLDER, LIT, MASK_SIZE, PICTURE_SIZE, SHADOW, TOP, Reference, ReferenceError
 
-WORK = Path("out") / "reference"  # from TOP, where all commands run: so they are the same everywhere
+if TYPE_CHECKING:
+    from reference import references
+else:
+    import references  # this file is run by its path, so its folder is searched
+
+FOLDER, TOP, ReferenceError = references.FOLDER, references.TOP, references.ReferenceError
+WORK = Path("out") / "reference"  # relative to TOP, where all commands run, so that they are the same everywhere
 FLAGS = ("+FE", "-A", "-D", "-P", "-V")  # EXR, no antialiasing, no window, no waiting, no count of lines
 HALF_ULP = 2.0**-11  # POV-Ray writes half floats: a relative step
 
 
 @dataclass(frozen=True)
 class Shot:
-    """One render by POV-Ray: its name, its size, and what `kage pov` is told."""
+    """One render by POV-Ray: its name, its size, and the options of `kage pov`."""
 
     name: str
     size: tuple[int, int]
@@ -51,8 +56,9 @@ class Shot:
 
 
 def shots(lights: Sequence[str], scale: int = 1) -> tuple[Shot, ...]:
-    """`scale`: times the width and height of those that are kept in reference/."""
-    picture, mask = (PICTURE_SIZE[0] * scale, PICTURE_SIZE[1] * scale), (MASK_SIZE[0] * scale, MASK_SIZE[1] * scale)
+    """`scale`: width and height, in those of the references in reference/."""
+    (width, height), (mask_width, mask_height) = references.PICTURE_SIZE, references.MASK_SIZE
+    picture, mask = (width * scale, height * scale), (mask_width * scale, mask_height * scale)
     dark = tuple(word for light in lights for word in ("--set", f"lights.{light}.color=[0, 0, 0]"))
     return (
         Shot("self", picture, ()),
@@ -63,7 +69,7 @@ def shots(lights: Sequence[str], scale: int = 1) -> tuple[Shot, ...]:
     )
 
 
-# What kage and POV-Ray are told ---------------------------------------------------------------------
+# The commands of kage and POV-Ray -------------------------------------------------------------------
 
 
 def run(command: Sequence[str | Path]) -> str:
@@ -100,7 +106,7 @@ def povray_command(name: str, shot: Shot) -> list[str]:
 
 
 def commands(name: str, plan: Sequence[Shot]) -> list[str]:
-    """As they stand in the manifest; to be typed in TOP."""
+    """As they are in the manifest: for a shell in TOP."""
     return [shlex.join(command) for shot in plan
             for command in (["build/float/kage", *export_command(name, shot)], povray_command(name, shot))]
 
@@ -119,7 +125,7 @@ def export(kage: Path, name: str, shot: Shot) -> Path:
 
 
 def export_digest(kage: Path, name: str, shot: Shot) -> str:
-    """Of what kage writes for one shot; the others differ from it by options, and a mesh's fineness."""
+    """Of what kage writes for one shot; the others differ only by options and the resolution of meshes."""
     path = export(kage, name, shot)
     digest = hashlib.sha256(path.read_bytes()).hexdigest()
     path.unlink()
@@ -131,30 +137,30 @@ def povray_version() -> str:
         raise ReferenceError("POV-Ray is missing: `scripts/bootstrap povray` installs it (Debian: povray)")
     found = re.search(r"POV-Ray \d\S*", run(["povray", "--version"]))
     if not found:
-        raise ReferenceError("`povray --version` does not tell its version: is that POV-Ray?")
+        raise ReferenceError("`povray --version` does not tell its version, expected `POV-Ray 3...`")
     return found[0]
 
 
 def shoot(kage: Path, name: str, shot: Shot) -> np.ndarray:
-    """Render; the picture. An old file must not pass for a new one, so it goes first."""
+    """The picture of a shot. An old file is removed first, so that it is not taken for the new one."""
     scene = export(kage, name, shot)
     path = scene.with_suffix(".exr")
     path.unlink(missing_ok=True)
     command = povray_command(name, shot)
     text = run(command)
     path.with_suffix(".log").write_text(text)
-    # An isosurface whose max_gradient is too low has holes, and POV-Ray only warns; one whose max_gradient is higher
-    # than need be is slower, and POV-Ray warns of that too.
+    # An isosurface whose max_gradient is too low has holes, and POV-Ray only warns. It also warns of one that is higher
+    # than needed; that is only slower.
     if "contain holes" in text:
-        raise ReferenceError(f"{shlex.join(command)}: POV-Ray found max_gradient too low, the surface may have holes; "
-                             f"its words are in {WORK / f'{name}-{shot.name}.log'}")
+        raise ReferenceError(f"{shlex.join(command)}: POV-Ray found max_gradient too low, so the surface may have "
+                             f"holes; its message is in {WORK / f'{name}-{shot.name}.log'}")
     try:
         picture = references.stack(references.read_exr(path))
     except (OSError, RuntimeError, KeyError) as error:
         raise ReferenceError(f"{shlex.join(command)}: no good picture came out: {error}") from error
     if picture.shape != (shot.size[1], shot.size[0], 3) or not np.isfinite(picture).all():
         raise ReferenceError(f"{shlex.join(command)}: a picture of another size, or with values that are no numbers")
-    scene.unlink()  # a mesh takes a hundred megabytes; where something failed it stays, to be looked at
+    scene.unlink()  # a mesh takes a hundred megabytes; it stays where something failed, to find out why
     return picture
 
 
@@ -163,20 +169,22 @@ def shoot(kage: Path, name: str, shot: Shot) -> np.ndarray:
 
 def receiver(dark: np.ndarray, colors: Sequence[np.ndarray]) -> np.ndarray:
     """Where the picture without light shows one of the ambient colours."""
-    return np.any([(np.abs(dark - c) <= HALF_ULP * np.maximum(c, HALF_ULP)).all(axis=-1) for c in colors], axis=0)
+    like = [(np.abs(dark - c) <= HALF_ULP * np.maximum(c, HALF_ULP)).all(axis=-1) for c in colors]
+    anywhere: np.ndarray = np.any(like, axis=0)
+    return anywhere
 
 
 def make_mask(cast: np.ndarray, nocast: np.ndarray, dark: np.ndarray, colors: Sequence[np.ndarray]) -> np.ndarray:
-    """Three renders by one program: what is the same in them is so to the bit."""
-    mask = np.full(dark.shape[:2], LIT, dtype=np.uint8)
-    mask[(nocast != cast).any(axis=-1)] = SHADOW
-    mask[(nocast == dark).all(axis=-1)] = AWAY
-    mask[~receiver(dark, colors)] = ELSEWHERE
+    """From three renders by one program: where they show the same, their pixels are equal to the bit."""
+    mask = np.full(dark.shape[:2], references.LIT, dtype=np.uint8)
+    mask[(nocast != cast).any(axis=-1)] = references.SHADOW
+    mask[(nocast == dark).all(axis=-1)] = references.AWAY
+    mask[~receiver(dark, colors)] = references.ELSEWHERE
     return mask
 
 
 def receiver_colors(kage: Path, name: str, lights: Sequence[str]) -> list[np.ndarray]:
-    """What bumped objects look like without light, from kage's own picture: there a layer tells them apart."""
+    """The colours of bumped objects without light, from kage's own picture: one of its layers shows where they are."""
     dark = [word for light in lights for word in ("--set", f"lights.{light}.color=[0, 0, 0]")]
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "dark.exr"
@@ -193,17 +201,18 @@ def receiver_colors(kage: Path, name: str, lights: Sequence[str]) -> list[np.nda
 # References -----------------------------------------------------------------------------------------
 
 
-def make(kage: Path, name: str, plan: Sequence[Shot], lights: Sequence[str]) -> Reference:
+def make(kage: Path, name: str, plan: Sequence[Shot], lights: Sequence[str]) -> references.Reference:
     pictures = {shot.name: shoot(kage, name, shot) for shot in plan}
     mask = make_mask(pictures["mask-cast"], pictures["mask-nocast"], pictures["mask-dark"],
                      receiver_colors(kage, name, lights))
-    if not ((mask == SHADOW).any() and (mask == LIT).any()):
+    if not ((mask == references.SHADOW).any() and (mask == references.LIT).any()):
         raise ReferenceError(f"{scene_path(name)}: POV-Ray's pictures show no shadow on the receiver, or nothing else")
-    return Reference({kind: pictures[kind] for kind in references.PICTURES}, mask)
+    return references.Reference({kind: pictures[kind] for kind in references.PICTURES}, mask)
 
 
-def keep(name: str, reference: Reference, entry: dict[str, object], folder: Path) -> None:
-    """Put a reference and its entry in their place. Between two renames its pixels are not the manifest's: stale."""
+def keep(name: str, reference: references.Reference, entry: dict[str, object], folder: Path) -> None:
+    """Put a reference and its entry in their place. Until the last rename its pixels are not the manifest's, so it is
+    stale."""
     with tempfile.TemporaryDirectory(dir=folder, prefix=".new-") as aside:
         references.save(name, reference, Path(aside))
         for file in references.files(name):
@@ -215,7 +224,7 @@ def keep(name: str, reference: Reference, entry: dict[str, object], folder: Path
 
 
 def update(options: argparse.Namespace, name: str, version: str) -> bool:
-    """Look at one reference, and make it where it is stale and this is no mere check. Whether it is good then."""
+    """Make one reference if it is stale and --check is not given. Whether it is good now."""
     lights = lights_of(options.kage, scene_path(name))
     plan = shots(lights, options.scale)
     wanted: dict[str, object] = {
@@ -238,7 +247,7 @@ def update(options: argparse.Namespace, name: str, version: str) -> bool:
 
 
 def update_all(options: argparse.Namespace) -> int:
-    """Each by itself: what one scene lacks is no reason to leave the others stale."""
+    """Each by itself: if one can't be made, the others still are. The exit status."""
     try:
         version = povray_version()
     except ReferenceError as error:
@@ -264,13 +273,14 @@ def parse_arguments(arguments: Sequence[str] | None) -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="render.py", description=about, epilog="status:" + status,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("scenes", nargs="*", metavar="SCENE", help=f"{', '.join(references.SCENES)} (all)")
-    parser.add_argument("--check", action="store_true", help="only tell which are stale")
-    parser.add_argument("--all", action="store_true", help="make the good ones again, too")
+    parser.add_argument("--check", action="store_true", help="only name those that are stale")
+    parser.add_argument("--all", action="store_true", help="also make the good ones again")
     parser.add_argument("--kage", type=Path, default=TOP / "build" / "float" / "kage", metavar="FILE",
                         help="the program that writes the scenes for POV-Ray (the project's build/float/kage)")
     parser.add_argument("--scale", type=int, choices=range(1, 9), default=1, metavar="N",
-                        help="N times as wide and high as those in reference/ (1; for another --folder)")
-    parser.add_argument("--folder", type=Path, default=FOLDER, metavar="DIR", help="where the references are (reference/)")
+                        help="N times as wide and high as those in reference/ (1; more only with --folder)")
+    parser.add_argument("--folder", type=Path, default=FOLDER, metavar="DIR",
+                        help="where the references are (reference/)")
     options = parser.parse_args(arguments)
     for name in options.scenes:
         if name not in references.SCENES:
@@ -281,7 +291,7 @@ def parse_arguments(arguments: Sequence[str] | None) -> argparse.Namespace:
         parser.error("--check makes nothing: it can't go with --all")
     options.kage, options.folder = options.kage.resolve(), options.folder.resolve()
     if not os.access(options.kage, os.X_OK):
-        parser.error(f"{options.kage} is not there, or no program: `make build/float/kage` makes it")
+        parser.error(f"{options.kage} is not there, or is not a program: `make build/float/kage` builds it")
     return options
 
 

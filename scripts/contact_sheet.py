@@ -2,8 +2,8 @@
 """Put pictures side by side, labelled, on one sheet.
 
 Every pixel of a picture is one pixel of the sheet, so that nothing is blurred or resampled. With
---crop each picture also shows one region of itself, enlarged by a whole factor with hard pixels,
-below it: there the edges of shadows can be compared at a glance.
+--crop there is also one region of each picture below it, enlarged by a whole factor with hard
+pixels, to compare the edges of shadows.
 
 The same pictures give the same bytes: the sheet carries no date and uses the font that comes with
 matplotlib.
@@ -34,7 +34,7 @@ Box = tuple[int, int, int, int]  # x0, y0, x1, y1 in pixels, x1 and y1 outside
 
 
 class SheetError(Exception):
-    """Something the caller should be told in one line."""
+    """What is wrong with a picture or an option, in one line."""
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,7 @@ def read_srgb(path: Path) -> np.ndarray:
     """A PNG as height x width x 3 bytes. Colour PNGs of 16 bits come from Pillow as 8."""
     try:
         with Image.open(path) as image:
-            if image.mode.startswith("I"):  # 16-bit grey, which Pillow would clip rather than scale
+            if image.mode.startswith("I"):  # 16-bit grey: Pillow would clip it, not scale it
                 grey = np.rint(np.asarray(image, dtype=np.float64) / 257.0).astype(np.uint8)
                 return np.repeat(grey[:, :, None], 3, axis=2)
             return np.asarray(image.convert("RGB"))
@@ -124,7 +124,7 @@ class Sheet:
             points -= 0.25
             if points < SMALLEST_POINTS:
                 raise SheetError(f"'{text}' is too long for a width of {room} pixels")
-            line.set_size(points)
+            line.set_fontsize(points)
 
     def save(self, path: Path) -> None:
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -184,7 +184,7 @@ def main() -> int:
         "--crop", type=parse_crop, metavar="X0,Y0,X1,Y1", help="also show this region of each picture, enlarged"
     )
     options = parser.parse_args()
-    matplotlib.rcdefaults()  # whatever style the user has chosen elsewhere
+    matplotlib.rcdefaults()  # not the user's own style
     try:
         cells = read_cells(options.pictures)
         make_sheet(cells, options.title, options.columns, options.crop).save(options.output)

@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
-"""Break scenes at random and see that kage answers each with a picture or an error, never with a crash.
+"""Change scenes at random and check that kage answers each with a picture or an error, never with a crash.
 
-Run n (of --seed) mutates one of the scenes: bytes changed, cut out, doubled or put in, tokens swapped for others, numbers
-for strange ones. The same seed gives the same runs; `--only N` repeats one. What fails is kept, with its command.
+Run n (of --seed) changes one of the scenes: bytes are replaced, removed, repeated or inserted, tokens are swapped, and
+numbers become strange ones. The same seed gives the same runs; `--only N` repeats one. A scene that fails is kept, and
+its command is printed.
 
     scripts/venv python scripts/fuzz.py --count 10000 --program build/float/kage
 """
@@ -21,12 +22,15 @@ TOP = Path(__file__).resolve().parent.parent
 
 TOKEN = re.compile(rb"[A-Za-z_]+|[-+.0-9e]+|[ \t]+|\n|.", re.DOTALL)
 STRANGE = [
-    b"0", b"-1", b"1e6", b"1e-6", b"-1e6", b"1e38", b"1e-45", b"1e999", b"nan", b".inf", b"0x7f", b"32768", b"2147483648", b"''",
-    b"[", b"]", b"{", b"}", b"[]", b"{}", b":", b": ", b",", b"- ", b"? ", b"&a ", b"*a", b"<<: ", b"!!str ", b"|\n", b">\n", b"'",
-    b'"', b'"\\', b"#", b"---\n", b"...\n", b"%YAML 1.1\n", b"\t", b"\r", b"\0", b"\xff", b"\xef\xbb\xbf", b"\xe2\x80\xa8", b"~",
-    b"null", b"true", b"none", b"2+", b"march:64", b"iter:64", b"function: ", b"sin(u)", b"u/w", b"noise(u,w)", b"u^w^u", b"clamp(u,1,0)",
-    b"map", b"plane", b"rectangle", b"box", b"sphere", b"disc", b"cylinder", b"cone", b"torus", b"transform", b"copy", b"rotate", b"open", b"from_radius", b"mirror", b"corners", b"down", b"../", b"/",
-]  # fmt: skip
+    b"0", b"-1", b"1e6", b"1e-6", b"-1e6", b"1e38", b"1e-45", b"1e999", b"nan", b".inf", b"0x7f", b"32768",
+    b"2147483648", b"''", b"[", b"]", b"{", b"}", b"[]", b"{}", b":", b": ", b",", b"- ", b"? ", b"&a ", b"*a", b"<<: ",
+    b"!!str ", b"|\n", b">\n", b"'", b'"', b'"\\', b"#", b"---\n", b"...\n", b"%YAML 1.1\n", b"\t", b"\r", b"\0",
+    b"\xff", b"\xef\xbb\xbf", b"\xe2\x80\xa8", b"~", b"null", b"true", b"none", b"2+", b"march:64", b"iter:64",
+    b"function: ", b"sin(u)", b"u/w", b"noise(u,w)", b"u^w^u", b"clamp(u,1,0)", b"map", b"plane", b"rectangle", b"box",
+    b"sphere", b"disc", b"cylinder", b"cone", b"torus", b"transform", b"copy", b"rotate", b"open", b"from_radius",
+    b"mirror", b"corners", b"down", b"../", b"/",
+]
+NUMBERS = STRANGE[:14]
 
 
 def mutate_bytes(data: bytearray, rng: random.Random) -> None:
@@ -58,7 +62,7 @@ def mutate_tokens(data: bytearray, rng: random.Random) -> None:
         case _:
             numbers = [k for k, token in enumerate(tokens) if re.fullmatch(rb"-?[0-9.]+", token)]
             if numbers:
-                tokens[rng.choice(numbers)] = rng.choice(STRANGE[:14])
+                tokens[rng.choice(numbers)] = rng.choice(NUMBERS)
     data[:] = b"".join(tokens)
 
 
@@ -74,7 +78,8 @@ def run(program: Path, scene: Path, out: Path, rng: random.Random) -> tuple[list
     method = rng.choice(["none", "0", "1", "2", "2+", "iter:3", "march:4"])
     commands = [
         ["render", "-o", str(out), "--size", "17x9", "--threads", "1", "--shadow", method],
-        ["render", "-o", str(out.with_suffix(".exr")), "--size", "5x5", "--threads", "2", "--no-guard", "--shadow", method],
+        ["render", "-o", str(out.with_suffix(".exr")), "--size", "5x5", "--threads", "2", "--no-guard",
+         "--shadow", method],
         ["pixel", "8,4", "--size", "17x9"],
     ]
     name, *rest = rng.choice(commands)
@@ -89,7 +94,7 @@ def run(program: Path, scene: Path, out: Path, rng: random.Random) -> tuple[list
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description="Break scenes at random and see that kage bears it.")
+    parser = argparse.ArgumentParser(description="Change scenes at random and check that kage does not crash.")
     parser.add_argument("--program", type=Path, default=TOP / "build" / "float" / "kage")
     parser.add_argument("--count", type=int, default=1000, help="runs (1000)")
     parser.add_argument("--seed", type=int, default=1)
@@ -107,13 +112,13 @@ def main() -> int:
         scene = options.keep / f"{options.seed}-{number}.yaml"
         scene.write_bytes(mutated(rng.choice(originals), rng))
         out = options.keep / "out.png"
-        command, status, told = run(program, scene, out, rng)
+        command, status, message = run(program, scene, out, rng)
         good += status == 0
         if status in (0, 2):
             scene.unlink()
             continue
         failed += 1
-        print(f"run {number}: {status}: {shlex.join(command)}\n{told[-2000:].decode(errors='replace')}", flush=True)
+        print(f"run {number}: {status}: {shlex.join(command)}\n{message[-2000:].decode(errors='replace')}", flush=True)
     for path in (options.keep / "out.png", options.keep / "out.exr", options.keep / "data"):
         path.unlink(missing_ok=True)
     print(f"{options.count if options.only is None else 1} runs, {good} pictures, {failed} failures")

@@ -1,9 +1,9 @@
-"""The gallery's page: each scene of scenes/gallery by `none`, as renderers with bump mapping do it, beside its best method.
+"""The gallery's page: each scene of scenes/gallery by `none`, as plain bump mapping does it, beside its best method.
 
     scripts/venv python scripts/gallery.py -o out/gallery/index.html scenes/gallery/*.yaml
 
-Scene NAME has its pictures NAME-none.png and NAME.png beside the page (`make render` makes them). What is told of a scene is
-the comment that begins its file; its best method is the `shadow` in it.
+Scene NAME has its pictures NAME-none.png and NAME.png beside the page (`make render` makes them). The text about a
+scene is the comment at the start of its file; its best method is the `shadow` in it.
 """
 
 from __future__ import annotations
@@ -34,15 +34,18 @@ img { width: 100%; height: auto; display: block; }
 figcaption, code { font-size: .85rem; }
 </style>
 <h1>Shadows that follow the bumps</h1>
-<p>Left, bump mapping alone: the shadow of other objects runs straight over the bumps. Right, the same scene by the method named.</p>
+<p>Left: bump mapping alone. The shadows of other objects run straight over the bumps.
+Right: the same scene by the method below it.</p>
 {% for scene in scenes %}
 <section>
 <h2>{{ scene.name }}</h2>
 <p>{{ scene.about }}</p>
 <div class="pair">
-<figure><img src="{{ scene.name }}-none.png" width="{{ scene.size[0] }}" height="{{ scene.size[1] }}" alt="{{ scene.about }} By none.">
+<figure><img src="{{ scene.name }}-none.png" width="{{ scene.size[0] }}" height="{{ scene.size[1] }}"
+alt="{{ scene.about }} By none.">
 <figcaption>none</figcaption></figure>
-<figure><img src="{{ scene.name }}.png" width="{{ scene.size[0] }}" height="{{ scene.size[1] }}" alt="{{ scene.about }} By {{ scene.method }}.">
+<figure><img src="{{ scene.name }}.png" width="{{ scene.size[0] }}" height="{{ scene.size[1] }}"
+alt="{{ scene.about }} By {{ scene.method }}.">
 <figcaption>{{ scene.method }}</figcaption></figure>
 </div>
 <code>build/float/kage render scenes/gallery/{{ scene.name }}.yaml --aa 3</code>
@@ -58,6 +61,8 @@ class GalleryError(Exception):
 
 @dataclass(frozen=True)
 class Scene:
+    """What the page shows of a scene."""
+
     name: str
     about: str
     method: str

@@ -1,17 +1,17 @@
 #!/usr/bin/env python3
 """Make scenes/data/bumps.png, the height map of the paper's figures.
 
-The map shows 288 soft, rounded bumps. Laid once on a ground of 12 x 12 units they are 0.4 to 0.5
-wide and 0.75 apart: about a third of a cube of 1.2, so that several of them meet each edge of
-its shadow. What the method needs of such a map, and why it is made this way:
+The map shows 288 soft, rounded bumps. On a ground of 12 x 12 units they are 0.4 to 0.5 wide and
+0.75 apart: about a third of a cube of 1.2, so that several of them meet each edge of its shadow.
+The method needs a map with these properties:
 
-- Smooth, for its first and second derivatives come from central differences: a sum of Gaussians,
+- Smooth, as its first and second derivatives come from central differences: a sum of Gaussians,
   each some 30 samples wide, without noise.
-- Even slopes, for at one steep place orders 1 and 2 fall back (or, unguarded, fail) and the
-  picture would be about that place: a jittered lattice, rather than filtered noise with its
-  long tails.
+- Even slopes. At a steep place orders 1 and 2 fall back (or fail, without the guard), and such a
+  place would dominate the picture. So the bumps are on a jittered lattice; filtered noise has a
+  few very steep places.
 - Periodic, so that it can be repeated without a seam: distances are taken around the torus.
-- Using all 65536 levels, so that the samples' rounding stays far below the bumps' curvature.
+- All 65536 levels in use, so that the samples' rounding stays far below the bumps' curvature.
 
 The same bytes come out of every run: the seed is fixed.
 """
@@ -38,7 +38,8 @@ def profile(centres: np.ndarray) -> np.ndarray:
     """One Gaussian per centre (rows), at the middles of SIZE samples (columns) around a circle of length 1."""
     distance = (np.arange(SIZE) + 0.5) / SIZE - centres[:, None]
     distance -= np.rint(distance)
-    return np.exp(-0.5 * (distance / RADIUS) ** 2)
+    heights: np.ndarray = np.exp(-0.5 * (distance / RADIUS) ** 2)
+    return heights
 
 
 def bumps() -> np.ndarray:
@@ -50,9 +51,10 @@ def bumps() -> np.ndarray:
     y = ((row + shift_y) / ROWS).ravel()
     weight = random.uniform(1.0 - UNEVEN, 1.0, ROWS * COLUMNS)
     # A Gaussian of two variables is a product, so the sum over the bumps is one matrix product.
-    height = (profile(y) * weight[:, None]).T @ profile(x)
+    height: np.ndarray = (profile(y) * weight[:, None]).T @ profile(x)
     height = (height - height.min()) / (height.max() - height.min())
-    return np.rint(height * 65535.0).astype(np.uint16)
+    levels: np.ndarray = np.rint(height * 65535.0).astype(np.uint16)
+    return levels
 
 
 def main() -> None:

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Make scenes/data/jacksboro.exr from matplotlib's sample elevation model.
 
-The elevations are whole metres from 236 to 1076. OpenEXR's half holds whole numbers to 2048 exactly,
-so the map keeps every sample, in metres, without a scale to remember; as PIZ-compressed half it is also
-smaller than the 16-bit PNG. See scenes/data/README.md for the origin and the units.
+The elevations are whole metres from 236 to 1076. OpenEXR's half holds whole numbers up to 2048 exactly,
+so the map keeps every sample in metres and needs no scale. As PIZ-compressed half it is also smaller
+than a 16-bit PNG. See scenes/data/README.md for the origin and the units.
 """
 
 from __future__ import annotations
@@ -21,9 +21,9 @@ CHANNEL = "elevation"
 
 def elevation() -> np.ndarray:
     """The elevations in metres as half floats: first row north, first column west."""
-    with get_sample_data("jacksboro_fault_dem.npz") as dem:
+    with np.load(get_sample_data("jacksboro_fault_dem.npz", asfileobj=False)) as dem:
         metres = dem["elevation"]
-    half = metres.astype(np.float16)
+    half: np.ndarray = metres.astype(np.float16)
     if not np.array_equal(half, metres):
         raise SystemExit("make_dem: these elevations are not exact in half floats")
     return half

@@ -1,7 +1,8 @@
 """Make scenes/data/lantern.obj: a lantern on a wrought-iron bracket, of tubes along curves and of turned profiles.
 
-Right-handed and y up, as OBJ files are. The bracket lies in the plane z = 0, from its bar at x = 0 to the lantern at x = 1.75. Texture coordinates
-are lengths in scene units: along u around each part, along v on it; seen from outside u goes to the right where v goes up.
+Right-handed and y up, as OBJ files are. The bracket lies in the plane z = 0, from its bar at x = 0 to the lantern at
+x = 1.75. Texture coordinates are lengths in scene units: u goes around each part and v along it. Seen from outside,
+where v goes up, u goes to the right.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ SIDES = 8  # of a tube
 
 
 def add(a: Vector, b: Vector, k: float = 1) -> Vector:
+    """a + k b."""
     return (a[0] + k * b[0], a[1] + k * b[1], a[2] + k * b[2])
 
 
@@ -35,13 +37,16 @@ def unit(a: Vector) -> Vector:
 
 
 class Model:
+    """The lines of an OBJ file: places, texture coordinates and faces."""
+
     def __init__(self) -> None:
         self.at: list[str] = []
         self.uv: list[str] = []
         self.face: list[str] = []
 
     def grid(self, rows: list[list[Vector]], u: list[list[float]], v: list[float]) -> None:
-        """Quads between rows that close around, each from low to high v; places are shared where a row closes, texture coordinates are not."""
+        """Quads between rows of places, in the order of v. Each row is a ring: its first place also ends it, but there
+        the texture coordinate is another."""
         n, first_at, first_uv = len(rows[0]), len(self.at) + 1, len(self.uv) + 1
         for row, us, y in zip(rows, u, v, strict=True):
             self.at += [f"v {x:.4f} {y:.4f} {z:.4f}\n" for x, y, z in row]
@@ -52,17 +57,24 @@ class Model:
                 for end, spare in ((j, 1), (j + 1, 2)):  # a row that is one place, as at a tip
                     if rows[end][0] == rows[end][1]:
                         del corners[spare]
-                self.face.append("f " + " ".join(f"{first_at + a * n + b % n}/{first_uv + a * (n + 1) + b}" for a, b in corners) + "\n")
+                words = (f"{first_at + a * n + b % n}/{first_uv + a * (n + 1) + b}" for a, b in corners)
+                self.face.append(f"f {' '.join(words)}\n")
 
     def tube(self, path: list[Vector], radius: float | list[float], closed: bool = False) -> None:
-        """Rings about the places of a path, each turned as little as can be against the one before; with ends, unless it is closed."""
+        """Rings about the places of a path, each turned as little as possible against the one before. A tube that is
+        not closed has ends."""
         n = len(path)
-        ahead = [unit(add(path[(k + 1) % n] if closed else path[min(k + 1, n - 1)], path[(k - 1) % n] if closed else path[max(k - 1, 0)], -1))
-                 for k in range(n)]
+
+        def place(k: int) -> Vector:
+            return path[k % n] if closed else path[min(max(k, 0), n - 1)]
+
+        ahead = [unit(add(place(k + 1), place(k - 1), -1)) for k in range(n)]
         x = unit(cross(ahead[0], (0, 0, 1) if abs(ahead[0][2]) < 0.9 else (1, 0, 0)))
         radii = radius if isinstance(radius, list) else [radius] * n
-        rows, length, lengths = [], 0.0, []
-        for k in list(range(n)) + ([0] if closed else []):
+        rows: list[list[Vector]] = []
+        lengths: list[float] = []
+        length = 0.0
+        for k in [*range(n), *([0] if closed else [])]:
             x = unit(add(x, ahead[k], -dot(x, ahead[k])))
             z = cross(x, ahead[k])
             turn = [2 * math.pi * i / SIDES for i in range(SIDES)]
@@ -79,7 +91,8 @@ class Model:
         """(radius, y) from bottom to top, about the vertical through x."""
         rows, length, lengths = [], 0.0, []
         for k, (r, y) in enumerate(profile):
-            rows.append([(x + r * math.sin(2 * math.pi * i / sides), y, r * math.cos(2 * math.pi * i / sides)) for i in range(sides)])
+            turns = [2 * math.pi * i / sides for i in range(sides)]
+            rows.append([(x + r * math.sin(a), y, r * math.cos(a)) for a in turns])
             length += math.dist(profile[k], profile[k - 1]) if k else 0
             lengths.append(length)
         most = max(r for r, _ in profile)
@@ -107,16 +120,20 @@ def lantern() -> Model:
     m.tube([(0.03, -1.35 + 0.25 * k, 0) for k in range(2)] + spiral(0.62, -0.36, 0.56, 1.6, math.pi * 1.05, 44), 0.04)
     m.tube(spiral(0.5, 0.49, 0.21, -1.4, math.pi * 1.5, 30), 0.032)
     m.tube(spiral(1.2, -0.02, 0.24, 1.3, math.pi * 0.5, 30), 0.032)
-    m.tube([(1.75 + 0.11 * math.sin(a), 0.12 + 0.13 * math.cos(a), 0.0) for a in (2 * math.pi * k / 16 for k in range(16))], 0.025, closed=True)
+    link = [2 * math.pi * k / 16 for k in range(16)]
+    m.tube([(1.75 + 0.11 * math.sin(a), 0.12 + 0.13 * math.cos(a), 0.0) for a in link], 0.025, closed=True)
     # the lantern: knob and roof, six leaning posts with two hoops, a floor, the candle
     x = 1.75
-    m.turned(x, [(0, -0.42), (0.40, -0.46), (0.44, -0.42), (0.26, -0.24), (0.16, -0.16), (0.10, -0.10), (0.10, -0.06), (0.05, -0.03), (0, -0.02)], 18)
+    m.turned(x, [(0, -0.42), (0.40, -0.46), (0.44, -0.42), (0.26, -0.24), (0.16, -0.16), (0.10, -0.10), (0.10, -0.06),
+                 (0.05, -0.03), (0, -0.02)], 18)
     for k in range(6):
         s, c = math.sin(math.pi * k / 3), math.cos(math.pi * k / 3)
         m.tube([(x + 0.36 * s, -0.45, 0.36 * c), (x + 0.25 * s, -1.22, 0.25 * c)], 0.028)
     for y, r in ((-0.72, 0.325), (-1.0, 0.285)):
-        m.tube([(x + r * math.sin(a), y, r * math.cos(a)) for a in (2 * math.pi * k / 18 for k in range(18))], 0.02, closed=True)
-    m.turned(x, [(0, -1.46), (0.05, -1.44), (0.07, -1.38), (0.04, -1.32), (0.22, -1.27), (0.29, -1.23), (0.29, -1.18), (0, -1.17)], 18)
+        hoop = [2 * math.pi * k / 18 for k in range(18)]
+        m.tube([(x + r * math.sin(a), y, r * math.cos(a)) for a in hoop], 0.02, closed=True)
+    m.turned(x, [(0, -1.46), (0.05, -1.44), (0.07, -1.38), (0.04, -1.32), (0.22, -1.27), (0.29, -1.23), (0.29, -1.18),
+                 (0, -1.17)], 18)
     m.turned(x, [(0.08, -1.18), (0.08, -0.85), (0, -0.83)], 10)
     return m
 

@@ -1,8 +1,8 @@
 """Make scenes/data/teapot.txt: Newell's teapot as 32 bicubic Bezier patches.
 
-The numbers are Martin Newell's of 1975, with the bottom that F. Crow's version of 1987 has: ten patches in one quadrant or half make
-the others by reflection. Here y is up, as in kage; u goes around and w along the profile, turned so that
-Qu x Qw points outward.
+The numbers are Martin Newell's of 1975, with the bottom of F. Crow's version of 1987. Ten patches in one quadrant or
+half give the others by reflection. Here y is up, as in kage; u goes around and w along the profile, so that Qu x Qw
+points outward.
 """
 
 from __future__ import annotations
@@ -85,7 +85,8 @@ def patches() -> list[tuple[str, Patch]]:
 
 
 def text() -> str:
-    lines = ["# Newell's teapot: 32 bicubic Bezier patches, y up. Made by scripts/make_teapot.py.", "# A row is along u, four rows a patch along w."]
+    lines = ["# Newell's teapot: 32 bicubic Bezier patches, y up. Made by scripts/make_teapot.py.",
+             "# A row is along u, four rows a patch along w."]
     for name, patch in patches():
         lines.append(f"\n# {name}")
         lines += ["  ".join(" ".join(f"{c + 0:.7g}" for c in point) for point in row) for row in patch]

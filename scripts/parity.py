@@ -1,9 +1,11 @@
-"""The table of docs/povray.md: how well kage and POV-Ray agree, over the very scenes of tests/test_parity.py.
+"""The table of docs/povray.md: how well kage and POV-Ray agree, over the same scenes as the test of parity.
 
     scripts/venv python scripts/parity.py            print it, and the scenes with the largest differences
     scripts/venv python scripts/parity.py --write    put it into docs/povray.md
 
-The environment variable KAGE names the program, by default build/float/kage. status: 0, or 1 where a scene is below its least share.
+The environment variable KAGE names the program, by default build/float/kage.
+
+status: 0 all scenes agree as well as they must, 1 a scene is below its least share
 """
 
 from __future__ import annotations
@@ -25,12 +27,12 @@ Results = dict[parity.Scene, parity.Found]
 
 
 def percent(share: float) -> str:
-    """Cut, not rounded: 100 is all of them."""
+    """Cut, not rounded: 100 means all pixels."""
     return f"{int(1e4 * share + 1e-6) / 100:g}"
 
 
 def cell(results: Results, row: str, column: str) -> str:
-    """The least share, and of how many scenes."""
+    """The least share, and the number of scenes."""
     shares = [found.share for scene, found in results.items() if (scene.row, scene.column) == (row, column)]
     return f"{percent(min(shares))} ({len(shares)})" if shares else ""
 
@@ -47,8 +49,8 @@ def table(results: Results) -> str:
 def worst(results: Results) -> str:
     """The largest differences."""
     last = sorted(results.items(), key=lambda item: item[1].share)[:12]
-    return "\n".join(f"{percent(found.share):>6} %  mean {found.mean / parity.STEP:.2f}/255  worst {found.worst:.3f}  {scene}"
-                     for scene, found in last)
+    return "\n".join(f"{percent(found.share):>6} %  mean {found.mean / parity.STEP:.2f}/255  worst {found.worst:.3f}  "
+                     f"{scene}" for scene, found in last)
 
 
 def main() -> int:
@@ -61,7 +63,8 @@ def main() -> int:
     print(f"{text}\n\n{worst(results)}")
     if said.write:
         page = PAGE.read_text()
-        PAGE.write_text(re.sub(r"(<!-- parity -->\n).*?(<!-- /parity -->)", lambda m: m[1] + text + "\n" + m[2], page, flags=re.DOTALL))
+        PAGE.write_text(re.sub(r"(<!-- parity -->\n).*?(<!-- /parity -->)", lambda m: f"{m[1]}{text}\n{m[2]}", page,
+                               flags=re.DOTALL))
     low = [str(scene) for scene, found in results.items() if found.share < scene.least]
     if low:
         print(f"parity.py: below what they must have: {'; '.join(low)}", file=sys.stderr)

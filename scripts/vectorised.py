@@ -1,8 +1,8 @@
-"""Which stages the compiler has turned into SIMD: read off the program itself.
+"""Which stages the compiler has vectorised, read from the program itself.
 
-Every stage (a function marked STAGE, src/real.h) is in the program once for each instruction level. This lists the stages with
-the widest registers that their packed arithmetic uses (128: SSE and xmm, 256: ymm, 512: zmm; 0: none, the loop is scalar)
-and how many packed and scalar arithmetic instructions they hold; every loop has a scalar rest.
+Every stage (a function marked STAGE, src/real.h) is in the program once for each instruction level. This lists the
+stages with the widest registers of their packed arithmetic (128: SSE and xmm, 256: ymm, 512: zmm; 0: none, the loop is
+scalar) and the numbers of their packed and scalar arithmetic instructions. Every loop has a scalar rest.
 
     scripts/venv python scripts/vectorised.py [build/float/kage]
 """
@@ -31,7 +31,8 @@ def width(instruction: str) -> int:
 
 def stages(program: Path) -> dict[tuple[str, str], tuple[int, int, int]]:
     """(stage, level): widest packed registers in bits, packed and scalar instructions."""
-    text = subprocess.run(["objdump", "-d", "--no-show-raw-insn", program], check=True, capture_output=True, text=True).stdout
+    text = subprocess.run(["objdump", "-d", "--no-show-raw-insn", program], check=True, capture_output=True,
+                          text=True).stdout
     found: dict[tuple[str, str], tuple[int, int, int]] = {}
     key = None
     for line in text.splitlines():

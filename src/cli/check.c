@@ -1,7 +1,8 @@
 /* kage check: what is in a scene, and how steep its bumps are where the camera sees them. */
 #include "cli/command.h"
 #include "wave/lane.h"
-#include "render/render.h"
+#include "render/intersect.h"
+#include "render/trace.h"
 #include "wave/gather.h"
 
 #include <math.h>
@@ -40,9 +41,10 @@ static void look(const scene *s, int order, workspace *v, seen *all)
     for (int first = 0; first < SAMPLES * SAMPLES; first += LANES) {
         const int n = SAMPLES * SAMPLES - first < LANES ? SAMPLES * SAMPLES - first : LANES;
         for (int i = 0; i < n; i++)
-            render_ray(&s->camera, SAMPLES, SAMPLES, (first + i) % SAMPLES + 0.5, (double)((first + i) / SAMPLES) + 0.5,
-                       v, i);
-        for (int32_t id = trace_nearest(&k, n, v); id >= 0; id = gather_next_group(n, &v->x, &v->h, &v->g)) {
+            camera_ray(&s->camera, SAMPLES, SAMPLES, (first + i) % SAMPLES + 0.5, (double)((first + i) / SAMPLES) + 0.5,
+                       &v->x, i);
+        intersect_nearest(s, n, v);
+        for (int32_t id; (id = gather_next_group(n, &v->x, &v->nearest, &v->g)) >= 0;) {
             const hit_group *g = &v->g;
             seen *o = &all[id];
             if (!s->object[id].bump)
@@ -162,7 +164,7 @@ static void print_scene(const scene *s, const seen *all)
 
 static int check(const scene *s)
 {
-    workspace *v = workspace_new(s);
+    workspace *v = workspace_new(&(tracer){.scene = s});
     seen *all = calloc((size_t)(s->objects ? s->objects : 1), sizeof *all);
     bool good = v && all;
     for (int i = 0; good && i < s->objects; i++)

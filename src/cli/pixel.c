@@ -1,7 +1,9 @@
 /* kage pixel: the way of one ray, every value by the same stages as in a picture. */
 #include "cli/command.h"
 #include "wave/lane.h"
-#include "render/render.h"
+#include "render/intersect.h"
+#include "render/trace.h"
+#include "wave/gather.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -25,17 +27,17 @@ static void shape(const hit_group *g, const object *o)
     vector("n", &g->n_smooth);
     if (!o->bump)
         return;
-    scalar("P", g->h.P[0]);
-    scalar("Pu", g->h.Pu[0]);
-    scalar("Pw", g->h.Pw[0]);
-    scalar("Puu", g->h.Puu[0]);
-    scalar("Puw", g->h.Puw[0]);
-    scalar("Pww", g->h.Pww[0]);
+    scalar("P", g->bump.P[0]);
+    scalar("Pu", g->bump.Pu[0]);
+    scalar("Pw", g->bump.Pw[0]);
+    scalar("Puu", g->bump.Puu[0]);
+    scalar("Puw", g->bump.Puw[0]);
+    scalar("Pww", g->bump.Pww[0]);
     scalar("Pmin", o->bump->Pmin);
     scalar("Pmax", o->bump->Pmax);
     bs_vec3 s = lane_get(&g->x.s, 0), n = lane_get(&g->n_smooth, 0), Qu = lane_get(&g->q.Qu, 0),
             Qw = lane_get(&g->q.Qw, 0);
-    bs_vec3 np = bs_perturbed_normal(n, Qu, Qw, g->h.Pu[0], g->h.Pw[0]);
+    bs_vec3 np = bs_perturbed_normal(n, Qu, Qw, g->bump.Pu[0], g->bump.Pw[0]);
     printf("%-10s %.9g %.9g %.9g\n", "n'", (double)np.x, (double)np.y, (double)np.z);
     if (!bs_regular(n, Qu, Qw)) {
         printf("|n| is 0 against the edges here: the smooth normal and order none are used\n");
@@ -55,9 +57,9 @@ static void row(const tracer *k, int id, workspace *v, const char *label)
     trace_group(k, id, v);
     const hit_group *g = &v->g;
     const int asked = k->scene->object[id].bump ? method_code(k->shadow) : -1;
-    bs_vec3 o = lane_at(&g->x, 0, g->t[0] + g->tau[0]);
-    printf("%-10s %13.6g %13.6g  %11.6g %11.6g %11.6g  %-6s", label, (double)g->tau[0], (double)(g->t[0] + g->tau[0]),
-           (double)o.x, (double)o.y, (double)o.z, g->order[0] == asked ? "" : method_code_name(g->order[0]));
+    bs_vec3 o = lane_at(&g->x, 0, g->t0[0]);
+    printf("%-10s %13.6g %13.6g  %11.6g %11.6g %11.6g  %-6s", label, (double)g->tau[0], (double)g->t0[0], (double)o.x,
+           (double)o.y, (double)o.z, g->order[0] == asked ? "" : method_code_name(g->order[0]));
     for (int l = 0; l < k->scene->lights; l++) {
         const double share = (double)v->visibility[l][0]; /* of an area's samples */
         if (share > 0 && share < 1)
@@ -102,15 +104,16 @@ static bool pixel(const char *text, const scene *s, int *x, int *y)
 
 static int print_pixel(const scene *s, int x, int y)
 {
-    workspace *v = workspace_new(s);
+    workspace *v = workspace_new(&(tracer){.scene = s});
     if (!v) {
         usage_error("out of memory");
         return EXIT_OUTPUT;
     }
     /* 2+ asks every surface and bump for all of its partials */
     tracer k = {.scene = s, .shadow = {METHOD_ORDER, 3}, .guard = true, .layers = true};
-    render_ray(&s->camera, s->width, s->height, x + 0.5, y + 0.5, v, 0);
-    const int32_t id = trace_nearest(&k, 1, v);
+    camera_ray(&s->camera, s->width, s->height, x + 0.5, y + 0.5, &v->x, 0);
+    intersect_nearest(s, 1, v);
+    const int32_t id = gather_next_group(1, &v->x, &v->nearest, &v->g);
     printf("pixel      %d,%d\n", x, y);
     vector("r", &v->x.r);
     vector("s", &v->x.s);

@@ -75,8 +75,6 @@ typedef struct surface_ops {
 struct surface {
     const surface_ops *ops;
     void (*free)(surface *f); /* NULL: it owns nothing but itself */
-    const struct displaced_ops
-        *rough; /* its own way to its rough surface (displace.h), in place of shell, foot and steep; NULL: none */
 };
 
 /* All constructors return NULL where the arguments are wrong in the way that is said, or out of memory. */

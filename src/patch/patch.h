@@ -69,11 +69,6 @@ patch *patch_function_new(const char *kind, expr *const xyz[3], const double u[2
  * i-th Bernstein polynomial in u and the j-th in w. Copies them. NULL: out of memory. */
 patch *patch_bezier_new(int patches, const vec3 *point);
 
-/* The offset surface Q + P n/|n| of a patch, n = Qu x Qw; both must outlive it. It is evaluated to order 1 only, and
- * has no Hessian bounds. NULL: out of memory. */
-struct bump;
-patch *patch_offset_new(const patch *q, const struct bump *P);
-
 /* The image of a patch by an affine map. `from` must outlive it. Where the map mirrors, u runs the other way, so that
  * Qu x Qw is the image of that of `from`. NULL: out of memory. */
 patch *patch_affine_new(const patch *from, const affine *m);

@@ -203,12 +203,13 @@ static void patch_free(surface *base)
 {
     patch_surface *f = (patch_surface *)base;
     bvh_free(f->tree);
-    patch_surface_free_displaced(f->rough);
     pieces_free(&f->l);
     f->q->ops->free(f->q);
     free(f->methods);
     free(f);
 }
+
+bool patch_surface_is(const surface *f) { return f->free == patch_free; }
 
 /* A table for each surface: `kind` and `parts` are the patch's. */
 static surface_ops *methods_of(const patch *q)
@@ -239,7 +240,6 @@ patch_surface *patch_surface_make(patch *q, double flat)
     }
     f->q = q;
     f->base.free = patch_free;
-    f->base.rough = &patch_surface_displaced;
     f->base.ops = f->methods = methods_of(q);
     if (f->base.ops && pieces_of(q, flat, &f->l))
         f->tree = tree_of(&f->l);

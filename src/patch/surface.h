@@ -13,16 +13,10 @@ typedef struct patch_surface {
     pieces l;
     bvh *tree;   /* over the pieces, in l.space */
     bool broken; /* Q or its normal may jump: nothing can be proved of pieces there, however small they are */
-    struct displaced_form *rough; /* its rough surfaces so far */
 } patch_surface;
 
-/* A rough surface of it, as a surface of its own. */
-typedef struct displaced_form displaced_form;
-struct displaced_form {
-    const struct bump *P;
-    surface *shape;
-    displaced_form *next;
-};
+/* Whether a surface is one. */
+bool patch_surface_is(const surface *f);
 
 /* Q(u,w) from its points alone (patch.h): three expressions, or Bezier patches, each a part. n = Qu x Qw is outward by
  * definition. Owns q, also on failure. NULL where Q has no bounds over its range, or is all in one place (then only: or
@@ -36,11 +30,6 @@ surface *patch_surface_affine(const surface *from, const affine *m);
 
 /* As patch_surface_new, with pieces as flat as that (pieces_of). */
 patch_surface *patch_surface_make(patch *q, double flat);
-
-void patch_surface_free_displaced(displaced_form *first);
-
-/* For true displacement. */
-extern const struct displaced_ops patch_surface_displaced;
 
 /* Counts of work: evaluations of the patch, and hits that are not proved to be the first. */
 typedef struct patch_counts {

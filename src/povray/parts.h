@@ -2,6 +2,7 @@
 #ifndef KAGE_POVRAY_PARTS_H
 #define KAGE_POVRAY_PARTS_H
 
+#include "patch/surface.h"
 #include "povray/povray.h"
 #include "povray/text.h"
 
@@ -52,7 +53,7 @@ pov_identifier pov_identify(const char *kind, const char *name, int index);
 static inline bool pov_is_sheet(const scene *s, const object *o)
 {
     const shape_kind kind = o->shape_spec.kind;
-    return kind == SHAPE_PATCH || (s->displaced && o->shape->rough && kind != SHAPE_MESH);
+    return kind == SHAPE_PATCH || (s->displaced && patch_surface_is(o->shape));
 }
 
 /* All materials; and that of an object, on a part of its surface. pov_by_parts: each part has its own; pov_by_uv: its

@@ -1,5 +1,5 @@
 /* The scene reader's objects, and the bumps on their surfaces. */
-#include "displaced/march.h"
+#include "displaced/displaced.h"
 #include "read/reader.h"
 
 #include "image/image.h"
@@ -245,7 +245,7 @@ static void take(object *o, const object *from)
     o->name = name;
     o->copy_of = from->copy_of ? from->copy_of : from->name;
     o->shape = from->own;
-    o->centred = NULL;
+    o->centred = o->displaced = NULL;
     o->shares_bump = true;
 }
 
@@ -260,7 +260,7 @@ static void place(reader *r, node *v, object *o)
     }
     if (!good || !o->moved || !o->own || !reader_place(r, at, o))
         return;
-    if (o->bump && !o->shape->ops->foot && !o->shape->rough && scene_wants_truth(r->s))
+    if (o->bump && !displaced_has_form(o->shape) && scene_wants_truth(r->s))
         yaml_error(r->y, at,
                    "a %s with caps and a bump is stretched more one way than another, expected the same scale all "
                    "ways, or 'open: true', for %s",
@@ -292,13 +292,14 @@ static void read_object(reader *r, const queue *q, int i)
             o->bump_spec = (bump_spec){0};
             o->bump = read_bump(r, at_bump, o);
         }
-        if (at_bump && o->bump && scene_wants_truth(s) && !displaced_possible(o->bump))
+        if (at_bump && o->bump && scene_wants_truth(s) && !displaced_has_bounds(o->bump))
             yaml_error(r->y, at_bump,
                        "no bounds of P or of its slope are known, expected them for %s: a function that is bounded, "
                        "without jumps, over the whole surface",
                        s->displaced ? "surface displaced" : "shadow exact");
         place(r, v, o);
-        if (o->shape && o->bump && scene_wants_truth(s) && !displaced_prepare(o->shape, o->bump))
+        if (o->shape && o->bump && scene_wants_truth(s) && displaced_has_form(o->shape) &&
+            !(o->displaced = displaced_new(o->shape, o->bump)))
             errors_add(r->e, "out of memory");
     }
     q->state[i] = DONE;

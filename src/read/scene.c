@@ -260,6 +260,7 @@ void scene_free(scene *s)
     for (int i = 0; i < s->objects; i++) {
         object *o = &s->object[i];
         free(o->name);
+        surface_free(o->displaced);
         if (o->shape != o->own)
             surface_free(o->shape);
         surface_free(o->centred);

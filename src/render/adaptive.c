@@ -1,3 +1,4 @@
+/* Neighbours are compared as they are displayed, row by row. */
 #include "render/adaptive.h"
 
 #include <stdlib.h>

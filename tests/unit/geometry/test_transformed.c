@@ -2,9 +2,9 @@
  * mapped; n points outward also where the map mirrors; rough ones are met where heights divided by the scale are met in
  * the surface's own space.
  */
-#include "displaced/march.h"
 #include "wave/lane.h"
 #include "support/properties.h"
+#include "support/displace.h"
 #include "support/random_rays.h"
 #include "geometry/surface.h"
 
@@ -337,8 +337,11 @@ static void rough_alike(int kind, int map, const surface *own, const surface *f,
     }
     no_hits(&h, LANES);
     no_hits(&g, LANES);
-    displaced_hit(f, P, LANES, &x, NULL, 0, &h, &counts);
-    displaced_hit(own, S, LANES, &y, NULL, 0, &g, &counts);
+    surface *of_image = displace(f, P, &counts), *original = displace(own, S, &counts);
+    of_image->ops->hit(of_image, LANES, &x, 0, &h);
+    original->ops->hit(original, LANES, &y, 0, &g);
+    surface_free(of_image);
+    surface_free(original);
     for (int i = 0; i < LANES; i++) {
         const double s = (double)real_sqrt(bs_dot(lane_get(&y.s, i), lane_get(&y.s, i)));
         met += g.id[i] == 0;
@@ -369,19 +372,20 @@ static void rough_box(void **state)
         static hits h;
         static rays y;
         displaced_counts counts = {0};
+        surface *d = displace(f, P, &counts);
         int met = 0;
         for (int i = 0; i < LANES; i++) {
             random_ray(&y, i, 1);
             map_ray(&m, &y, &g.x, i);
         }
         no_hits(&h, LANES);
-        displaced_hit(f, P, LANES, &g.x, NULL, 0, &h, &counts);
+        d->ops->hit(d, LANES, &g.x, 0, &h);
         g.n = LANES;
         for (int i = 0; i < LANES; i++) {
             g.t[i] = h.id[i] == 0 ? h.t[i] : R(1);
             g.part[i] = h.id[i] == 0 ? h.part[i] : 0;
         }
-        displaced_shape(f, P, &g);
+        displaced_shape(d, &g);
         for (int i = 0; i < LANES; i++) {
             partials q;
             if (h.id[i] < 0)
@@ -389,11 +393,12 @@ static void rough_box(void **state)
             met++;
             f->ops->eval(f, 1, &g.part[i], &g.u[i], &g.w[i], 1, &q);
             const bs_vec3 Q = lane_get(&q.Q, 0), n = lane_unit(bs_normal(lane_get(&q.Qu, 0), lane_get(&q.Qw, 0)));
-            const vec3 X = vec3_add(widen(Q), vec3_scale(widen(n), (double)g.h.P[i]));
+            const vec3 X = vec3_add(widen(Q), vec3_scale(widen(n), (double)g.bump.P[i]));
             assert_true(apart(lane_at(&g.x, i, h.t[i]), X) < 100 * EPS);
         }
         assert_true(met > 40);
         assert_int_equal(counts.uncertain, 0);
+        surface_free(d);
         bump_free(P);
         surface_free(f);
         surface_free(own);

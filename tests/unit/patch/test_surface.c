@@ -1,15 +1,18 @@
 /* Patch surfaces: partials against golden vectors, hits against closed forms and against
  * brute force, seams, silhouettes, corners and degenerate edges, shadows on themselves.
  */
+#include <stdlib.h>
 #include <string.h>
 
-#include "displaced/march.h"
+#include "displaced/form.h"
 #include "support/golden_json.h"
 #include "wave/lane.h"
 #include "displaced/offset.h"
+#include "displaced/offset_patch.h"
 #include "read/patch_file.h"
 #include "support/odd_rays.h"
 #include "support/properties.h"
+#include "support/displace.h"
 #include "support/random_rays.h"
 #include "patch/surface.h"
 #include "geometry/surface.h"
@@ -580,7 +583,7 @@ static void displaced_as_closed_forms(void **state)
     int differ = 0, met = 0;
     f->ops->extent(f, 0, U, W);
     bump *P = bumps(0.04, U, W);
-    assert_true(displaced_possible(P) && displaced_prepare(f, P));
+    surface *over_patch = displace(f, P, &c), *over_closed = displace(g, P, &c);
     for (int round = 0; round < 6; round++) {
         static rays x;
         static hits a, b;
@@ -593,10 +596,10 @@ static void displaced_as_closed_forms(void **state)
         }
         no_hits(&a, LANES);
         no_hits(&b, LANES);
-        displaced_hit(f, P, LANES, &x, NULL, 0, &a, &c);
-        displaced_hit(g, P, LANES, &x, NULL, 0, &b, &c);
-        displaced_occlude(f, P, LANES, &x, NULL, lit_a, &c);
-        displaced_occlude(g, P, LANES, &x, NULL, lit_b, &c);
+        over_patch->ops->hit(over_patch, LANES, &x, 0, &a);
+        over_closed->ops->hit(over_closed, LANES, &x, 0, &b);
+        over_patch->ops->occlude(over_patch, LANES, &x, lit_a);
+        over_closed->ops->occlude(over_closed, LANES, &x, lit_b);
         for (int i = 0; i < LANES; i++) {
             const double off = distance(lane_at(&x, i, a.t[i]), lane_at(&x, i, b.t[i]));
             differ += a.id[i] != b.id[i] || lit_a[i] != lit_b[i] || (a.id[i] >= 0 && off > sqrt(EPS));
@@ -605,6 +608,8 @@ static void displaced_as_closed_forms(void **state)
     }
     print_message("displaced: %d hits, %d unlike the closed form's, %ld uncertain\n", met, differ, c.uncertain);
     assert_true(met > 300 && differ <= 1 && c.uncertain <= 1);
+    surface_free(over_patch);
+    surface_free(over_closed);
     bump_free(P);
     surface_free(g);
 }
@@ -653,7 +658,7 @@ static void feet_at_any_scale(void **state)
         const real c = (real)size;
         surface *f = saddle(size);
         bump *P = bumps(0.03 * size, U, W);
-        assert_true(displaced_prepare(f, P));
+        surface *d = displace(f, P, NULL);
         partials q;
         bump_values h;
         for (int i = 0; i < LANES; i++) {
@@ -668,7 +673,7 @@ static void feet_at_any_scale(void **state)
             lane_set(&x.r, i, (bs_vec3){Q.x + h.P[i] * n.x, Q.y + h.P[i] * n.y, Q.z + h.P[i] * n.z});
             lane_set(&x.s, i, n);
         }
-        f->rough->closest_points(f, P, LANES, &x, t, part, &p);
+        ((displaced *)d)->form->closest((displaced *)d, LANES, &x, t, part, &p);
         one = k ? one : p;
         for (int i = 0; i < LANES; i++) {
             assert_true(fabs((double)(p.h[i] - h.P[i])) < 20 * EPS * size);
@@ -676,6 +681,7 @@ static void feet_at_any_scale(void **state)
             assert_true(distance(times(lane_get(&p.gu, i), c), lane_get(&one.gu, i)) < 100 * EPS);
             assert_true(distance(times(lane_get(&p.gw, i), c), lane_get(&one.gw, i)) < 100 * EPS);
         }
+        surface_free(d);
         bump_free(P);
         surface_free(f);
     }
@@ -692,10 +698,10 @@ static double error_of(surface *f, double A, int order, const rays *x, const hit
     static bump_values p;
     f->ops->extent(f, 0, U, W);
     bump *P = bumps(A, U, W);
-    assert_true(displaced_prepare(f, P));
+    surface *d = displace(f, P, &c);
     P->ops->eval(P, LANES, u, w, 2, &p);
     no_hits(&rough, LANES);
-    displaced_hit(f, P, LANES, x, NULL, 0, &rough, &c);
+    d->ops->hit(d, LANES, x, 0, &rough);
     int n = 0;
     for (int i = 0; i < LANES; i++) {
         if (h->id[i] < 0 || rough.id[i] < 0)
@@ -712,6 +718,7 @@ static double error_of(surface *f, double A, int order, const rays *x, const hit
         worst += log(fabs(rough.t[i] - h->t[i] - tau) * speed + 1e-300);
         n++;
     }
+    surface_free(d);
     bump_free(P);
     assert_true(n > 15);
     return worst / n;

@@ -18,7 +18,7 @@
 #include "scene/object_bvh.h"
 #include "wave/lane.h"
 #include "support/random_in.h"
-#include "render/render.h"
+#include "render/trace.h"
 #include "scene/scene.h"
 
 enum { OBJECTS = 60, WAVES = 40 };
@@ -159,11 +159,11 @@ static void random_rays(int wave, workspace *v)
 
 static void same_with(scene *s, const tracer *k, int waves)
 {
-    workspace *a = workspace_new(s);
+    workspace *a = workspace_new(k);
     object_bvh *c = s->object_bvh;
     int met = 0;
     s->object_bvh = NULL;
-    workspace *b = workspace_new(s);
+    workspace *b = workspace_new(k);
     for (int wave = 0; wave < waves; wave++) {
         random_rays(wave, a);
         b->x = a->x;
@@ -179,8 +179,8 @@ static void same_with(scene *s, const tracer *k, int waves)
             met += a->out.depth[i] < REAL_FAR;
     }
     assert_true(met > waves * LANES / 4);
-    assert_int_equal(a->stats.secondary_rays, b->stats.secondary_rays);
-    assert_true(a->stats.secondary_rays > waves);
+    assert_int_equal(a->stats->secondary_rays, b->stats->secondary_rays);
+    assert_true(a->stats->secondary_rays > waves);
     s->object_bvh = c;
     workspace_free(a);
     workspace_free(b);
