@@ -149,7 +149,7 @@ static void rays_meet_alike(int kind, int map, const surface *own, const surface
         differ += fabs((double)(w[i] - z[i])) > 1000 * EPS * size;
         const bs_vec3 n = lane_unit(bs_normal(lane_get(&q.Qu, i), lane_get(&q.Qw, i)));
         if (is_closed(kind)) /* seen from outside */
-            assert_true(bs_dot(n, lane_get(&x.s, i)) < R(1e-3));
+            CHECK(bs_dot(n, lane_get(&x.s, i)), <, R(1e-3));
     }
     if (!(differ <= 3 && met > 10)) {
         print_error("%s, %s: %d of %d rays differ\n", own->ops->kind, map_names[map], differ, met);
@@ -169,7 +169,10 @@ static void vectors_are_images(int kind, int map, const surface *own, const surf
         double U[2], W[2], A[2], B[2];
         own->ops->extent(own, part, U, W);
         f->ops->extent(f, part, A, B);
-        assert_true(A[0] == U[0] && A[1] == U[1] && B[0] == W[0] && B[1] == W[1]);
+        CHECK(A[0], ==, U[0]);
+        CHECK(A[1], ==, U[1]);
+        CHECK(B[0], ==, W[0]);
+        CHECK(B[1], ==, W[1]);
         const bool end = U[1] < HUGE_VAL;
         const real u = (real)random_in(end ? U[0] : -2, end ? U[1] : 2),
                    w = (real)random_in(end ? W[0] : -2, end ? W[1] : 2);
@@ -181,17 +184,17 @@ static void vectors_are_images(int kind, int map, const surface *own, const surf
             double sign;
         } d[] = {
             {&q.Qu, &p.Qu, turn}, {&q.Qw, &p.Qw, 1}, {&q.Quu, &p.Quu, 1}, {&q.Quw, &p.Quw, turn}, {&q.Qww, &p.Qww, 1}};
-        assert_true(apart(lane_get(&q.Q, 0), affine_point(m, widen(lane_get(&p.Q, 0)))) < 30 * EPS);
+        CHECK(apart(lane_get(&q.Q, 0), affine_point(m, widen(lane_get(&p.Q, 0)))), <, 30 * EPS);
         for (int k = 0; k < 5; k++)
-            assert_true(apart(lane_get(d[k].is, 0),
-                              vec3_scale(affine_vector(m, widen(lane_get(d[k].of, 0))), d[k].sign)) < 30 * EPS);
+            CHECK(apart(lane_get(d[k].is, 0), vec3_scale(affine_vector(m, widen(lane_get(d[k].of, 0))), d[k].sign)), <,
+                  30 * EPS);
         /* the normal goes by the transpose of the way back, to the same side */
         const affine back = affine_back(m);
         const vec3 n = widen(bs_normal(lane_get(&q.Qu, 0), lane_get(&q.Qw, 0)));
         const vec3 o = widen(bs_normal(lane_get(&p.Qu, 0), lane_get(&p.Qw, 0)));
         const vec3 to = vec3_add(vec3_add(vec3_scale(back.x, o.x), vec3_scale(back.y, o.y)), vec3_scale(back.z, o.z));
         if (vec3_length(o) > 1e-3)
-            assert_true(vec3_length(vec3_sub(vec3_unit(n), vec3_unit(to))) < 1e4 * EPS);
+            CHECK(vec3_length(vec3_sub(vec3_unit(n), vec3_unit(to))), <, 1e4 * EPS);
     }
 }
 
@@ -206,7 +209,7 @@ static void own_shadow_alike(int kind, int map, const surface *own, const surfac
     real u[LANES], w[LANES], lit[LANES], dark[LANES];
     int n = 0, differ = 0;
     (void)map;
-    assert_true(!f->ops->occlude_own == !own->ops->occlude_own);
+    CHECK(!f->ops->occlude_own, ==, !own->ops->occlude_own);
     if (!own->ops->occlude_own)
         return;
     for (int i = 0; i < LANES; i++)
@@ -251,7 +254,7 @@ static void own_shadow_alike(int kind, int map, const surface *own, const surfac
         differ +=
             again.id[i] != want.id[i] || (want.id[i] == 7 && fabs((double)(again.t[i] - want.t[i])) * s > 1e4 * EPS);
     }
-    assert_true(differ <= (kind == TORUS ? 4 : 2));
+    CHECK(differ, <=, (kind == TORUS ? 4 : 2));
 }
 
 static void own_shadows(void **state) { for_pair(state, own_shadow_alike); }
@@ -285,9 +288,10 @@ static void feet_are_below(int kind, int map, const surface *own, const surface 
         lane_set(&x.r, 0, X);
         lane_set(&x.s, 0, n);
         f->ops->foot(f, part, 1, &x, &zero, &p);
-        assert_true(fabs((double)(p.u[0] - u)) < 300 * EPS && fabs((double)(p.w[0] - w)) < 300 * EPS);
-        assert_true(fabs((double)(p.h[0] - h)) < 100 * EPS);
-        assert_true(apart(lane_get(&p.gh, 0), widen(n)) < 100 * EPS);
+        CHECK(fabs((double)(p.u[0] - u)), <, 300 * EPS);
+        CHECK(fabs((double)(p.w[0] - w)), <, 300 * EPS);
+        CHECK(fabs((double)(p.h[0] - h)), <, 100 * EPS);
+        CHECK(apart(lane_get(&p.gh, 0), widen(n)), <, 100 * EPS);
         /* along any way the three change by their gradients, and h - P by no more than `steep` says */
         const bs_vec3 d = {(real)random_in(-1, 1), (real)random_in(-1, 1), (real)random_in(-1, 1)};
         const double step = sqrt(EPS), half = 0.5 * step;
@@ -296,14 +300,16 @@ static void feet_are_below(int kind, int map, const surface *own, const surface 
         lane_set(&x.s, 0, d);
         f->ops->foot(f, part, 1, &x, &t, &a);
         f->ops->foot(f, part, 1, &x, &minus, &b);
-        assert_true(fabs((double)(a.u[0] - b.u[0]) / step - (double)bs_dot(d, lane_get(&p.gu, 0))) < 60 * sqrt(EPS));
-        assert_true(fabs((double)(a.w[0] - b.w[0]) / step - (double)bs_dot(d, lane_get(&p.gw, 0))) < 60 * sqrt(EPS));
-        assert_true(fabs((double)(a.h[0] - b.h[0]) / step - (double)bs_dot(d, lane_get(&p.gh, 0))) < 60 * sqrt(EPS));
+        CHECK(fabs((double)(a.u[0] - b.u[0]) / step - (double)bs_dot(d, lane_get(&p.gu, 0))), <, 60 * sqrt(EPS));
+        CHECK(fabs((double)(a.w[0] - b.w[0]) / step - (double)bs_dot(d, lane_get(&p.gw, 0))), <, 60 * sqrt(EPS));
+        CHECK(fabs((double)(a.h[0] - b.h[0]) / step - (double)bs_dot(d, lane_get(&p.gh, 0))), <, 60 * sqrt(EPS));
         const real Pu = R(0.3), Pw = R(0.4);
         f->ops->steep(f, part, 1, &x, &p, Pu, Pw, &rate, &reach);
         const real worst = real_abs(bs_dot(d, lane_get(&p.gh, 0))) + Pu * real_abs(bs_dot(d, lane_get(&p.gu, 0))) +
                            Pw * real_abs(bs_dot(d, lane_get(&p.gw, 0)));
-        assert_true(rate >= worst * R(0.999) && rate < 20 * worst + 4 && reach > 0);
+        CHECK(rate, >=, worst * R(0.999));
+        CHECK(rate, <, 20 * worst + 4);
+        CHECK(reach, >, 0);
     }
 }
 
@@ -394,9 +400,9 @@ static void rough_box(void **state)
             f->ops->eval(f, 1, &g.part[i], &g.u[i], &g.w[i], 1, &q);
             const bs_vec3 Q = lane_get(&q.Q, 0), n = lane_unit(bs_normal(lane_get(&q.Qu, 0), lane_get(&q.Qw, 0)));
             const vec3 X = vec3_add(widen(Q), vec3_scale(widen(n), (double)g.bump.P[i]));
-            assert_true(apart(lane_at(&g.x, i, h.t[i]), X) < 100 * EPS);
+            CHECK(apart(lane_at(&g.x, i, h.t[i]), X), <, 100 * EPS);
         }
-        assert_true(met > 40);
+        CHECK(met, >, 40);
         assert_int_equal(counts.uncertain, 0);
         surface_free(d);
         bump_free(P);

@@ -117,7 +117,7 @@ static void check_rows(const patch *q, struct fy_node *rows, double *worst, int 
             const double got[] = {a->v[0], a->u[0], a->w[0], a->uu[0], a->uw[0], a->ww[0]};
             const double off = fabs(got[k / 3] - want[2 + k]) / (1 + fabs(want[2 + k]));
             *worst = fmax(*worst, off);
-            assert_true(off < 2e-14);
+            CHECK(off, <, 2e-14);
         }
         /* and what is bounded holds it, over a box about the place */
         patch_bounds b;
@@ -127,15 +127,17 @@ static void check_rows(const patch *q, struct fy_node *rows, double *worst, int 
         for (int k = 0; k < 9; k++) {
             const expr_bounds *a = &b.axis[k % 3];
             const double *range = k < 3 ? a->v : k < 6 ? a->u : a->w;
-            assert_true(range[0] <= want[2 + k] && want[2 + k] <= range[1]);
-            assert_true(range[1] - range[0] < 3);
+            CHECK(range[0], <=, want[2 + k]);
+            CHECK(want[2 + k], <=, range[1]);
+            CHECK(range[1] - range[0], <, 3);
         }
         for (int k = 0; k < 9; k++) {
             const expr_hessians *a = &c.axis[k % 3];
             const double *range = k < 3 ? a->uu : k < 6 ? a->uw : a->ww;
             const double zero = 1e-48; /* what 50 digits leave of 0 */
-            assert_true(range[0] <= want[11 + k] + zero && want[11 + k] <= range[1] + zero);
-            assert_true(range[1] - range[0] < 20);
+            CHECK(range[0], <=, want[11 + k] + zero);
+            CHECK(want[11 + k], <=, range[1] + zero);
+            CHECK(range[1] - range[0], <, 20);
         }
         ++*seen;
     }
@@ -406,7 +408,7 @@ static void no_cracks(void **state)
         for (int i = 0; i < LANES; i++) {
             random_ray(&x, i, 1.3);
             const bs_vec3 n = lane_unit(bs_normal(lane_get(&q.Qu, i), lane_get(&q.Qw, i))), Q = lane_get(&q.Q, i);
-            assert_true(bs_dot(n, n) > R(0.9)); /* none is NaN, not even where Qu is 0 */
+            CHECK(bs_dot(n, n), >, R(0.9)); /* none is NaN, not even where Qu is 0 */
             /* from 0.05 above, up to 0.2 aside, straight to the place and on by as much */
             const double aside = kind == ROOF ? 0.01 : 0.1; /* flatter than the roof a ray passes under its edge */
             const bs_vec3 d = {n.x * R(0.05) + (real)random_in(-aside, aside),
@@ -443,7 +445,7 @@ static void degenerate_edges(void **state)
         const real u = (real)random_in(-3, 3), w = (real)(i % 2 ? pi : 0);
         f->ops->eval(f, 1, &part, &u, &w, 2, &q);
         const bs_vec3 Qu = lane_get(&q.Qu, 0), Qw = lane_get(&q.Qw, 0), N = bs_normal(Qu, Qw), n = lane_unit(N);
-        assert_true(fabs((double)n.y - (i % 2 ? -1 : 1)) < 1e-5);
+        CHECK(fabs((double)n.y - (i % 2 ? -1 : 1)), <, 1e-5);
         assert_false(bs_regular(N, Qu, Qw));
     }
     /* the middle of the teapot's lid and of its bottom: the first rows of patches 12 to 15, 20 to 23 */
@@ -528,8 +530,12 @@ static void check_rough(const patch *q, const bump *P, int *boxes, int *close)
             for (int axis = 0; axis < 3; axis++) {
                 const expr_jets *z = &j.axis[axis];
                 const expr_bounds *in = &b.axis[axis];
-                assert_true(in->v[0] <= z->v[0] && z->v[0] <= in->v[1]);
-                assert_true(in->u[0] <= z->u[0] && z->u[0] <= in->u[1] && in->w[0] <= z->w[0] && z->w[0] <= in->w[1]);
+                CHECK(in->v[0], <=, z->v[0]);
+                CHECK(z->v[0], <=, in->v[1]);
+                CHECK(in->u[0], <=, z->u[0]);
+                CHECK(z->u[0], <=, in->u[1]);
+                CHECK(in->w[0], <=, z->w[0]);
+                CHECK(z->w[0], <=, in->w[1]);
                 /* the step is of second order in h, and its roundings count by 1/h; at poles partials are steep */
                 const double du = (z->v[1] - z->v[0]) / (h * ru), dw = (z->v[2] - z->v[0]) / (h * rw);
                 const double most = 1 + fabs(z->u[0]) + fabs(z->w[0]), off = 1e-3 * most + 1e-14 / (h * fmin(ru, rw));
@@ -567,7 +573,7 @@ static void rough_bounds(void **state)
             bump_free(P[i]);
         }
         print_message("%d boxes, %d with bounds of slopes\n", boxes, close);
-        assert_true(close > 0.85 * boxes);
+        CHECK(close, >, 0.85 * boxes);
         moved->ops->free(moved);
         q[k]->ops->free(q[k]);
     }
@@ -607,7 +613,9 @@ static void displaced_as_closed_forms(void **state)
         }
     }
     print_message("displaced: %d hits, %d unlike the closed form's, %ld uncertain\n", met, differ, c.uncertain);
-    assert_true(met > 300 && differ <= 1 && c.uncertain <= 1);
+    CHECK(met, >, 300);
+    CHECK(differ, <=, 1);
+    CHECK(c.uncertain, <=, 1);
     surface_free(over_patch);
     surface_free(over_closed);
     bump_free(P);
@@ -626,13 +634,14 @@ static void displaced_at_any_scale(void **state)
     const real scales[] = {R(1e-12), R(1e-3), 800, R(2e3), R(1e4), R(1e6), R(1e12)};
     const offset one = offset_of(Qu, Qw, Quu, Quw, Qww, h);
     const bs_vec3 normal = offset_normal(one, Pu, Pw);
-    assert_true(fabs((double)bs_dot(one.n, one.n) - 1) < 4 * EPS);
+    CHECK(fabs((double)bs_dot(one.n, one.n) - 1), <, 4 * EPS);
     for (int i = 0; i < (int)(sizeof scales / sizeof *scales); i++) {
         const real k = scales[i];
         const offset o = offset_of(times(Qu, k), times(Qw, k), times(Quu, k), times(Quw, k), times(Qww, k), k * h);
-        assert_true(distance(o.n, one.n) < 8 * EPS);
-        assert_true(distance(times(o.U, 1 / k), one.U) < 8 * EPS && distance(times(o.W, 1 / k), one.W) < 8 * EPS);
-        assert_true(distance(offset_normal(o, k * Pu, k * Pw), normal) < 8 * EPS);
+        CHECK(distance(o.n, one.n), <, 8 * EPS);
+        CHECK(distance(times(o.U, 1 / k), one.U), <, 8 * EPS);
+        CHECK(distance(times(o.W, 1 / k), one.W), <, 8 * EPS);
+        CHECK(distance(offset_normal(o, k * Pu, k * Pw), normal), <, 8 * EPS);
     }
 }
 
@@ -676,10 +685,10 @@ static void feet_at_any_scale(void **state)
         ((displaced *)d)->form->closest((displaced *)d, LANES, &x, t, part, &p);
         one = k ? one : p;
         for (int i = 0; i < LANES; i++) {
-            assert_true(fabs((double)(p.h[i] - h.P[i])) < 20 * EPS * size);
-            assert_true(distance(lane_get(&p.gh, i), lane_get(&one.gh, i)) < 100 * EPS);
-            assert_true(distance(times(lane_get(&p.gu, i), c), lane_get(&one.gu, i)) < 100 * EPS);
-            assert_true(distance(times(lane_get(&p.gw, i), c), lane_get(&one.gw, i)) < 100 * EPS);
+            CHECK(fabs((double)(p.h[i] - h.P[i])), <, 20 * EPS * size);
+            CHECK(distance(lane_get(&p.gh, i), lane_get(&one.gh, i)), <, 100 * EPS);
+            CHECK(distance(times(lane_get(&p.gu, i), c), lane_get(&one.gu, i)), <, 100 * EPS);
+            CHECK(distance(times(lane_get(&p.gw, i), c), lane_get(&one.gw, i)), <, 100 * EPS);
         }
         surface_free(d);
         bump_free(P);
@@ -720,7 +729,7 @@ static double error_of(surface *f, double A, int order, const rays *x, const hit
     }
     surface_free(d);
     bump_free(P);
-    assert_true(n > 15);
+    CHECK(n, >, 15);
     return worst / n;
 }
 
@@ -747,7 +756,7 @@ static void error_slopes(void **state)
             const double slope = (a - b) / log(10);
             print_message("%-8s order %d: error as A^%.3f, expected A^%d\n", names[kinds[k]], order, slope,
                           want[order]);
-            assert_true(fabs(slope - want[order]) < 0.2);
+            CHECK(fabs(slope - want[order]), <, 0.2);
         }
     }
 }

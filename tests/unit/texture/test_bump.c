@@ -1,16 +1,10 @@
 /* Heights: maps as in section 4.1 of the paper (central differences at the samples, bilinear between), how they lie on
  * (u,w), and functions with their bounds.
  */
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 
-#include <cmocka.h>
-
+#include "support/check.h"
 #include "texture/bump.h"
 
 #ifdef KAGE_DOUBLE
@@ -208,7 +202,7 @@ static void derivatives_are_differences(void **state)
             if (past_w)
                 want[2] = want[4] = want[5] = 0;
             for (int m = 0; m < 6; m++)
-                want[m] != 0 ? near(got[m], want[m], size[m] * 8) : assert_true(got[m] == 0);
+                near(got[m], want[m], want[m] != 0 ? size[m] * 8 : 0); /* level: exactly 0 */
             level[past_u + past_w]++;
         }
         assert_true(level[0] > 500 && (l->wrap != MAP_CLAMP || (level[1] > 1000 && level[2] > 500)));
@@ -242,7 +236,7 @@ static void clamped_ramp(void **state)
             near(a[0], b[0], 8);
             if (u < lo - 1e-5 || u > hi + 1e-5 || (u > lo + cell && u < hi - cell))
                 for (int i = 1; i < 3; i++)
-                    b[i] != 0 ? near(a[i], b[i], 32) : assert_true(a[i] == 0);
+                    near(a[i], b[i], b[i] != 0 ? 32 : 0);
         }
         bump_free(map);
         bump_free(function);
@@ -260,7 +254,8 @@ static void anywhere(void **state)
             for (size_t j = 0; j < 8; j++) {
                 double v[6];
                 look(p, far[i], far[j], v);
-                assert_true(v[0] >= (double)p->Pmin - 1e-6 && v[0] <= (double)p->Pmax + 1e-6);
+                CHECK(v[0], >=, (double)p->Pmin - 1e-6);
+                CHECK(v[0], <=, (double)p->Pmax + 1e-6);
             }
         bump_free(p);
     }
@@ -308,7 +303,7 @@ static void orders(void **state)
                 some.Pu[i] = some.Pw[i] = some.Puu[i] = some.Puw[i] = some.Pww[i] = 77;
             ps[k]->ops->eval(ps[k], LANES, u, w, order, &some);
             for (int i = 0; i < LANES; i++) {
-                assert_true(some.P[i] == all.P[i]);
+                CHECK(some.P[i], ==, all.P[i]);
                 assert_true(order >= 1 ? some.Pu[i] == all.Pu[i] && some.Pw[i] == all.Pw[i]
                                        : some.Pu[i] == 77 && some.Pw[i] == 77);
                 assert_true(order == 2
@@ -332,15 +327,18 @@ static void functions(void **state)
     for (int k = 0; k < 6; k++)
         near(v[k], want[k], 1);
     /* the true range of u^2 - w u here is -1 .. 3; times -0.5 */
-    assert_true((double)p->Pmin <= -1.5 && (double)p->Pmin > -1.6);
-    assert_true((double)p->Pmax >= 0.5 && (double)p->Pmax < 0.6);
+    CHECK((double)p->Pmin, <=, -1.5);
+    CHECK((double)p->Pmin, >, -1.6);
+    CHECK((double)p->Pmax, >=, 0.5);
+    CHECK((double)p->Pmax, <, 0.6);
     bump_free(p);
 
     p = bump_function_new(expr_parse("u", &e), 1, all, all);
     assert_true(isinf(p->Pmin) && isinf(p->Pmax));
     bump_free(p);
     p = bump_function_new(expr_parse("u", &e), 0, all, all);
-    assert_true(p->Pmin == 0 && p->Pmax == 0);
+    CHECK(p->Pmin, ==, 0);
+    CHECK(p->Pmax, ==, 0);
     bump_free(p);
     p = bump_function_new(expr_parse("sin(u)*cos(w)", &e), 0.2, all, all);
     near((double)p->Pmin, -0.2, 1);
@@ -380,7 +378,8 @@ static void map_slopes(void **state)
             double rise = fabs(b[0] - a[0]), allowed = top[0] * fabs(du) + top[1] * fabs(dw);
             if (!(rise <= allowed + rounding))
                 fail_msg("layout %d at %g %g, by %g %g: rises by %.9g, allowed %.9g", n, u, w, du, dw, rise, allowed);
-            assert_true(fabs(a[1]) <= top[0] * (1 + TOLERANCE) && fabs(a[2]) <= top[1] * (1 + TOLERANCE));
+            CHECK(fabs(a[1]), <=, top[0] * (1 + TOLERANCE));
+            CHECK(fabs(a[2]), <=, top[1] * (1 + TOLERANCE));
         }
         /* from each sample to the next; those beyond the last are the first's copies or mirrored */
         for (int j = 0; j < 2 * H; j++)
@@ -409,12 +408,15 @@ static void odd_map_slopes(void **state)
     l.scale = -l.scale;
     l.size[0] = -l.size[0];
     q = bump_map_new(data(), &l);
-    assert_true(q->Pu_max == p->Pu_max && q->Pw_max == p->Pw_max && p->Pu_max > 0);
+    CHECK(q->Pu_max, ==, p->Pu_max);
+    CHECK(q->Pw_max, ==, p->Pw_max);
+    CHECK(p->Pu_max, >, 0);
     bump_free(p);
     bump_free(q);
     l.scale = 0;
     p = bump_map_new(data(), &l);
-    assert_true(p->Pu_max == 0 && p->Pw_max == 0);
+    CHECK(p->Pu_max, ==, 0);
+    CHECK(p->Pw_max, ==, 0);
     bump_free(p);
 
     /* a step along w alone; the last row's is across the wrap */
@@ -423,7 +425,7 @@ static void odd_map_slopes(void **state)
     const map_layout plain = {{1, 0.5}, {0, 0}, MAP_REPEAT, false, 2, 0},
                      clamped = {{1, 0.5}, {0, 0}, MAP_CLAMP, false, 2, 0};
     p = bump_map_new(&m, &plain);
-    assert_true(p->Pu_max == 0);
+    CHECK(p->Pu_max, ==, 0);
     near((double)p->Pw_max, 3 * 2 * 6, 36); /* a difference of 3, scale 2, 6 samples per unit */
     bump_free(p);
     p = bump_map_new(&m, &clamped);
