@@ -55,7 +55,12 @@ PICTURES  = $(FIGURES:%=out/%.png)
 SHOWN     = wall teapot shell
 GALLERY   = $(patsubst scenes/gallery/%.yaml,%,$(wildcard scenes/gallery/*.yaml))
 
-.PHONY: all render bench readme reference accept test unit-tests program-tests install clean help bootstrap FORCE
+# What `make format` and `make lint` look at. The yardsticks in bench/limits are compiled by themselves.
+C_FILES   = $(wildcard include/*.h src/*/*.[ch] examples/*.c tests/support/*.h tests/unit/*/*.[ch] bench/limits/*.c)
+TIDY      = $(filter-out bench/limits/%,$(filter %.c,$(C_FILES)))
+
+.PHONY: all render bench readme reference accept test unit-tests program-tests sanitize format lint tidy same install clean
+.PHONY: help bootstrap FORCE
 all: bootstrap
 	@$(MAKE) --no-print-directory $(JOBS) $(BUILD)/kage
 
@@ -67,6 +72,9 @@ help:
 	@echo 'make test       all tests'
 	@echo 'make accept     look at pictures that have changed, and keep them (tests/regression/)'
 	@echo 'make reference  what POV-Ray makes of the scenes, where that is stale, into reference/'
+	@echo 'make sanitize   the tests in C and some of the others, with checks of memory and arithmetic'
+	@echo 'make lint       layout, likely mistakes and types; make format mends the layout'
+	@echo 'make same       are all pictures those of another commit? REV=COMMIT ONLY=TEXT'
 	@echo 'make install    to PREFIX ($(PREFIX)), under DESTDIR: the program, and bumpshadow.h'
 	@echo 'make clean      remove build/ and out/'
 	@echo 'Settings: REAL=float|double CC=gcc|clang CLONES=no SANITIZE=address,undefined BOOTSTRAP=no V=1'
@@ -161,10 +169,11 @@ test: all
 	@$(MAKE) --no-print-directory program-tests
 
 unit-tests: $(UNITS:%=$(BUILD)/%)
-	@$(MAKE) --no-print-directory --output-sync=target $(UNITS:%=run-%)
+	@$(MAKE) --no-print-directory --keep-going --output-sync=target $(UNITS:%=run-%)
 
-run-%: $(BUILD)/%
-	@$<
+# All run, side by side; one that fails shows what it printed, and its name.
+$(UNITS:%=run-%): run-%: $(BUILD)/%
+	@$< >$<.log 2>&1 && echo '  OK  $<' || { cat $<.log; echo '  FAILED  $<'; exit 1; }
 
 program-tests: $(BUILD)/kage
 	@$(MAKE) --no-print-directory $(JOBS) REAL=double build/double/kage
@@ -188,6 +197,44 @@ reference: all
 accept: all
 	@CC='$(CC)' scripts/bootstrap python
 	@KAGE=$(BUILD)/kage scripts/venv python -m tests.regression.accept
+
+# ---- sanitizers ----
+
+# The clones' resolvers run before a sanitizer is ready; and stages in AVX2 have no other accesses than those in SSE2.
+SANE      = CLONES=no OPTIMISE='-O1 -fno-math-errno -fno-trapping-math -ffp-contract=off'
+# Those that read every kind of input, right and wrong, and run every command.
+SANE_TESTS = $(addprefix tests/program/test_,cli.py input.py mesh.py patches.py)
+
+sanitize: all
+	@CC='$(CC)' scripts/bootstrap test python
+	@$(MAKE) --no-print-directory $(JOBS) $(SANE) BUILD=build/asan SANITIZE=address,undefined unit-tests build/asan/kage
+	KAGE=build/asan/kage scripts/venv python -m pytest -q -n auto --dist loadfile $(SANE_TESTS)
+
+# ---- style ----
+
+format:
+	@CC='$(CC)' scripts/bootstrap lint python
+	clang-format -i $(C_FILES)
+	scripts/venv ruff check --fix-only --quiet
+
+# Layout, likely mistakes, and the types of the Python code.
+lint:
+	@CC='$(CC)' scripts/bootstrap build test lint python
+	clang-format --dry-run -Werror $(C_FILES)
+	@$(MAKE) --no-print-directory $(JOBS) --output-sync=target tidy
+	scripts/venv ruff check
+	scripts/venv mypy
+
+tidy: $(TIDY:%=tidy-%)
+
+$(TIDY:%=tidy-%): tidy-%: %
+	@clang-tidy --quiet $< -- -Iinclude -Isrc -Itests -DKAGE_TESTS_DIR='"tests"' $(STANDARD) $(DEFINES) $(PKG_CFLAGS) 2>&1 | \
+	    { grep -v ' warnings\{0,1\} .*generated\.$$' && exit 1 || exit 0; }
+
+# Does this tree make the same pictures as another commit? make same REV=main
+same: all
+	@CC='$(CC)' scripts/bootstrap python valgrind
+	scripts/venv python -m scripts.same $(or $(REV),HEAD) --real $(REAL) $(ONLY:%=--only %)
 
 install: all
 	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/include

@@ -1,10 +1,10 @@
-/* Somebody who wants to see how far a long piece of work has come; the library itself prints nothing. */
+/* A callback for the progress of long work; the library itself prints nothing. */
 #ifndef KAGE_BASE_PROGRESS_H
 #define KAGE_BASE_PROGRESS_H
 
 typedef struct progress {
-    void (*show)(void *user, const char *what,
-                 double share); /* `what` is done, and this share of it; NULL: nobody is there */
+    /* Called with the name of the work and the share of it that is done, 0 to 1; NULL: nobody wants to know. */
+    void (*show)(void *user, const char *what, double share);
     void *user;
 } progress;
 

@@ -35,7 +35,7 @@ static exr_result_t write_header(exr_context_t ctx, int width, int height, int c
         longest = strlen(channel[c].name) > longest ? strlen(channel[c].name) : longest;
     for (int i = 0; i < texts; i++)
         longest = strlen(text[i].key) > longest ? strlen(text[i].key) : longest;
-    /* A flag in the file that readers of old refuse: only where it is needed. */
+    /* A flag in the file that old readers refuse: set only where it is needed. */
     exr_result_t rv = exr_set_longname_support(ctx, longest > 31);
     if (!rv)
         rv = exr_add_part(ctx, NULL, EXR_STORAGE_SCANLINE, &part);
@@ -66,7 +66,7 @@ static exr_result_t compress_chunk(exr_context_t ctx, exr_encode_pipeline_t *pip
     }
     if (!rv && first)
         rv = exr_encoding_choose_default_routines(ctx, 0, pipe);
-    pipe->yield_until_ready_fn = NULL; /* write_chunks sees to the order */
+    pipe->yield_until_ready_fn = NULL; /* write_chunks writes in order */
     pipe->write_fn = NULL;
     return rv ? rv : exr_encoding_run(ctx, 0, pipe);
 }

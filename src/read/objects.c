@@ -3,7 +3,7 @@
 #include "read/reader.h"
 
 #include "image/image.h"
-#include "yaml/text.h"
+#include "base/spelling.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -192,7 +192,7 @@ static int find(reader *r, node *at, const char *what, const char *among, const 
             if (*its)
                 strcat(strcat(names, *names ? " " : ""), *its);
         }
-    text_nearest(name, names ? names : "", near, sizeof near);
+    spelling_nearest(name, names ? names : "", near, sizeof near);
     yaml_error(r->y, at, "no %s '%.60s'%s%s%s%s", thing, name,
                *near ? ", did you mean '" : ", expected one of those under '", *near ? near : among, "'",
                *near ? "?" : "");

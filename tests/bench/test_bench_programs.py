@@ -206,7 +206,8 @@ def test_height_field_is_the_displaced_surface(tmp_path: Path) -> None:
 def test_a_coarse_mesh_is_not_measured(tmp_path: Path) -> None:
     """POV-Ray would show another surface than the scene's."""
     kage, made = tmp_path / "kage", tmp_path / "out" / "a.pov"
-    kage.write_text(f"#!/bin/sh\ntouch {made}\necho 'kage: object ground: coarse mesh: heights are off by up to 0.1, 9 pixels' >&2\n")
+    kage.write_text(f"#!/bin/sh\ntouch {made}\necho 'kage: object ground: coarse mesh: heights are off by up to 0.1, 9 "
+                    f"pixels' >&2\n")
     kage.chmod(0o755)
     bench, scene = SimpleNamespace(kage=kage), SimpleNamespace(name="cube", file=Path("cube.yaml"))
     with pytest.raises(programs.MeasureError, match="cube: POV-Ray would show another surface: .*coarse mesh"):

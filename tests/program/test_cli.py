@@ -16,6 +16,7 @@ import OpenEXR
 import pytest
 from PIL import Image
 
+from reference.references import read_exr as exr
 from tests.conftest import PROGRAM, SCENE, TOP, Kage, start
 from tests.support import models
 
@@ -24,11 +25,6 @@ CUBE, SPHERE = DATA / "cube.yaml", DATA / "sphere.yaml"
 SMALL = ("--size", "160x120")
 METHODS = ["none", "0", "1", "2", "2+", "iter:3", "march:4"]
 LAYERS = {"R", "G", "B", "Z", "P.X", "P.Y", "P.Z", "N.X", "N.Y", "N.Z", "uw.u", "uw.w", "height", "tau", "order"}
-
-
-def exr(path: Path) -> dict[str, np.ndarray]:
-    with OpenEXR.File(str(path), separate_channels=True) as file:
-        return {name: channel.pixels.copy() for name, channel in file.channels().items()}
 
 
 def header(path: Path) -> dict[str, object]:
@@ -62,7 +58,7 @@ def test_methods(kage: Kage) -> None:
     assert names == ["none", "0", "1", "2", "2+", "iter:K", "march:N", "exact"]
 
 
-@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="no /dev/full on this system")
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no /dev/full on this system")
 def test_full_standard_output(kage: Kage) -> None:
     with open("/dev/full", "w") as full:
         done = subprocess.run([PROGRAM, "methods"], stdout=full, stderr=subprocess.PIPE, text=True, check=False)
@@ -435,7 +431,7 @@ def test_output_that_cannot_be_written(kage: Kage, name: str) -> None:
     assert kage.files() == before
 
 
-@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="no /dev/full on this system")
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no /dev/full on this system")
 @pytest.mark.parametrize("ending", ["png", "exr"])
 def test_full_disk(kage: Kage, ending: str) -> None:
     (kage.folder / f"full.{ending}").symlink_to("/dev/full")

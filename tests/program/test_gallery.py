@@ -7,9 +7,9 @@ import sys
 from pathlib import Path
 
 import numpy as np
-import OpenEXR
 import pytest
 
+from reference.references import read_exr
 from tests.conftest import PROGRAM, TOP
 
 SCENES = sorted((TOP / "scenes" / "gallery").glob("*.yaml"))
@@ -19,8 +19,7 @@ SCRIPT = TOP / "scripts" / "gallery.py"
 def visibility(scene: Path, out: Path, *options: str) -> np.ndarray:
     command = [PROGRAM, "render", scene, *options, "--size", "320x240", "--layers", "visibility", "--quiet", "-o", out]
     subprocess.run(command, check=True, capture_output=True, timeout=120)
-    with OpenEXR.File(str(out), separate_channels=True) as file:
-        return np.stack([channel.pixels for channel in file.channels().values()])
+    return np.stack(list(read_exr(out).values()))
 
 
 @pytest.mark.parametrize("scene", SCENES, ids=lambda scene: scene.stem)

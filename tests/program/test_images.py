@@ -13,12 +13,13 @@ import subprocess
 from pathlib import Path
 
 import numpy as np
-import OpenEXR
 import pytest
 from PIL import Image
 
+from reference.references import read_exr
 from tests.conftest import PROGRAM as KAGE
 from tests.conftest import TOP
+from tests.support.parity import rgb
 
 SCENE = """
 camera: {{from: [0, 3.9, -5.2], at: [0.25, 0.1, 0.05], fov: 36}}
@@ -44,8 +45,7 @@ def render(tmp_path: Path, scene: str, *options: str) -> dict[str, np.ndarray]:
     path, out = tmp_path / "scene.yaml", tmp_path / "out.exr"
     path.write_text(scene)
     subprocess.run([KAGE, "render", path, "-o", out, *options], check=True, capture_output=True, timeout=120)
-    with OpenEXR.File(str(out), separate_channels=True) as f:
-        return {name: np.array(c.pixels) for name, c in f.channels().items()}
+    return read_exr(out)
 
 
 def ground(layers: dict[str, np.ndarray]) -> np.ndarray:
@@ -80,6 +80,18 @@ def test_clamped_ramp_is_the_function(tmp_path: Path, method: str) -> None:
     assert all((got[f"N.{axis}"][level] == value).all() for axis, value in (("X", 0), ("Y", 1), ("Z", 0)))
     for name in ("N.X", "N.Y", "N.Z", "height", "tau"):
         assert np.abs(got[name] - want[name])[away].max() < 1e-4, name
+
+
+@pytest.mark.parametrize("method", ["0", "1", "2", "march:4"])
+def test_smoothstep_is_the_polynomial(tmp_path: Path, method: str) -> None:
+    """The same pictures by smoothstep and by its definition, with a and b that vary."""
+    t, at = "clamp((u - 0.3*w)/(1 - 0.3*w), 0, 1)", ["--shadow", method, "--size", "160x120"]
+    want = render(tmp_path, SCENE.format(ground=FLAT, bump=f', bump: {{function: "0.2*{t}^2*(3 - 2*{t})"}}'), *at)
+    got = render(tmp_path, SCENE.format(ground=FLAT, bump=', bump: {function: "0.2*smoothstep(0.3*w, 1, u)"}'), *at)
+    assert (np.abs(want["N.X"]) > 0.01).sum() > 1000
+    for name in ("N.X", "N.Y", "N.Z", "height"):
+        assert np.abs(got[name] - want[name])[ground(want)].max() < 1e-5, name
+    assert shadows_differ(got, want)[0] <= 3
 
 
 @pytest.mark.parametrize("method", ["march:1", "march:4"])
@@ -230,10 +242,6 @@ def test_adaptive(tmp_path: Path, view: str, aa: str, threshold: float) -> None:
 
 
 # ---- highlights ----
-
-
-def rgb(layers: dict[str, np.ndarray]) -> np.ndarray:
-    return np.stack([layers[name] for name in "RGB"], axis=-1).astype(float)
 
 
 SHINY = """

@@ -180,7 +180,7 @@ REPLACED = [
     ("image-exr-rg", "color: [0.8, 0.7, 0.6]", "color: {image: {file: rg.exr, size: [1, 1]}}",
      "7:32: 'rg.exr' can't be used: not all of the channels R, G and B are there"),
     ("image-encoding", "color: [0.8, 0.7, 0.6]", "color: {image: {file: color.png, encoding: sRGB, size: [1, 1]}}",
-     "7:53: 'sRGB' is unknown, expected srgb or linear"),
+     "7:53: 'sRGB' is unknown, expected srgb or linear; did you mean 'srgb'?"),
     ("image-interpolation", "color: [0.8, 0.7, 0.6]",
      "color: {image: {file: color.png, interpolation: cubic, size: [1, 1]}}",
      "7:58: 'cubic' is unknown, expected bilinear or nearest"),

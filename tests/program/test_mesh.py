@@ -16,7 +16,7 @@ import pytest
 from scripts import make_lantern
 from tests.conftest import PROGRAM, TOP, Kage, needs_povray
 from tests.support import models
-from tests.support.parity import CAMERA, FLOOR, HEAD, LIGHTS, layers, povray
+from tests.support.parity import CAMERA, FLOOR, HEAD, LIGHTS, layers, povray, rgb
 
 
 def scene(kage: Kage, mesh: str, more: str = "", *, size: str = "[96, 72]", material: str = "clay") -> Path:
@@ -30,10 +30,6 @@ def scene(kage: Kage, mesh: str, more: str = "", *, size: str = "[96, 72]", mate
 def picture(kage: Kage, path: Path, *options: str) -> dict[str, np.ndarray]:
     kage.good("render", path, "-o", "x.exr", "--quiet", *options)
     return layers(kage.folder / "x.exr")
-
-
-def rgb(picture: dict[str, np.ndarray]) -> np.ndarray:
-    return np.stack([picture[c] for c in "RGB"], axis=-1)
 
 
 # ---- what comes in ----
@@ -119,7 +115,7 @@ def test_mirrored_texture(kage: Kage) -> None:
 def test_image_on_a_mesh(kage: Kage) -> None:
     """An image fills the square of the texture coordinates, its first row at the top, whatever part of it the mesh
     has."""
-    from PIL import Image  # noqa: PLC0415
+    from PIL import Image
 
     Image.fromarray(np.array([[[255, 0, 0], [0, 255, 0]], [[0, 0, 255], [255, 255, 255]]],
                              dtype=np.uint8)).save(kage.folder / "four.png")

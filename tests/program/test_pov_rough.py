@@ -9,9 +9,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from PIL import Image
+
 from tests.conftest import Kage, needs_povray
 from tests.support.parity import GLOBE, HEAD, LIGHTS, PLANE, ROUND_ONES, difference, layers, povray, rgb
-from PIL import Image
 
 MOST = 4_000_000
 ABOVE = "{from: [0.3, 3.9, -1.8], at: [0, 0, 0.1], fov: 40}"

@@ -19,9 +19,9 @@ from types import ModuleType
 
 import numpy as np
 import pytest
-import references
 from PIL import Image
 
+import references
 from tests.conftest import PROGRAM, TOP, start
 
 RENDER = TOP / "reference" / "render.py"
@@ -260,7 +260,8 @@ def test_a_coarse_mesh_is_no_truth(studio: Studio, tmp_path: Path, capsys: pytes
     """kage writes a file all the same, and says so on stderr alone."""
     kage = tmp_path / "kage"
     kage.write_text(f'#!/bin/sh\n{PROGRAM} "$@" || exit\n'
-                    '[ "$1" != pov ] || echo "kage: object ground: coarse mesh: heights are off by up to 0.1, 9 pixels" >&2\n')
+                    '[ "$1" != pov ] || echo "kage: object ground: coarse mesh: heights are off by up to 0.1, 9 '
+                    'pixels" >&2\n')
     kage.chmod(0o755)
     assert studio.make("good", "--kage", str(kage)) == 1
     assert "no truth comes of it: kage: object ground: coarse mesh" in capsys.readouterr().err

@@ -3,6 +3,7 @@
 #define KAGE_TESTS_DISPLACE_H
 
 #include "displaced/displaced.h"
+#include "support/check.h"
 
 /* The displaced surface of f by P, which adds to *c. */
 static inline surface *displace(const surface *f, const bump *P, displaced_counts *c)

@@ -20,6 +20,7 @@ import numpy as np
 import OpenEXR
 from PIL import Image
 
+from reference.references import read_exr
 from tests.conftest import PROGRAM, TOP
 
 POVRAY = shutil.which("povray")
@@ -345,6 +346,8 @@ CUBE = "box: {from: [-1, 0, -1], to: [1, 1.2, 1]}"
 DISPLACED = {
     "plane": (PLANE, FUNCTION, "isosurface"),
     "skewed rectangle": (SKEWED, "{function: '0.1*sin(9*u)*sin(11*w)', scale: -0.8}", "isosurface"),
+    "terraces": (SKEWED, "{function: '0.03*(smoothstep(0.25, 0.15, abs(u - 0.5)) + smoothstep(0, 0.2, w - 0.3*u))'}",
+                 "isosurface"),
     "box": (CUBE, "{function: '0.04*sin(12*u)*sin(10*w)'}", "isosurface"),
     "sphere": (GLOBE, ROUND, "isosurface"),
     "sphere, steep at its poles": (GLOBE, "{function: '0.04*sin(8*u)*sin(6*w)'}", "isosurface"),
@@ -664,10 +667,7 @@ def povray(scene: Path, size: tuple[int, int] = SIZE, *options: str) -> tuple[np
         cwd=scene.parent, capture_output=True, text=True, timeout=600,
     )
     assert done.returncode == 0, done.stderr[-2000:]
-    with OpenEXR.File(str(out), separate_channels=True) as file:
-        channels = file.channels()
-        rgb = np.stack([channels[name].pixels.astype(float) for name in "RGB"], axis=-1)
-    return rgb, ADVICE.sub("", words.read_text()) if words.exists() else ""
+    return rgb(read_exr(out)), ADVICE.sub("", words.read_text()) if words.exists() else ""
 
 
 #: A bound can be above what one picture has met of it: this advice is none to follow, and no warning.
@@ -676,8 +676,7 @@ ADVICE = re.compile(r"(File: \S+\s+Line: \d+\s*)?Shutdown Warning: The maximum g
 
 
 def layers(path: Path) -> dict[str, np.ndarray]:
-    with OpenEXR.File(str(path), separate_channels=True) as file:
-        return {name: channel.pixels.astype(float) for name, channel in file.channels().items()}
+    return {name: plane.astype(float) for name, plane in read_exr(path).items()}
 
 
 def near(mask: np.ndarray) -> np.ndarray:
@@ -714,7 +713,7 @@ def borders(picture: dict[str, np.ndarray]) -> np.ndarray:
 
 
 def rgb(picture: dict[str, np.ndarray]) -> np.ndarray:
-    return np.stack([picture[channel] for channel in "RGB"], axis=-1)
+    return np.stack([picture[channel] for channel in "RGB"], axis=-1).astype(float)
 
 
 def difference(ours: np.ndarray, theirs: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

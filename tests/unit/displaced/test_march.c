@@ -10,6 +10,7 @@
 
 #include <cmocka.h>
 
+#include "support/check.h"
 #include "base/frame.h"
 #include "wave/lane.h"
 #include "method/method.h"
@@ -310,8 +311,8 @@ static void hits_agree_with_bisection(void **state)
             print_message(
                 "%s, %s: %d hits, %d misses, farthest %.2g, %d left out near edges and tangents, %ld uncertain\n",
                 names[kind], bumped ? "map" : "function", met, passed, worst, doubts, counts.uncertain);
-            assert_true(met > 150);
-            assert_true(doubts < 4 * LANES / 8);
+            CHECK(met, >, 150);
+            CHECK(doubts, <, 4 * LANES / 8);
             assert_int_equal(counts.uncertain, 0);
             surface_free(bumpy);
             bump_free(P);
@@ -359,8 +360,9 @@ static void normals_are_gradients(void **state)
             l = sqrtl(l);
             double off = fabs((double)(d[0] / l - (wide)n.x)) + fabs((double)(d[1] / l - (wide)n.y)) +
                          fabs((double)(d[2] / l - (wide)n.z));
-            assert_true(off < 2e-5);
-            assert_true(g.order[i] == ORDER_EXACT && g.tau[i] == 0);
+            CHECK(off, <, 2e-5);
+            CHECK(g.order[i], ==, ORDER_EXACT);
+            CHECK(g.tau[i], ==, 0);
         }
         surface_free(bumpy);
         bump_free(P);
@@ -555,7 +557,8 @@ static void leaving(void **state)
             }
             print_message("%s, %s: %d hits, %d misses, %d left out, %d wrong, %ld uncertain\n", names[kind],
                           bumped ? "map" : "function", met, passed, doubts, wrong, counts.uncertain);
-            assert_true(met + passed > 50 && doubts <= LANES / 8);
+            CHECK(met + passed, >, 50);
+            CHECK(doubts, <=, LANES / 8);
             faults += wrong;
             surface_free(bumpy);
             bump_free(P);
@@ -643,7 +646,7 @@ static void flat_and_exact(void **state)
     for (int i = 0; i < LANES; i++) {
         double y = (double)(g.x.r.y[i] + g.x.s.y[i] * (g.t[i] + g.tau[i]));
         assert_int_equal(g.order[i], ORDER_EXACT);
-        assert_true(fabs(y - 0.1) < 1e-6);
+        NEAR(y, 0.1, 1e-6);
     }
     assert_int_equal(counts.uncertain, 0);
     surface_free(bumpy);
@@ -732,8 +735,10 @@ static void constant_bumps(void **state)
             }
             print_message("%s, P = %g: %d hits, %d otherwise; %d more from there, %d otherwise\n", names[kind],
                           levels[k], met, other, met_again, other_again);
-            assert_true(met > 300 && other <= 2); /* at a rim or tangent */
-            assert_true(met_again > 100 && other_again <= 2);
+            CHECK(met, >, 300);
+            CHECK(other, <=, 2); /* at a rim or tangent */
+            CHECK(met_again, >, 100);
+            CHECK(other_again, <=, 2);
             bump_free(P);
             surface_free(f);
             surface_free(wider);

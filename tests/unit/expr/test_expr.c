@@ -14,6 +14,7 @@
 #include <string.h>
 
 #include "expr/expr.h"
+#include "support/check.h"
 
 #ifndef KAGE_TESTS_DIR
 #define KAGE_TESTS_DIR "tests"
@@ -68,7 +69,7 @@ static void test_golden(void **state)
     assert_non_null(doc);
     struct fy_node *cases = fy_node_mapping_lookup_by_string(fy_document_root(doc), "cases", (size_t)-1);
     int count = fy_node_sequence_item_count(cases), rows_seen = 0;
-    assert_true(count > 40);
+    CHECK(count, >, 40);
     double worst = 0;
     for (int c = 0; c < count; c++) {
         struct fy_node *one = fy_node_sequence_get_by_index(cases, c);
@@ -154,6 +155,7 @@ static void random_expr(char *text, size_t size, int depth, bool smooth)
                                         "(%)^0.7",
                                         "atan2(%,%)",
                                         "mod(%,%)",
+                                        "smoothstep(%,%,%)",
                                         "cosh(%)",
                                         "sinh(%)"};
     size_t n = strlen(text);
@@ -231,7 +233,8 @@ static void test_differences(void **state)
             }
         expr_free(e);
     }
-    assert_true(checked > 15000 && skipped < checked / 20);
+    CHECK(checked, >, 15000);
+    CHECK(skipped, <, checked / 20);
 }
 
 /* ---- batches, orders ---- */
@@ -301,7 +304,7 @@ static void test_range_holds(void **state)
         double u0 = draw_in(-2, 2), w0 = draw_in(-2, 2), u1 = u0 + draw_in(0, size), w1 = w0 + draw_in(0, size);
         double lo, hi;
         expr_bound_value(e, u0, u1, w0, w1, &lo, &hi);
-        assert_true(lo <= hi);
+        CHECK(lo, <=, hi);
         finite += isfinite(lo) && isfinite(hi);
         for (int k = 0; k < 40; k++) {
             double u = k & 1 ? draw_in(u0, u1) : k & 2 ? u0 : u1, w = k & 4 ? draw_in(w0, w1) : k & 8 ? w0 : w1;
@@ -314,7 +317,8 @@ static void test_range_holds(void **state)
         }
         expr_free(e);
     }
-    assert_true(inside > 80000 && finite > 2000);
+    CHECK(inside, >, 80000);
+    CHECK(finite, >, 2000);
 }
 
 static void check_range(const char *text, double u0, double u1, double w0, double w1, double lo, double hi)
@@ -366,6 +370,11 @@ static void test_range_tight(void **state)
     check_range("select(u,5,w)", 1, 2, 0, 1, 0, 1);
     check_range("select(u,5,w)", -1, 2, 0, 1, 0, 5);
     check_range("select(u,5,w,9)", 0, 2, 0, 1, 0, 9);
+    check_range("smoothstep(0,1,u)", -1, 2, 0, 0, 0, 1);
+    check_range("smoothstep(0,1,u)", 0.25, 0.5, 0, 0, 0.15625, 0.5);
+    check_range("smoothstep(3,1,u)", 1.5, 2, 0, 0, 0.5, 0.84375);
+    check_range("smoothstep(0,1,u)", 2, 3, 0, 0, 1, 1);
+    check_range("smoothstep(w,1,u)", 2, 3, 0, 1, 0, 1); /* where w = 1 it is a step */
     check_range("atan2(w,u)", -1, 1, 1, 2, pi / 4, 3 * pi / 4);
     check_range("atan2(w,u)", -1, 1, -1, 1, -pi, pi);
     check_range("noise(u,w)", -inf, inf, -inf, inf, -1, 1);
@@ -411,10 +420,14 @@ static void check_gradient_in(const char *text, const expr *e, const double u[2]
     expr_bound_gradient(e, u[0], u[1], w[0], w[1], &b);
     expr_bound_hessian(e, u[0], u[1], w[0], w[1], &same, &bend);
     assert_memory_equal(&same, &b, sizeof b);
-    assert_true(bend.uu[0] <= bend.uu[1] && bend.uw[0] <= bend.uw[1] && bend.ww[0] <= bend.ww[1]);
+    CHECK(bend.uu[0], <=, bend.uu[1]);
+    CHECK(bend.uw[0], <=, bend.uw[1]);
+    CHECK(bend.ww[0], <=, bend.ww[1]);
     expr_bound_value(e, u[0], u[1], w[0], w[1], &lo, &hi);
-    assert_true(b.v[0] == lo && b.v[1] == hi);
-    assert_true(b.u[0] <= b.u[1] && b.w[0] <= b.w[1]); /* so none is NaN */
+    CHECK(b.v[0], ==, lo);
+    CHECK(b.v[1], ==, hi);
+    CHECK(b.u[0], <=, b.u[1]);
+    CHECK(b.w[0], <=, b.w[1]); /* so none is NaN */
     for (int k = 0; k < 40; k++) {
         double x = draw_place(u[0], u[1]), y = draw_place(w[0], w[1]), jet[JET];
         /* the other end of the pair: anywhere, near, or straight along one coordinate */
@@ -462,7 +475,7 @@ static void test_gradient_holds(void **state)
         expr_free(e);
     }
     print_message("%d pairs under a finite bound\n", pairs);
-    assert_true(pairs > 150000);
+    CHECK(pairs, >, 150000);
 }
 
 static void check_gradient(const char *text, double u0, double u1, double w0, double w1, double fu0, double fu1,
@@ -511,6 +524,11 @@ static void test_gradient_tight(void **state)
     check_gradient("atan2(w,u)", 1, 2, 0, 0, 0, 0, 0.25, 1);
     check_gradient("atan2(w,u)", -inf, inf, 2, inf, -0.5, 0, -0.5, 0.5);
     check_gradient("noise(2*u,w)", -inf, inf, -inf, inf, -5.86, 5.86, -2.93, 2.93);
+    check_gradient("smoothstep(1,3,u)", -inf, inf, 0, 0, 0, 0.75, 0, 0);
+    check_gradient("smoothstep(1,3,u)", 1, 1.5, 0, 0, 0, 0.5625, 0, 0);
+    check_gradient("smoothstep(1,3,u)", 3, 4, 0, 0, 0, 0, 0, 0);
+    check_gradient("smoothstep(w,3,u)", 2, 2, 1, 1, 0.75, 0.75, -0.375, -0.375);
+    check_gradient("smoothstep(1,w,u)", 2, 2, 3, 3, 0.75, 0.75, -0.375, -0.375);
     /* kinks: the slopes of both sides */
     check_gradient("abs(u)", -1, 2, 0, 0, -1, 1, 0, 0);
     check_gradient("abs(u)", 0, 2, 0, 0, 0, 1, 0, 0);
@@ -546,6 +564,7 @@ static void test_gradient_infinite(void **state)
     check_gradient("mod(u,w)", 7, 7.5, 2, 3, -inf, inf, -inf, inf);
     check_gradient("mod(u,w)", 0, 1, -1, 1, -inf, inf, -inf, inf);
     check_gradient("select(u,2,3)", -1, 1, 0, 0, -inf, inf, 0, 0);
+    check_gradient("smoothstep(1,1,u)", 0, 2, 0, 0, -inf, inf, 0, 0);
     check_gradient("select(u,2,3)", -1, 0, 0, 0, -inf, inf, 0, 0);
     check_gradient("select(u,2*w,3*w)", -1, 1, 0, 1, -inf, inf, 2, 3);
     check_gradient("select(u,4,5,4)", -1, 1, 0, 0, -inf, inf, 0, 0);
@@ -579,7 +598,8 @@ static void test_gradient_of_noise(void **state)
         top = fmax(top, fmax(fabs(jet[1]), fabs(jet[2])));
     }
     print_message("steepest noise %.4f\n", top);
-    assert_true(top > 2.6 && top < 2.93);
+    CHECK(top, >, 2.6);
+    CHECK(top, <, 2.93);
     expr_free(e);
 }
 
@@ -639,6 +659,14 @@ static void test_edges(void **state)
     check_jet("select(u,1,w,u*u)", -2, 7, 1, 0, 0, 0, 0, 0);
     check_jet("select(u,1,w,u*u)", 0, 7, 7, 0, 1, 0, 0, 0);
     check_jet("select(u,1,w,u*u)", 2, 7, 4, 4, 0, 2, 0, 0);
+    check_jet("smoothstep(1,3,u)", 2, 0, 0.5, 0.75, 0, 0, 0, 0);
+    check_jet("smoothstep(1,3,u)", 1.5, 0, 0.15625, 0.5625, 0, 0.75, 0, 0);
+    check_jet("smoothstep(1,3,u)", 1, 0, 0, 0, 0, 0, 0, 0);
+    check_jet("smoothstep(1,3,u)", 3, 0, 1, 0, 0, 0, 0, 0);
+    check_jet("smoothstep(u,w,2)", 1, 3, 0.5, -0.375, -0.375, -0.375, 0, 0.375);
+    check_jet("smoothstep(w,u,3)", 1, 1, 1, 0, 0, 0, 0, 0); /* b = a: a step */
+    check_jet("smoothstep(w,u,0)", 1, 1, 0, 0, 0, 0, 0, 0);
+    check_jet("smoothstep(1,3,log(u))", -1, 0, nan_, nan_, 0, nan_, 0, 0);
     check_jet("log(u)", -1, 0, nan_, -1, 0, -1, 0, 0);
     check_jet("max(log(u),0)", -1, 0, nan_, nan_, 0, nan_, 0, 0);
     check_jet("select(log(u),0,1)", -1, 0, nan_, 0, 0, 0, 0, 0);
@@ -652,16 +680,17 @@ static void test_noise_is_bounded(void **state)
     double lo = 0, hi = 0;
     for (int i = 0; i < 200000; i++) {
         double span = i % 2 ? 50 : 1e12, v = value_at(e, draw_in(-span, span), draw_in(-span, span));
-        assert_true(v >= -1 && v <= 1);
+        BETWEEN(-1, v, 1);
         lo = fmin(lo, v);
         hi = fmax(hi, v);
     }
-    assert_true(lo < -0.8 && hi > 0.8);
-    assert_true(value_at(e, 5, -7) == 0);
+    CHECK(lo, <, -0.8);
+    CHECK(hi, >, 0.8);
+    CHECK(value_at(e, 5, -7), ==, 0);
     static const double huge[] = {2147483647.5, -2147483648.5, 4294967295.5, 1e15, -1e18, 1e300, -1e308};
     for (size_t i = 0; i < sizeof huge / sizeof huge[0]; i++)
         for (size_t k = 0; k < sizeof huge / sizeof huge[0]; k++)
-            assert_true(fabs(value_at(e, huge[i], huge[k])) <= 1);
+            CHECK(fabs(value_at(e, huge[i], huge[k])), <=, 1);
     expr_free(e);
 }
 
@@ -671,8 +700,10 @@ static void test_large_angles(void **state)
     (void)state;
     expr *s = parse("sin(u)"), *c = parse("cos(u)");
     for (double x = 1; x < 1e308; x *= 1.37) {
-        assert_true(fabs(value_at(s, x, 0)) <= 1 && fabs(value_at(s, -x, 0)) <= 1);
-        assert_true(fabs(value_at(c, x, 0)) <= 1 && fabs(value_at(c, -x, 0)) <= 1);
+        CHECK(fabs(value_at(s, x, 0)), <=, 1);
+        CHECK(fabs(value_at(s, -x, 0)), <=, 1);
+        CHECK(fabs(value_at(c, x, 0)), <=, 1);
+        CHECK(fabs(value_at(c, -x, 0)), <=, 1);
     }
     expr_free(s);
     expr_free(c);

@@ -271,8 +271,9 @@ static void feet_are_below(int kind, int map, const surface *own, const surface 
     static rays x;
     (void)own;
     (void)m;
-    assert_true((f->ops->foot != NULL) == has_feet(kind, map));
-    assert_true((f->ops->shell != NULL) == has_feet(kind, map) && (f->ops->steep != NULL) == has_feet(kind, map));
+    CHECK((f->ops->foot != NULL), ==, has_feet(kind, map));
+    CHECK((f->ops->shell != NULL), ==, has_feet(kind, map));
+    CHECK((f->ops->steep != NULL), ==, has_feet(kind, map));
     if (!f->ops->foot)
         return;
     for (int32_t part = 0; part < f->ops->parts; part++) {
@@ -288,9 +289,9 @@ static void feet_are_below(int kind, int map, const surface *own, const surface 
         lane_set(&x.r, 0, X);
         lane_set(&x.s, 0, n);
         f->ops->foot(f, part, 1, &x, &zero, &p);
-        CHECK(fabs((double)(p.u[0] - u)), <, 300 * EPS);
-        CHECK(fabs((double)(p.w[0] - w)), <, 300 * EPS);
-        CHECK(fabs((double)(p.h[0] - h)), <, 100 * EPS);
+        NEAR(p.u[0], u, 300 * EPS);
+        NEAR(p.w[0], w, 300 * EPS);
+        NEAR(p.h[0], h, 100 * EPS);
         CHECK(apart(lane_get(&p.gh, 0), widen(n)), <, 100 * EPS);
         /* along any way the three change by their gradients, and h - P by no more than `steep` says */
         const bs_vec3 d = {(real)random_in(-1, 1), (real)random_in(-1, 1), (real)random_in(-1, 1)};
@@ -300,9 +301,9 @@ static void feet_are_below(int kind, int map, const surface *own, const surface 
         lane_set(&x.s, 0, d);
         f->ops->foot(f, part, 1, &x, &t, &a);
         f->ops->foot(f, part, 1, &x, &minus, &b);
-        CHECK(fabs((double)(a.u[0] - b.u[0]) / step - (double)bs_dot(d, lane_get(&p.gu, 0))), <, 60 * sqrt(EPS));
-        CHECK(fabs((double)(a.w[0] - b.w[0]) / step - (double)bs_dot(d, lane_get(&p.gw, 0))), <, 60 * sqrt(EPS));
-        CHECK(fabs((double)(a.h[0] - b.h[0]) / step - (double)bs_dot(d, lane_get(&p.gh, 0))), <, 60 * sqrt(EPS));
+        NEAR((double)(a.u[0] - b.u[0]) / step, (double)bs_dot(d, lane_get(&p.gu, 0)), 60 * sqrt(EPS));
+        NEAR((double)(a.w[0] - b.w[0]) / step, (double)bs_dot(d, lane_get(&p.gw, 0)), 60 * sqrt(EPS));
+        NEAR((double)(a.h[0] - b.h[0]) / step, (double)bs_dot(d, lane_get(&p.gh, 0)), 60 * sqrt(EPS));
         const real Pu = R(0.3), Pw = R(0.4);
         f->ops->steep(f, part, 1, &x, &p, Pu, Pw, &rate, &reach);
         const real worst = real_abs(bs_dot(d, lane_get(&p.gh, 0))) + Pu * real_abs(bs_dot(d, lane_get(&p.gu, 0))) +

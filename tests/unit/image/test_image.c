@@ -24,6 +24,7 @@
 
 #include "image/image.h"
 #include "image/srgb.h"
+#include "support/check.h"
 
 enum { WIDTH = 37, HEIGHT = 23, SAMPLES = WIDTH * HEIGHT }; /* as in tests/data */
 
@@ -65,7 +66,7 @@ static unsigned char *slurp(const char *path, size_t *size)
     unsigned char *bytes = malloc(1 << 20);
     assert_non_null(bytes);
     *size = fread(bytes, 1, 1 << 20, f);
-    assert_true(*size < 1 << 20);
+    CHECK(*size, <, 1 << 20);
     fclose(f);
     return bytes;
 }
@@ -120,7 +121,7 @@ static bool survives(const char *path)
     bool ok = image_read(path, NULL, &m, &e);
     assert_int_equal(e.count, ok ? 0 : 1);
     assert_true(ok || e.size > 2);
-    assert_true((m.v != NULL) == ok);
+    CHECK((m.v != NULL), ==, ok);
     free(m.v);
     errors_free(&e);
     return ok;
@@ -205,7 +206,7 @@ static void srgb_rises_and_clamps(void **state)
             float x;
             memcpy(&x, &b, sizeof x);
             unsigned code = code_of(s, x);
-            assert_true(code >= last && code <= last + 1);
+            BETWEEN(last, code, last + 1);
             last = code;
         }
         free(s);
@@ -279,7 +280,7 @@ static void png_grey_of_every_kind_reads_exactly(void **state)
                 assert_int_equal(m.height, HEIGHT);
                 for (int y = 0; y < HEIGHT; y++)
                     for (int x = 0; x < WIDTH; x++)
-                        assert_true(m.v[y * WIDTH + x] == (float)((double)grey_of(x, y, max) / max));
+                        CHECK(m.v[y * WIDTH + x], ==, (float)((double)grey_of(x, y, max) / max));
                 free(m.v);
             }
     unlink(path);
@@ -384,9 +385,10 @@ static void huge_png_is_refused(void **state)
         for (int k = 0; k < 4; k++)
             b[29 + k] = (unsigned char)(~crc >> (24 - 8 * k));
         /* followed by an empty IDAT, so that the header counts as read */
+        static const unsigned char empty[12] = {0, 0, 0, 0, 'I', 'D', 'A', 'T', 0x35, 0xaf, 0x06, 0x1e};
         unsigned char whole[45];
         memcpy(whole, b, 33);
-        memcpy(whole + 33, "\0\0\0\0IDAT\x35\xaf\x06\x1e", 12);
+        memcpy(whole + 33, empty, 12);
         spill(path, whole, sizeof whole);
         assert_refused(path, NULL, size[i][0] ? "too large" : "libpng");
     }
@@ -451,7 +453,7 @@ static void every_half_is_read_exactly(void **state)
             unsigned h = (first + i) & 0xffff, e = h >> 10 & 31;
             double expected = e == 31 ? 0 : e ? ldexp(1 + (h & 1023) / 1024.0, (int)e - 15) : (h & 1023) / 16777216.0;
             expected = h & 0x8000 && e != 31 ? -expected : expected;
-            assert_true((double)m.v[i] == expected);
+            CHECK(m.v[i], ==, expected);
         }
         free(m.v);
     }
@@ -682,7 +684,7 @@ static void protected_places_stay_as_they_are(void **state)
     assert_int_equal(chmod(path, 0444), 0);
     assert_int_equal(chmod(folder, 0777), 0);
     pid_t child = fork();
-    assert_true(child >= 0);
+    CHECK(child, >=, 0);
     if (child == 0) {
         int wrong = geteuid() == 0 && setuid(65534) != 0;
         for (int w = 0; w < 2; w++) {
@@ -710,7 +712,7 @@ static void pipe_gets_the_same_bytes(void **state)
     for (int w = 0; w < 2; w++) {
         errors e = {0};
         pid_t child = fork();
-        assert_true(child >= 0);
+        CHECK(child, >=, 0);
         if (child == 0) {
             static unsigned char bytes[1 << 16];
             int in = open(fifo, O_RDONLY), out = open(copy, O_WRONLY | O_CREAT | O_TRUNC, 0600);

@@ -156,7 +156,7 @@ static void hits_as_by_brute_force(void **state)
             met++;
             assert_int_equal(h.part[i], at);
             /* rounded to a real, from double's digits on thin triangles and flat rays */
-            CHECK(fabs((double)h.t[i] - (double)best), <=, (EPS + 1e-12) * (double)best);
+            NEAR((double)h.t[i], (double)best, (EPS + 1e-12) * (double)best);
             /* float's (u,w) tell the place to a share of the triangle's size; the thinnest of these have little of it
              */
             CHECK(apart(lane_get(&q.Q, i), lane_at(&x, i, h.t[i])), <, 1e4 * EPS * 4);
@@ -264,11 +264,11 @@ static void the_way_past(void **state)
             mesh_gradients(&x, &p, vec3_dot(vec3_cross(p.Xb, p.Xc), p.N), &gu, &gw);
             /* (u,w), which are reals here, tell b and c to 1e3 roundings on these triangles, of 1/24 and more of 2 pi
              */
-            CHECK(fabs((double)v.a - vec3_dot(gu, wide(s))), <=, 1e3 * EPS * (1 + vec3_length(gu)));
-            CHECK(fabs((double)v.b - vec3_dot(gw, wide(s))), <=, 1e3 * EPS * (1 + vec3_length(gw)));
+            NEAR((double)v.a, vec3_dot(gu, wide(s)), 1e3 * EPS * (1 + vec3_length(gu)));
+            NEAR((double)v.b, vec3_dot(gw, wide(s)), 1e3 * EPS * (1 + vec3_length(gw)));
             if (flat) {
-                CHECK((apart(Qu, (bs_vec3){0, 0, 1})), <, 4 * EPS);
-                CHECK((apart(Qw, (bs_vec3){1, 0, 0})), <, 4 * EPS);
+                CHECK(apart(Qu, (bs_vec3){0, 0, 1}), <, 4 * EPS);
+                CHECK(apart(Qw, (bs_vec3){1, 0, 0}), <, 4 * EPS);
                 CHECK(vec3_length(wide(lane_get(&q.Quu, 0))) + vec3_length(wide(lane_get(&q.Quw, 0))) +
                           vec3_length(wide(lane_get(&q.Qww, 0))),
                       ==, 0);
@@ -344,8 +344,8 @@ static void images(void **state)
             met++;
             /* the moved mesh has its corners rounded to float, in either build */
             CHECK(apart(lane_at(&x, i, a.t[i]), lane_at(&x, i, b.t[i])), <, 3e-5);
-            CHECK(fabs((double)(u[0][i] - u[1][i])), <, 1e-4);
-            CHECK(fabs((double)(w[0][i] - w[1][i])), <, 1e-4);
+            NEAR(u[0][i], u[1][i], 1e-4);
+            NEAR(w[0][i], w[1][i], 1e-4);
             CHECK(apart(lane_get(&p.Qu, i), lane_get(&q.Qu, i)), <, 0.2);
             CHECK(apart(lane_get(&p.Qw, i), lane_get(&q.Qw, i)), <, 0.2);
             const vec3 n = wide(bs_normal(lane_get(&p.Qu, i), lane_get(&p.Qw, i))), s = wide(lane_get(&x.s, i));
@@ -520,15 +520,15 @@ static void error_slopes(void **state)
     for (int order = 0; order < 4; order++) {
         const double slope = (error_of(f, 1e-2, order) - error_of(f, 1e-3, order)) / log(10);
         print_message("flat order %d: error as A^%.3f, expected A^%d\n", order, slope, want[order]);
-        CHECK(fabs(slope - want[order]), <, 0.25); /* other rays each time */
+        NEAR(slope, want[order], 0.25); /* other rays each time */
     }
     surface_free(&f->base);
     mesh *coarse = mesh_of(ball, 40, 20), *fine = mesh_of(ball, 160, 80);
     const double a = error_of(coarse, 1e-4, 3), times = (a - error_of(coarse, 1e-5, 3)) / log(10),
                  finer = (a - error_of(fine, 1e-4, 3)) / log(4);
     print_message("ball order 3: error as A^%.3f, and as the cells' size^%.3f\n", times, finer);
-    CHECK(fabs(times - 1), <, 0.25);
-    CHECK(fabs(finer - 1), <, 0.25);
+    NEAR(times, 1, 0.25);
+    NEAR(finer, 1, 0.25);
     surface_free(&coarse->base);
     surface_free(&fine->base);
 }

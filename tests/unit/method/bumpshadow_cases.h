@@ -8,6 +8,7 @@
 #include <math.h>
 
 #include "bumpshadow.h"
+#include "support/check.h"
 #include "support/golden_json.h"
 
 #ifdef BS_DOUBLE
@@ -98,7 +99,7 @@ static void golden(void **state)
         near_tau(i, c, "tau_order2_full", bs_shift_of(3, 0, v, k, p, all), plus, 3);
     }
     /* the bounds have not been stretched for all */
-    assert_true(plain > n / 2);
+    CHECK(plain, >, n / 2);
     fy_document_destroy(d);
 }
 
@@ -112,7 +113,8 @@ static void guard(void **state)
     bs_bump facing_away = {(bs_real)0.05, (bs_real)-0.7, 0, 0, 0, 0}; /* B = -0.7 + 0.5 < 0 */
     bs_bump far_off = {(bs_real)0.05, (bs_real)-0.49, 0, 0, 0, 0};    /* B = 0.01: tau = -5 */
     bs_bump no_root = {(bs_real)0.05, (bs_real)-0.4, 0, 2, 0, 0};     /* B^2 < 4AC; order 1 gives -0.5 */
-    assert_true(slab.front == (bs_real)-0.2 && slab.back == (bs_real)0.2);
+    CHECK(slab.front, ==, (bs_real)-0.2);
+    CHECK(slab.back, ==, (bs_real)0.2);
     for (int order = 0; order <= 3; order++)
         assert_int_equal(bs_shift_of(order, 1, v, 0, gentle, slab).order, order);
     for (int order = 0; order <= 3; order++) {
@@ -122,7 +124,9 @@ static void guard(void **state)
         assert_int_equal(a.order, 0);
         assert_int_equal(b.order, 0);
         assert_int_equal(c.order, 0);
-        assert_true(a.tau == bs_tau0(v, (bs_real)0.05) && b.tau == a.tau && c.tau == a.tau);
+        CHECK(a.tau, ==, bs_tau0(v, (bs_real)0.05));
+        CHECK(b.tau, ==, a.tau);
+        CHECK(c.tau, ==, a.tau);
     }
     /* a slab that holds order 1 but not the quadratic's root */
     bs_slab wide = bs_slab_of(v, -1, 1);
@@ -130,7 +134,7 @@ static void guard(void **state)
     assert_int_equal(bs_shift_of(3, 1, v, 0, no_root, wide).order, 1);
     /* bare, the formulas stand, but for a root that is not there */
     assert_int_equal(bs_shift_of(1, 0, v, 0, far_off, slab).order, 1);
-    assert_true(fabs((double)bs_shift_of(1, 0, v, 0, far_off, slab).tau + 5) < 1e-4);
+    CHECK(fabs((double)bs_shift_of(1, 0, v, 0, far_off, slab).tau + 5), <, 1e-4);
     assert_int_equal(bs_shift_of(2, 0, v, 0, no_root, slab).order, 1);
 }
 
@@ -147,8 +151,9 @@ static void from_behind(void **state)
     const bs_vec3 n = bs_normal(Qu, Qw), m = bs_normal(Qw, Qu);
     const bs_view v = bs_view_of(s, n, Qu, Qw), x = bs_view_of(s, m, Qw, Qu);
     const bs_slab a = bs_slab_of(v, (bs_real)-0.1, (bs_real)0.2), b = bs_slab_of(x, (bs_real)-0.2, (bs_real)0.1);
-    assert_true(v.sn * x.sn < 0);
-    assert_true(a.front == b.front && a.back == b.back);
+    CHECK(v.sn * x.sn, <, 0);
+    CHECK(a.front, ==, b.front);
+    CHECK(a.back, ==, b.back);
     for (int guarded = 0; guarded < 2; guarded++)
         for (int order = 0; order <= 3; order++) {
             bs_shift one = bs_shift_of(order, guarded, v, bs_curvature(v, n, z, z, z), p, a);

@@ -11,17 +11,12 @@
 #include <cmocka.h>
 
 #include "wave/lane.h"
+#include "support/check.h"
 #include "support/random_in.h"
 #include "method/shift.h"
 #include "geometry/surface.h"
 
 /* Distances are a few units, so a hit is known to a few of their last digits. */
-#ifdef KAGE_DOUBLE
-#define EPS 2.2e-16
-#else
-#define EPS 1.2e-7
-#endif
-
 static bump *function(const char *text)
 {
     const double all[2] = {-HUGE_VAL, HUGE_VAL};
@@ -148,7 +143,7 @@ static void lower_orders_are_not_exact(void **state)
         shift_group(g, P, every[k], false);
         for (int i = 0; i < LANES; i++)
             off += miss(g, i, P) > 1e-4;
-        assert_true(off > LANES / 2);
+        CHECK(off, >, LANES / 2);
     }
     bump_free(P);
 }
@@ -163,10 +158,11 @@ static void no_bump_no_shift(void **state)
             shift_group(g, P, every[k], guard);
             for (int i = 0; i < LANES; i++) {
                 real t = g->t[i] + g->tau[i];
-                assert_true(g->tau[i] == 0 && memcmp(&t, &g->t[i], sizeof t) == 0);
+                CHECK(g->tau[i], ==, 0);
+                CHECK(memcmp(&t, &g->t[i], sizeof t), ==, 0);
                 bs_vec3 n = lane_unit(lane_get(&g->n_smooth, i));
                 bs_vec3 np = lane_get(&g->n_bump, i);
-                assert_true(memcmp(&n, &np, sizeof n) == 0);
+                CHECK(memcmp(&n, &np, sizeof n), ==, 0);
             }
         }
     bump_free(P);
@@ -187,14 +183,14 @@ static void march_and_iter_come_near(void **state)
             assert_int_equal(g->order[i], 5);
             sum += miss(g, i, P);
         }
-        assert_true(sum / LANES < before / 2.5);
+        CHECK(sum / LANES, <, before / 2.5);
         before = fmax(sum / LANES, 1e-6);
     }
     shift_group(g, P, (method){METHOD_ITER, 32}, true);
     int good = 0;
     for (int i = 0; i < LANES; i++)
         good += miss(g, i, P) < 1e-6;
-    assert_true(good > LANES * 9 / 10);
+    CHECK(good, >, LANES * 9 / 10);
     bump_free(P);
 }
 
@@ -238,13 +234,12 @@ static void guarded_shifts_stay_in_the_slab(void **state)
                                        lane_get(&g->q.Qw, i));
                 bs_slab slab = bs_slab_of(v, P->Pmin, P->Pmax);
                 double slack = 4 * EPS * (double)real_abs(slab.back);
-                assert_true((double)g->tau[i] >= (double)slab.front - slack &&
-                            (double)g->tau[i] <= (double)slab.back + slack);
+                BETWEEN((double)slab.front - slack, g->tau[i], (double)slab.back + slack);
                 back += g->order[i] != order;
             }
         }
     }
-    assert_true(back > 0);
+    CHECK(back, >, 0);
     bump_free(P);
 }
 
@@ -266,8 +261,8 @@ static void pole(void **state)
     for (int k = 0; k < EVERY; k++) {
         shift_group(&g, P, every[k], true);
         assert_int_equal(g.order[0], -1);
-        assert_true(g.tau[0] == 0);
-        assert_true(g.n_bump.y[0] > R(0.999999));
+        CHECK(g.tau[0], ==, 0);
+        CHECK(g.n_bump.y[0], >, R(0.999999));
     }
     bump_free(P);
     surface_free(f);

@@ -127,8 +127,7 @@ static void check_rows(const patch *q, struct fy_node *rows, double *worst, int 
         for (int k = 0; k < 9; k++) {
             const expr_bounds *a = &b.axis[k % 3];
             const double *range = k < 3 ? a->v : k < 6 ? a->u : a->w;
-            CHECK(range[0], <=, want[2 + k]);
-            CHECK(want[2 + k], <=, range[1]);
+            BETWEEN(range[0], want[2 + k], range[1]);
             CHECK(range[1] - range[0], <, 3);
         }
         for (int k = 0; k < 9; k++) {
@@ -530,8 +529,7 @@ static void check_rough(const patch *q, const bump *P, int *boxes, int *close)
             for (int axis = 0; axis < 3; axis++) {
                 const expr_jets *z = &j.axis[axis];
                 const expr_bounds *in = &b.axis[axis];
-                CHECK(in->v[0], <=, z->v[0]);
-                CHECK(z->v[0], <=, in->v[1]);
+                BETWEEN(in->v[0], z->v[0], in->v[1]);
                 CHECK(in->u[0], <=, z->u[0]);
                 CHECK(z->u[0], <=, in->u[1]);
                 CHECK(in->w[0], <=, z->w[0]);
@@ -634,7 +632,7 @@ static void displaced_at_any_scale(void **state)
     const real scales[] = {R(1e-12), R(1e-3), 800, R(2e3), R(1e4), R(1e6), R(1e12)};
     const offset one = offset_of(Qu, Qw, Quu, Quw, Qww, h);
     const bs_vec3 normal = offset_normal(one, Pu, Pw);
-    CHECK(fabs((double)bs_dot(one.n, one.n) - 1), <, 4 * EPS);
+    NEAR((double)bs_dot(one.n, one.n), 1, 4 * EPS);
     for (int i = 0; i < (int)(sizeof scales / sizeof *scales); i++) {
         const real k = scales[i];
         const offset o = offset_of(times(Qu, k), times(Qw, k), times(Quu, k), times(Quw, k), times(Qww, k), k * h);
@@ -685,7 +683,7 @@ static void feet_at_any_scale(void **state)
         ((displaced *)d)->form->closest((displaced *)d, LANES, &x, t, part, &p);
         one = k ? one : p;
         for (int i = 0; i < LANES; i++) {
-            CHECK(fabs((double)(p.h[i] - h.P[i])), <, 20 * EPS * size);
+            NEAR(p.h[i], h.P[i], 20 * EPS * size);
             CHECK(distance(lane_get(&p.gh, i), lane_get(&one.gh, i)), <, 100 * EPS);
             CHECK(distance(times(lane_get(&p.gu, i), c), lane_get(&one.gu, i)), <, 100 * EPS);
             CHECK(distance(times(lane_get(&p.gw, i), c), lane_get(&one.gw, i)), <, 100 * EPS);
@@ -756,7 +754,7 @@ static void error_slopes(void **state)
             const double slope = (a - b) / log(10);
             print_message("%-8s order %d: error as A^%.3f, expected A^%d\n", names[kinds[k]], order, slope,
                           want[order]);
-            CHECK(fabs(slope - want[order]), <, 0.2);
+            NEAR(slope, want[order], 0.2);
         }
     }
 }

@@ -12,14 +12,9 @@
 
 #include "base/frame.h"
 #include "wave/lane.h"
+#include "support/check.h"
 #include "support/random_in.h"
 #include "geometry/surface.h"
-
-#ifdef KAGE_DOUBLE
-#define EPS 2.2e-16
-#else
-#define EPS 1.2e-7
-#endif
 
 typedef long double wide;
 
@@ -192,7 +187,7 @@ static void first_hits(void **state)
         }
         print_message("%s: %d hits, farthest %.2g, %d left out near tangents and rims\n", f->name, met, worst, doubts);
         assert_true(met > (f->torus && f->r1 < 0.1 ? 30 : 250));
-        assert_true(doubts < RAY_KINDS * LANES / 10);
+        CHECK(doubts, <, RAY_KINDS * LANES / 10);
         surface_free(q);
     }
 }
@@ -242,7 +237,7 @@ static void own_shadows(void **state)
             q->ops->hit_own(q, n, &nowhere, &from, 7, &again);
             for (int i = 0; i < n; i++) {
                 wide r[3], s[3];
-                assert_true((again.id[i] == 7) == (lit[i] == 0));
+                CHECK((again.id[i] == 7), ==, (lit[i] == 0));
                 bool doubt, c;
                 widen(&away, i, r, s);
                 /* from a little way off: where the gap still is small there, or has turned, nothing is said */
@@ -281,8 +276,9 @@ static void own_shadows(void **state)
         }
         print_message("%s: %d dark, met again at most %.2g off, %d lit, %d left out\n", f->name, dark, worst, free,
                       doubts);
-        assert_true(dark > 20 && free > 20);
-        assert_true(doubts < (dark + free) / 4);
+        CHECK(dark, >, 20);
+        CHECK(free, >, 20);
+        CHECK(doubts, <, (dark + free) / 4);
         surface_free(q);
     }
 }
@@ -322,11 +318,11 @@ static void around_a_torus(void **state)
         if (rays_of[i].met >= 0)
             assert_int_equal(h.id[i] == 0, rays_of[i].met);
         if (rays_of[i].t > 0)
-            assert_true(fabs((double)h.t[i] - rays_of[i].t) < 8 * EPS * (1 + rays_of[i].t));
+            NEAR((double)h.t[i], rays_of[i].t, 8 * EPS * (1 + rays_of[i].t));
         if (h.id[i] == 0) {
             bs_vec3 p = lane_at(&x, i, h.t[i]);
             double d = hypot((double)p.x, (double)p.z) - 1;
-            assert_true(fabs(hypot(d, (double)p.y) - 0.25) < 1e-6 + 4 * EPS * fabs(rays_of[i].r[0]));
+            NEAR(hypot(d, (double)p.y), 0.25, 1e-6 + 4 * EPS * fabs(rays_of[i].r[0]));
         }
     }
     surface_free(q);

@@ -17,6 +17,7 @@
 
 #include "scene/object_bvh.h"
 #include "wave/lane.h"
+#include "support/check.h"
 #include "support/random_in.h"
 #include "render/trace.h"
 #include "scene/scene.h"
@@ -132,7 +133,7 @@ static void boxes(void **state)
                     continue; /* the extent is a square about it */
                 const double p[3] = {(double)q.Q.x[0], (double)q.Q.y[0], (double)q.Q.z[0]};
                 for (int a = 0; a < 3; a++)
-                    assert_true(p[a] >= lo[a] - 1e-5 && p[a] <= hi[a] + 1e-5);
+                    BETWEEN(lo[a] - 1e-5, p[a], hi[a] + 1e-5);
             }
     }
     scene_free(s);
