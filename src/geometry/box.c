@@ -1,6 +1,6 @@
 /* Box with sides along the axes: six faces, each a plane with its own (u,w). */
 #include "math/slab.h"
-#include "geometry/surface.h"
+#include "geometry/closed_form.h"
 
 #include <stdlib.h>
 
@@ -160,9 +160,9 @@ static face box_face(const box *f, int part)
 }
 
 static const real *axis(const vec3s *v, int k) { return k == 0 ? v->x : k == 1 ? v->y : v->z; }
-static real *axis_of(vec3s *v, int k) { return k == 0 ? v->x : k == 1 ? v->y : v->z; }
+static real *component(vec3s *v, int k) { return k == 0 ? v->x : k == 1 ? v->y : v->z; }
 
-static void box_shell(const surface *base, int part, int n, const rays *x, const real *end, real Pmin, real Pmax,
+static void box_bound(const surface *base, int part, int n, const rays *x, const real *end, real Pmin, real Pmax,
                       real *t0, real *t1)
 {
     const box *f = (const box *)base;
@@ -179,7 +179,7 @@ static void box_shell(const surface *base, int part, int n, const rays *x, const
     }
 }
 
-static void box_foot(const surface *base, int part, int n, const rays *x, const real *t, closest_points *p)
+static void box_closest(const surface *base, int part, int n, const rays *x, const real *t, closest_points *p)
 {
     const box *f = (const box *)base;
     const face c = box_face(f, part);
@@ -193,13 +193,13 @@ static void box_foot(const surface *base, int part, int n, const rays *x, const 
         p->h[i] = c.side * (r[i] + s[i] * t[i] - c.at);
         p->u[i] = (ra[i] + sa[i] * t[i] - f->lo[c.a]) * iu;
         p->w[i] = (rb[i] + sb[i] * t[i] - f->lo[c.b]) * iw;
-        axis_of(&p->gu, c.a)[i] = iu;
-        axis_of(&p->gw, c.b)[i] = iw;
-        axis_of(&p->gh, c.k)[i] = c.side;
+        component(&p->gu, c.a)[i] = iu;
+        component(&p->gw, c.b)[i] = iw;
+        component(&p->gh, c.k)[i] = c.side;
     }
 }
 
-static void box_steep(const surface *base, int part, int n, const rays *x, const closest_points *p, real Pu_max,
+static void box_lipschitz(const surface *base, int part, int n, const rays *x, const closest_points *p, real Pu_max,
                       real Pw_max, real *rate, real *reach)
 {
     const box *f = (const box *)base;
@@ -241,18 +241,21 @@ static const surface_ops box_methods = {
     .extent = box_extent,
     .box = box_box,
     .parts = 6,
-    .shell = box_shell,
-    .foot = box_foot,
-    .steep = box_steep,
+    .bound = box_bound,
+    .closest = box_closest,
+    .lipschitz = box_lipschitz,
 };
+
+/* In the numbers that it is kept in. */
+static bool is_thick(vec3 from, vec3 to)
+{
+    return (real)from.x != (real)to.x && (real)from.y != (real)to.y && (real)from.z != (real)to.z;
+}
 
 surface *box_new(vec3 from, vec3 to)
 {
-    double a[3] = {from.x, from.y, from.z}, b[3] = {to.x, to.y, to.z};
-    for (int k = 0; k < 3; k++)
-        if (!((real)a[k] != (real)b[k]))
-            return NULL;
-    box *f = calloc(1, sizeof *f);
+    const double a[3] = {from.x, from.y, from.z}, b[3] = {to.x, to.y, to.z};
+    box *f = is_thick(from, to) ? calloc(1, sizeof *f) : NULL;
     if (!f)
         return NULL;
     f->base.ops = &box_methods;
@@ -262,3 +265,43 @@ surface *box_new(vec3 from, vec3 to)
     }
     return &f->base;
 }
+
+/* ---- as the scene file has it ---- */
+
+static const form_parameter box_parameters[] = {
+    {"from", FORM_PLACE, 0, "a corner [x, y, z]"},
+    {"to", FORM_PLACE, 1, "the opposite corner [x, y, z]"},
+    {0},
+};
+
+static surface *make_box(const shape_values *v, form_fault *fault)
+{
+    if (!is_thick(v->v[0], v->v[1]))
+        *fault = (form_fault){"to", "a box without thickness, expected 'to' apart from 'from' along x, y and z"};
+    return box_new(v->v[0], v->v[1]);
+}
+
+static double *coordinate(vec3 *v, int k) { return k == 0 ? &v->x : k == 1 ? &v->y : &v->z; }
+
+/* u and w go along the two next axes on the high side, swapped on the low one. */
+static bool flat_face(const shape_values *v, int part, flat_part *out)
+{
+    const int k = part >> 1, high = part & 1, a = (k + (high ? 1 : 2)) % 3, b = (k + (high ? 2 : 1)) % 3;
+    const vec3 p = v->v[0], q = v->v[1];
+    vec3 lo = {fmin(p.x, q.x), fmin(p.y, q.y), fmin(p.z, q.z)}, hi = {fmax(p.x, q.x), fmax(p.y, q.y), fmax(p.z, q.z)};
+    *out = (flat_part){.O = lo, .rim = -1};
+    if (high)
+        *coordinate(&out->O, k) = *coordinate(&hi, k);
+    *coordinate(&out->U, a) = *coordinate(&hi, a) - *coordinate(&lo, a);
+    *coordinate(&out->W, b) = *coordinate(&hi, b) - *coordinate(&lo, b);
+    return true;
+}
+
+const closed_form form_box = {
+    .name = "box",
+    .parameters = box_parameters,
+    .make = make_box,
+    .flat = flat_face,
+    .solid = true,
+    .povray = "box {\n  $from, $to\n",
+};

@@ -6,7 +6,9 @@
 #include "geometry/cone.h"
 
 #include "base/frame.h"
+#include "geometry/closed_form.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 
 /* Two intervals of t: within the infinite cone, from `in` to `out`, and between the planes of the ends. An interval
@@ -176,7 +178,7 @@ STAGE static void cone_capped_occlude_own(const surface *base, int n, const rays
 
 /* Q + P n/|n| on the side is on the cone whose radius is larger by P/cos a, from w = 0 to its side's end. Seen along
  * the axis that is from lo to hi. */
-STAGE static void cone_side_shell(const cone *restrict base, int n, const rays *restrict x, const real *restrict end,
+STAGE static void cone_side_bound(const cone *restrict base, int n, const rays *restrict x, const real *restrict end,
                                   real Pmin, real Pmax, real *restrict t0, real *restrict t1)
 {
     const cone f = *base;
@@ -196,18 +198,18 @@ STAGE static void cone_side_shell(const cone *restrict base, int n, const rays *
     }
 }
 
-static void cone_shell(const surface *base, int part, int n, const rays *x, const real *end, real Pmin, real Pmax,
+static void cone_bound(const surface *base, int part, int n, const rays *x, const real *end, real Pmin, real Pmax,
                        real *t0, real *t1)
 {
     if (part == 0)
-        cone_side_shell((const cone *)base, n, x, end, Pmin, Pmax, t0, t1);
+        cone_side_bound((const cone *)base, n, x, end, Pmin, Pmax, t0, t1);
     else {
         const surface *cap = &cone_cap(base, part)->base;
-        cap->ops->shell(cap, 0, n, x, end, Pmin, Pmax, t0, t1);
+        cap->ops->bound(cap, 0, n, x, end, Pmin, Pmax, t0, t1);
     }
 }
 
-STAGE static void cone_side_foot(const cone *restrict base, int n, const rays *restrict x, const real *restrict t,
+STAGE static void cone_side_closest(const cone *restrict base, int n, const rays *restrict x, const real *restrict t,
                                  closest_points *restrict p)
 {
     const cone f = *base;
@@ -225,19 +227,19 @@ STAGE static void cone_side_foot(const cone *restrict base, int n, const rays *r
     }
 }
 
-static void cone_foot(const surface *base, int part, int n, const rays *x, const real *t, closest_points *p)
+static void cone_closest(const surface *base, int part, int n, const rays *x, const real *t, closest_points *p)
 {
     if (part == 0)
-        cone_side_foot((const cone *)base, n, x, t, p);
+        cone_side_closest((const cone *)base, n, x, t, p);
     else {
         const surface *cap = &cone_cap(base, part)->base;
-        cap->ops->foot(cap, 0, n, x, t, p);
+        cap->ops->closest(cap, 0, n, x, t, p);
     }
 }
 
 /* The directions of h, of w and around the axis are at right angles, so that the ray's way is shared between them
  * (Cauchy and Schwarz); |grad u| is 1/(distance to the axis), within half of which it at most doubles. */
-STAGE static void cone_side_steep(int n, const rays *restrict x, const closest_points *restrict p, real Pu_max,
+STAGE static void cone_side_lipschitz(int n, const rays *restrict x, const closest_points *restrict p, real Pu_max,
                                   real Pw_max, real *restrict rate, real *restrict reach)
 {
     for (int i = 0; i < n; i++) {
@@ -248,14 +250,14 @@ STAGE static void cone_side_steep(int n, const rays *restrict x, const closest_p
     }
 }
 
-static void cone_steep(const surface *base, int part, int n, const rays *x, const closest_points *p, real Pu_max,
+static void cone_lipschitz(const surface *base, int part, int n, const rays *x, const closest_points *p, real Pu_max,
                        real Pw_max, real *rate, real *reach)
 {
     if (part == 0)
-        cone_side_steep(n, x, p, Pu_max, Pw_max, rate, reach);
+        cone_side_lipschitz(n, x, p, Pu_max, Pw_max, rate, reach);
     else {
         const surface *cap = &cone_cap(base, part)->base;
-        cap->ops->steep(cap, 0, n, x, p, Pu_max, Pw_max, rate, reach);
+        cap->ops->lipschitz(cap, 0, n, x, p, Pu_max, Pw_max, rate, reach);
     }
 }
 
@@ -264,8 +266,8 @@ static void cone_steep(const surface *base, int part, int n, const rays *x, cons
     {                                                                                                                  \
         .kind = name, .hit = cone_##form##_hit, .hit_own = cone_##form##_hit_own, .locate = cone_locate,               \
         .eval = cone_eval, .occlude = cone_##form##_occlude, .occlude_own = cone_##form##_occlude_own,                 \
-        .extent = cone_extent, .box = cone_box, .parts = number, .shell = cone_shell, .foot = cone_foot,               \
-        .steep = cone_steep, .loose = is_cone                                                                          \
+        .extent = cone_extent, .box = cone_box, .parts = number, .bound = cone_bound, .closest = cone_closest,            \
+        .lipschitz = cone_lipschitz, .unclamped = is_cone                                                                  \
     }
 
 static const surface_ops cone_methods[2][2] = {
@@ -301,3 +303,95 @@ surface *cone_new(vec3 from, double from_radius, vec3 to, double to_radius, bool
     disc_set(&f->cap[1], from, a.x, a.z, from_radius);
     return &f->base;
 }
+
+/* ---- as the scene file has them ---- */
+
+#define FROM                                                                                                           \
+    {                                                                                                                  \
+        "from", FORM_PLACE, 0, "the middle of one end [x, y, z]"                                                       \
+    }
+#define TO                                                                                                             \
+    {                                                                                                                  \
+        "to", FORM_PLACE, 1, "the middle of the other end [x, y, z]"                                                   \
+    }
+#define OPEN                                                                                                           \
+    {                                                                                                                  \
+        "open", FORM_OPEN, 0, NULL                                                                                     \
+    }
+
+static const form_parameter cylinder_parameters[] = {FROM, TO, {"radius", FORM_POSITIVE, 0, NULL}, OPEN, {0}};
+
+static const form_parameter cone_parameters[] = {
+    FROM, {"from_radius", FORM_LENGTH, 0, NULL}, TO, {"to_radius", FORM_LENGTH, 1, NULL}, OPEN, {0},
+};
+
+static bool has_length(const shape_values *v) { return vec3_length(vec3_sub(v->v[1], v->v[0])) >= SHAPE_SMALL; }
+
+static surface *make_cylinder(const shape_values *v, form_fault *fault)
+{
+    if (has_length(v))
+        return cone_new(v->v[0], v->r[0], v->v[1], v->r[0], v->open);
+    *fault = (form_fault){"to", "a cylinder without length, expected 'to' apart from 'from'"};
+    return NULL;
+}
+
+static surface *make_cone(const shape_values *v, form_fault *fault)
+{
+    if (!has_length(v))
+        *fault = (form_fault){"to", "a cone without length, expected 'to' apart from 'from'"};
+    else if (v->r[0] < SHAPE_SMALL && v->r[1] < SHAPE_SMALL)
+        *fault = (form_fault){NULL, "a cone without thickness, expected a radius of 1e-6 or more at one end"};
+    else
+        return cone_new(v->v[0], v->r[0], v->v[1], v->r[1], v->open);
+    return NULL;
+}
+
+/* The side has no flat part; part 1 is the cap at `to`, where the axis is n. */
+static bool flat_cap(const shape_values *v, int part, double to_radius, flat_part *out)
+{
+    const frame a = frame_about(vec3_sub(v->v[1], v->v[0]));
+    if (part == 1)
+        *out = (flat_part){v->v[1], a.x, vec3_scale(a.z, -1), to_radius};
+    else
+        *out = (flat_part){v->v[0], a.x, a.z, v->r[0]};
+    return part > 0;
+}
+
+static bool cylinder_flat(const shape_values *v, int part, flat_part *out) { return flat_cap(v, part, v->r[0], out); }
+static bool cone_flat(const shape_values *v, int part, flat_part *out) { return flat_cap(v, part, v->r[1], out); }
+
+static bool side_formula(const shape_values *v, double to_radius, form_formula *out)
+{
+    const vec3 axis = vec3_sub(v->v[1], v->v[0]);
+    const double length = vec3_length(axis), slope = v->r[0] - to_radius, side = sqrt(length * length + slope * slope);
+    char rho[64], y[64];
+    snprintf(rho, sizeof rho, "%.17g + %.17g*w", to_radius, slope / side);
+    snprintf(y, sizeof y, "%.17g - %.17g*w", 0.5 * length, length / side);
+    out->w[0] = 0;
+    out->w[1] = side;
+    formula_revolve(out, frame_about(axis), rho, y);
+    return v->open;
+}
+
+static bool cylinder_formula(const shape_values *v, form_formula *out) { return side_formula(v, v->r[0], out); }
+static bool cone_formula(const shape_values *v, form_formula *out) { return side_formula(v, v->r[1], out); }
+
+const closed_form form_cylinder = {
+    .name = "cylinder",
+    .parameters = cylinder_parameters,
+    .make = make_cylinder,
+    .flat = cylinder_flat,
+    .formula = cylinder_formula,
+    .solid = true,
+    .povray = "cylinder {\n  $from, $to, $radius$open\n",
+};
+
+const closed_form form_cone = {
+    .name = "cone",
+    .parameters = cone_parameters,
+    .make = make_cone,
+    .flat = cone_flat,
+    .formula = cone_formula,
+    .solid = true,
+    .povray = "cone {\n  $from, $from_radius, $to, $to_radius$open\n",
+};

@@ -2,7 +2,7 @@
 #include "geometry/plane.h"
 
 #include "math/slab.h"
-#include "base/frame.h"
+#include "geometry/closed_form.h"
 
 #include <stdlib.h>
 
@@ -159,21 +159,21 @@ static inline void shell(const surface *base, enum bounds bound, int n, const ra
     }
 }
 
-#define FLAT_SHELL(kind, bounds)                                                                                       \
-    static void kind##_shell(const surface *f, int part, int n, const rays *x, const real *end, real Pmin, real Pmax,  \
+#define FLAT_BOUND(kind, bounds)                                                                                       \
+    static void kind##_bound(const surface *f, int part, int n, const rays *x, const real *end, real Pmin, real Pmax,  \
                              real *t0, real *t1)                                                                       \
     {                                                                                                                  \
         (void)part;                                                                                                    \
         shell(f, bounds, n, x, end, Pmin, Pmax, t0, t1);                                                               \
     }
 
-FLAT_SHELL(plane, NOWHERE)
-FLAT_SHELL(rectangle, AT_SIDES)
-FLAT_SHELL(disc, AT_RIM)
+FLAT_BOUND(plane, NOWHERE)
+FLAT_BOUND(rectangle, AT_SIDES)
+FLAT_BOUND(disc, AT_RIM)
 
 /* The dual basis is in the plane, so Du.(X - O) is u of the foot. */
-STAGE static void plane_foot(const surface *base, int part, int n, const rays *x, const real *restrict t,
-                             closest_points *restrict p)
+STAGE static void plane_closest(const surface *base, int part, int n, const rays *x, const real *restrict t,
+                                closest_points *restrict p)
 {
     const plane f = *(const plane *)base;
     (void)part;
@@ -189,8 +189,8 @@ STAGE static void plane_foot(const surface *base, int part, int n, const rays *x
 }
 
 /* u, w and the height are linear along a ray, so the rate holds for all of it. */
-STAGE static void plane_steep(const surface *base, int part, int n, const rays *x, const closest_points *p, real Pu_max,
-                              real Pw_max, real *restrict rate, real *restrict reach)
+STAGE static void plane_lipschitz(const surface *base, int part, int n, const rays *x, const closest_points *p,
+                                  real Pu_max, real Pw_max, real *restrict rate, real *restrict reach)
 {
     const plane f = *(const plane *)base;
     (void)part;
@@ -261,8 +261,8 @@ static void disc_box(const surface *base, double lo[3], double hi[3])
 #define FLAT_METHODS(name)                                                                                             \
     {                                                                                                                  \
         .kind = #name, .hit = name##_hit, .hit_own = name##_hit_own, .locate = plane_locate, .eval = plane_eval,       \
-        .occlude = name##_occlude, .extent = name##_extent, .box = name##_box, .parts = 1, .shell = name##_shell,      \
-        .foot = plane_foot, .steep = plane_steep                                                                       \
+        .occlude = name##_occlude, .extent = name##_extent, .box = name##_box, .parts = 1, .bound = name##_bound,      \
+        .closest = plane_closest, .lipschitz = plane_lipschitz                                                         \
     }
 
 static const surface_ops plane_methods = FLAT_METHODS(plane);
@@ -323,3 +323,76 @@ surface *disc_new(vec3 centre, vec3 normal, double radius)
     disc_set(f, centre, a.x, vec3_scale(a.z, -1), radius);
     return &f->base;
 }
+
+/* ---- as the scene file has them ---- */
+
+static const form_parameter edges[] = {
+    {"origin", FORM_PLACE, 0, "the place of u = w = 0, [x, y, z]"},
+    {"u", FORM_EDGE, 1, "the edge along u, [x, y, z]"},
+    {"w", FORM_EDGE, 2, "the edge along w, [x, y, z]"},
+    {0},
+};
+
+static surface *make_flat(const shape_values *v, bool bounded, form_fault *fault)
+{
+    plane trial;
+    if (!plane_place(&trial, v->v[0], v->v[1], v->v[2]))
+        *fault = (form_fault){NULL, "u and w are parallel, expected two directions"};
+    return plane_new(v->v[0], v->v[1], v->v[2], bounded);
+}
+
+static surface *make_plane(const shape_values *v, form_fault *fault) { return make_flat(v, false, fault); }
+static surface *make_rectangle(const shape_values *v, form_fault *fault) { return make_flat(v, true, fault); }
+
+static bool flat_edges(const shape_values *v, int part, flat_part *out)
+{
+    (void)part;
+    *out = (flat_part){v->v[0], v->v[1], v->v[2], -1};
+    return true;
+}
+
+const closed_form form_plane = {
+    .name = "plane",
+    .parameters = edges,
+    .make = make_plane,
+    .flat = flat_edges,
+    .solid = true,
+    .povray = "plane {\n  $plane\n",
+};
+
+const closed_form form_rectangle = {
+    .name = "rectangle",
+    .parameters = edges,
+    .make = make_rectangle,
+    .flat = flat_edges,
+    .povray = "$rectangle",
+};
+
+static const form_parameter disc_parameters[] = {
+    {"center", FORM_PLACE, 0, "a place [x, y, z]"},
+    {"normal", FORM_DIRECTION, 1, "the direction of n, [x, y, z]"},
+    {"radius", FORM_POSITIVE, 0, NULL},
+    {0},
+};
+
+static surface *make_disc(const shape_values *v, form_fault *fault)
+{
+    (void)fault;
+    return disc_new(v->v[0], v->v[1], v->r[0]);
+}
+
+static bool flat_disc(const shape_values *v, int part, flat_part *out)
+{
+    const frame a = frame_about(v->v[1]);
+    (void)part;
+    *out = (flat_part){v->v[0], a.x, vec3_scale(a.z, -1), v->r[0]};
+    return true;
+}
+
+const closed_form form_disc = {
+    .name = "disc",
+    .parameters = disc_parameters,
+    .make = make_disc,
+    .flat = flat_disc,
+    .povray = "disc {\n  $center, $normal, $radius\n",
+};

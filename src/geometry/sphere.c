@@ -1,7 +1,8 @@
 /* Sphere: Q(u,w) = C + R (sin w cos u, cos w, sin w sin u). */
 #include "math/kmath.h"
-#include "geometry/surface.h"
+#include "geometry/closed_form.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 
 /* At a pole Qu is 0, and so would be n. Qu is taken as if the sine of w were this much, which keeps the direction of n;
@@ -135,7 +136,7 @@ STAGE static void sphere_occlude_own(const surface *base, int n, const rays *x, 
 
 /* The outer sphere's stretch. From within the inner one it begins at that one's far side; all others go through it, as
  * a ray that is below the rough surface already meets it on the far side only. */
-STAGE static void sphere_shell(const surface *base, int part, int n, const rays *x, const real *restrict end, real Pmin,
+STAGE static void sphere_bound(const surface *base, int part, int n, const rays *x, const real *restrict end, real Pmin,
                                real Pmax, real *restrict t0, real *restrict t1)
 {
     sphere outer = *(const sphere *)base, inner = outer;
@@ -152,7 +153,7 @@ STAGE static void sphere_shell(const surface *base, int part, int n, const rays 
     }
 }
 
-STAGE static void sphere_foot(const surface *base, int part, int n, const rays *x, const real *restrict t,
+STAGE static void sphere_closest(const surface *base, int part, int n, const rays *x, const real *restrict t,
                               closest_points *restrict p)
 {
     const sphere f = *(const sphere *)base;
@@ -180,7 +181,7 @@ STAGE static void sphere_foot(const surface *base, int part, int n, const rays *
 
 /* |grad u| is 1/(distance to the axis), |grad w| 1/(distance to the centre): within half of either they at most double.
  */
-STAGE static void sphere_steep(const surface *base, int part, int n, const rays *x, const closest_points *p,
+STAGE static void sphere_lipschitz(const surface *base, int part, int n, const rays *x, const closest_points *p,
                                real Pu_max, real Pw_max, real *restrict rate, real *restrict reach)
 {
     (void)base;
@@ -225,9 +226,9 @@ static const surface_ops sphere_methods = {
     .extent = sphere_extent,
     .box = sphere_box,
     .parts = 1,
-    .shell = sphere_shell,
-    .foot = sphere_foot,
-    .steep = sphere_steep,
+    .bound = sphere_bound,
+    .closest = sphere_closest,
+    .lipschitz = sphere_lipschitz,
 };
 
 surface *sphere_new(vec3 centre, double radius)
@@ -240,3 +241,37 @@ surface *sphere_new(vec3 centre, double radius)
     f->R = (real)radius;
     return &f->base;
 }
+
+/* ---- as the scene file has it ---- */
+
+static const form_parameter sphere_parameters[] = {
+    {"center", FORM_PLACE, 0, "a place [x, y, z]"},
+    {"radius", FORM_POSITIVE, 0, NULL},
+    {0},
+};
+
+static surface *make_sphere(const shape_values *v, form_fault *fault)
+{
+    (void)fault;
+    return sphere_new(v->v[0], v->r[0]);
+}
+
+static bool sphere_formula(const shape_values *v, form_formula *out)
+{
+    const vec3 up = {0, 1, 0};
+    char rho[40], y[40];
+    snprintf(rho, sizeof rho, "%.17g*sin(w)", v->r[0]);
+    snprintf(y, sizeof y, "%.17g*cos(w)", v->r[0]);
+    sphere_extent(NULL, 0, out->u, out->w);
+    formula_revolve(out, frame_about(up), rho, y);
+    return true;
+}
+
+const closed_form form_sphere = {
+    .name = "sphere",
+    .parameters = sphere_parameters,
+    .make = make_sphere,
+    .formula = sphere_formula,
+    .solid = true,
+    .povray = "sphere {\n  $center, $radius\n",
+};
