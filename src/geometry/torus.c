@@ -3,6 +3,7 @@
 
 #include "base/frame.h"
 #include "geometry/closed_form.h"
+#include "math/kmath.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -116,8 +117,8 @@ STAGE static void torus_closest(const surface *base, int part, int n, const rays
 /* The directions of h, u and w are at right angles, so that the ray's way is shared between them (Cauchy and Schwarz).
  * |grad u| is 1/(distance to the axis), |grad w| 1/(distance to the tube's middle): within half of either they at most
  * double. */
-STAGE static void torus_lipschitz(const surface *base, int part, int n, const rays *x, const closest_points *p, real Pu_max,
-                              real Pw_max, real *restrict rate, real *restrict reach)
+STAGE static void torus_lipschitz(const surface *base, int part, int n, const rays *x, const closest_points *p,
+                                  real Pu_max, real Pw_max, real *restrict rate, real *restrict reach)
 {
     (void)base;
     (void)part;
@@ -132,11 +133,10 @@ STAGE static void torus_lipschitz(const surface *base, int part, int n, const ra
 
 static void torus_extent(const surface *base, int part, double u[2], double w[2])
 {
-    const double pi = 3.14159265358979323846;
     (void)base;
     (void)part;
-    u[0] = w[0] = -pi;
-    u[1] = w[1] = pi;
+    u[0] = w[0] = -KM_PI;
+    u[1] = w[1] = KM_PI;
 }
 
 /* The circle that the tube is about reaches as far along an axis as that is across its own. */

@@ -4,6 +4,7 @@
  * drops a stretch of a ray in which the function could not reach 0 by this bound, so too low a one makes holes.
  */
 #include "povray/expr.h"
+#include "math/kmath.h"
 #include "povray/flat.h"
 #include "povray/material.h"
 #include "povray/parts.h"
@@ -39,11 +40,11 @@ static double of_flat(const object *o, int part)
 static double of_zone(const expr *e, double scale, double r, double w0, double w1)
 {
     enum { CELLS = 64 };
-    const double pi = 3.14159265358979323846, sine = fmin(sin(w0), sin(w1));
+    const double sine = fmin(sin(w0), sin(w1));
     double worst = 0;
     for (int i = 0; i < CELLS; i++) {
         expr_bounds b;
-        expr_bound_gradient(e, pi * (2.0 * i / CELLS - 1), pi * (2.0 * (i + 1) / CELLS - 1), w0, w1, &b);
+        expr_bound_gradient(e, KM_PI * (2.0 * i / CELLS - 1), KM_PI * (2.0 * (i + 1) / CELLS - 1), w0, w1, &b);
         double x = fmax(fabs(b.u[0]), fabs(b.u[1])) / (r * sine), z = fmax(fabs(b.w[0]), fabs(b.w[1])) / r;
         worst = fmax(worst, sqrt(1 + scale * scale * (x * x + z * z)));
     }
@@ -73,7 +74,7 @@ static double least_hole(const object *o)
  * than a pixel. */
 static double of_sphere(const object *o)
 {
-    const double CAP = 1e-3, GROWTH = 1.05, WIDEST = 0.05, half = 3.14159265358979323846 / 2;
+    const double CAP = 1e-3, GROWTH = 1.05, WIDEST = 0.05, half = KM_PI / 2;
     const double r = (1 - LEVEL) * least_within(o), scale = fabs(o->bump_spec.scale);
     double worst = 0;
     expr_error wrong;

@@ -13,7 +13,7 @@
 /* Between what is allowed for keys, 1e-6 to 1e6, and this: numbers that a transform rounds. */
 #define ROUNDED 4
 
-static double length(const vec3s *v) { return vec3_length((vec3){(double)v->x[0], (double)v->y[0], (double)v->z[0]}); }
+static double length(const vec3s *v) { return vec3_length(vec3s_get(v, 0)); }
 
 static bool is_size(double x) { return x >= SMALL / ROUNDED && x <= BIG * ROUNDED; }
 

@@ -8,8 +8,7 @@
 /* Cosine and sine of an angle in degrees, exact for right angles. */
 static void circle(double degrees, double *c, double *s)
 {
-    const double quarter = km_floor(degrees / 90 + 0.5),
-                 rest = (degrees - 90 * quarter) * (3.14159265358979323846 / 180);
+    const double quarter = km_floor(degrees / 90 + 0.5), rest = (degrees - 90 * quarter) * (KM_PI / 180);
     const int k = (int)(quarter - 4 * km_floor(quarter / 4));
     const double x = km_cos(rest), y = km_sin(rest);
     *c = k == 0 ? x : k == 1 ? -y : k == 2 ? -x : y;
