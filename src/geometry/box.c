@@ -162,7 +162,7 @@ static face box_face(const box *f, int part)
 static const real *axis(const vec3s *v, int k) { return k == 0 ? v->x : k == 1 ? v->y : v->z; }
 static real *component(vec3s *v, int k) { return k == 0 ? v->x : k == 1 ? v->y : v->z; }
 
-static void box_shell(const surface *base, int part, int n, const rays *x, const real *end, real Pmin, real Pmax,
+static void box_bound(const surface *base, int part, int n, const rays *x, const real *end, real Pmin, real Pmax,
                       real *t0, real *t1)
 {
     const box *f = (const box *)base;
@@ -179,7 +179,7 @@ static void box_shell(const surface *base, int part, int n, const rays *x, const
     }
 }
 
-static void box_foot(const surface *base, int part, int n, const rays *x, const real *t, closest_points *p)
+static void box_closest(const surface *base, int part, int n, const rays *x, const real *t, closest_points *p)
 {
     const box *f = (const box *)base;
     const face c = box_face(f, part);
@@ -199,7 +199,7 @@ static void box_foot(const surface *base, int part, int n, const rays *x, const 
     }
 }
 
-static void box_steep(const surface *base, int part, int n, const rays *x, const closest_points *p, real Pu_max,
+static void box_lipschitz(const surface *base, int part, int n, const rays *x, const closest_points *p, real Pu_max,
                       real Pw_max, real *rate, real *reach)
 {
     const box *f = (const box *)base;
@@ -241,18 +241,21 @@ static const surface_ops box_methods = {
     .extent = box_extent,
     .box = box_box,
     .parts = 6,
-    .shell = box_shell,
-    .foot = box_foot,
-    .steep = box_steep,
+    .bound = box_bound,
+    .closest = box_closest,
+    .lipschitz = box_lipschitz,
 };
+
+/* In the numbers that it is kept in. */
+static bool is_thick(vec3 from, vec3 to)
+{
+    return (real)from.x != (real)to.x && (real)from.y != (real)to.y && (real)from.z != (real)to.z;
+}
 
 surface *box_new(vec3 from, vec3 to)
 {
-    double a[3] = {from.x, from.y, from.z}, b[3] = {to.x, to.y, to.z};
-    for (int k = 0; k < 3; k++)
-        if (!((real)a[k] != (real)b[k]))
-            return NULL;
-    box *f = calloc(1, sizeof *f);
+    const double a[3] = {from.x, from.y, from.z}, b[3] = {to.x, to.y, to.z};
+    box *f = is_thick(from, to) ? calloc(1, sizeof *f) : NULL;
     if (!f)
         return NULL;
     f->base.ops = &box_methods;
@@ -273,10 +276,9 @@ static const form_parameter box_parameters[] = {
 
 static surface *make_box(const shape_values *v, form_fault *fault)
 {
-    surface *f = box_new(v->v[0], v->v[1]);
-    if (!f)
+    if (!is_thick(v->v[0], v->v[1]))
         *fault = (form_fault){"to", "a box without thickness, expected 'to' apart from 'from' along x, y and z"};
-    return f;
+    return box_new(v->v[0], v->v[1]);
 }
 
 static double *coordinate(vec3 *v, int k) { return k == 0 ? &v->x : k == 1 ? &v->y : &v->z; }

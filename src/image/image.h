@@ -53,9 +53,9 @@ typedef struct image_channel {
 
 /* Write an OpenEXR file of float32 channels (scanlines, ZIP), in any order given, with the texts as string
  * attributes and nothing that depends on the clock. The file appears whole (written aside, then renamed)
- * or not at all. False with a message in *e that names the file. */
-bool image_write_exr(const char *path, int width, int height, int channels, const image_channel *channel, int texts,
-                     const image_text *text, errors *e);
+ * or not at all. By so many threads, 0: all processors; the bytes are the same. False with a message in *e that names the file. */
+bool image_write_exr(const char *path, int threads, int width, int height, int channels, const image_channel *channel,
+                     int texts, const image_text *text, errors *e);
 
 /* Write a PNG of 8 or 16 bits from linear R, G, B in 0..1 (clamped; NaN becomes 0) through the sRGB transfer
  * function, marked as sRGB, rounded to nearest, without dither. The same promises as above. */

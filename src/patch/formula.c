@@ -3,7 +3,7 @@
  */
 #include "patch/surface.h"
 
-surface *patch_surface_formula(const char *kind, const form_formula *f)
+surface *patch_surface_formula(const char *kind, const form_formula *f, int threads)
 {
     expr *e[3] = {NULL, NULL, NULL};
     bool good = true;
@@ -18,5 +18,7 @@ surface *patch_surface_formula(const char *kind, const form_formula *f)
         return NULL;
     }
     patch *q = patch_function_new(kind, e, f->u, f->w);
+    if (q)
+        q->threads = threads;
     return q ? patch_surface_new(q) : NULL;
 }

@@ -59,6 +59,7 @@ struct patch {
     const char *kind; /* as in the scene file */
     int parts;
     double u[2], w[2]; /* the range, of every part */
+    int threads;       /* that share making it ready (piece.c); 0: all processors */
 };
 
 /* Q from three expressions over u[0]..u[1], w[0]..w[1]. Owns them, also on failure. `kind` must outlive it. NULL: out

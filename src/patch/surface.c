@@ -231,7 +231,7 @@ static surface_ops *methods_of(const patch *q)
     return ops;
 }
 
-patch_surface *patch_surface_make(patch *q, double flat)
+static patch_surface *make(patch *q, double flat, bool *bounded)
 {
     patch_surface *f = calloc(1, sizeof *f);
     if (!f) {
@@ -241,7 +241,7 @@ patch_surface *patch_surface_make(patch *q, double flat)
     f->q = q;
     f->base.free = patch_free;
     f->base.ops = f->methods = methods_of(q);
-    if (f->base.ops && pieces_of(q, flat, &f->l))
+    if (f->base.ops && pieces_of(q, flat, &f->l, bounded))
         f->tree = tree_of(&f->l);
     if (!f->tree) {
         patch_free(&f->base);
@@ -250,10 +250,23 @@ patch_surface *patch_surface_make(patch *q, double flat)
     return f;
 }
 
+patch_surface *patch_surface_make(patch *q, double flat)
+{
+    bool bounded;
+    return make(q, flat, &bounded);
+}
+
 surface *patch_surface_new(patch *q)
 {
+    bool bounded;
+    return patch_surface_new_bounded(q, &bounded);
+}
+
+surface *patch_surface_new_bounded(patch *q, bool *bounded)
+{
+    *bounded = true;
     const double FLAT = 0.045; /* 2.6 degrees: few pieces stay undecided. Only speed depends on it. */
-    patch_surface *f = patch_surface_make(q, FLAT);
+    patch_surface *f = make(q, FLAT, bounded);
     return f ? &f->base : NULL;
 }
 

@@ -23,13 +23,17 @@ bool patch_surface_is(const surface *f);
  * out of memory). */
 surface *patch_surface_new(patch *q);
 
+/* The same; *bounded is false where it is NULL because Q has no bounds, or no extent. */
+surface *patch_surface_new_bounded(patch *q, bool *bounded);
+
 /* The image of such a surface by an affine map, in pieces of its own: what surface_transformed makes of it has no true
  * displacement. `from` must outlive it; as there, where the map mirrors u runs the other way. NULL: as
  * patch_surface_new. */
 surface *patch_surface_affine(const surface *from, const affine *m);
 
-/* A closed form's formula as a patch surface (formula.c); kind: a constant. NULL: out of memory. */
-surface *patch_surface_formula(const char *kind, const form_formula *f);
+/* A closed form's formula as a patch surface (formula.c); kind: a constant. threads: as patch.threads. NULL: out of
+ * memory. */
+surface *patch_surface_formula(const char *kind, const form_formula *f, int threads);
 
 /* As patch_surface_new, with pieces as flat as that (pieces_of). */
 patch_surface *patch_surface_make(patch *q, double flat);

@@ -3,7 +3,6 @@
 #ifndef KAGE_POVRAY_PARTS_H
 #define KAGE_POVRAY_PARTS_H
 
-#include "patch/surface.h"
 #include "povray/povray.h"
 #include "povray/text.h"
 

@@ -64,7 +64,7 @@ static void evaluate(pov_vertices *v, int n, const real *u, const real *w, pov_v
         lane_set(&x.r, i, X);
         lane_set(&x.s, i, up);
     }
-    v->f->ops->foot(v->f, v->lattice.part, n, &x, t, &p);
+    v->f->ops->closest(v->f, v->lattice.part, n, &x, t, &p);
     for (int i = 0; i < n; i++) {
         bs_vec3 Qu = lane_get(&q.Qu, i), Qw = lane_get(&q.Qw, i), X = lane_get(&x.r, i), m = lane_get(&x.s, i);
         bs_vec3 gu = lane_get(&p.gu, i), gw = lane_get(&p.gw, i), gh = lane_get(&p.gh, i);

@@ -19,9 +19,10 @@ static bool read_samples(reader *r, node *at, image *out, map_note *note)
     if (!good && path)
         yaml_error(r->y, file, "'%s' can't be used: %.*s", name, e.size ? (int)e.size - 1 : 0, e.text ? e.text : "");
     if (good && (out->width < 2 || out->height < 2)) {
-        free(out->v);
         good =
             yaml_error(r->y, file, "'%s' has %d x %d samples, expected at least 2 x 2", name, out->width, out->height);
+        free(out->v);
+        *out = (image){0};
     }
     if (good) {
         *note = (map_note){reader_copy(r, name), out->width, out->height, HUGE_VAL, -HUGE_VAL};
@@ -38,7 +39,7 @@ static bool read_samples(reader *r, node *at, image *out, map_note *note)
 /* Scale, zero level and sign have no default: samples are not heights without them. */
 static bump *read_map(reader *r, node *at, const double u[2], const double w[2], map_note *note, bump_spec *spec)
 {
-    image samples;
+    image samples = {0};
     map_layout l = {.size = {1, 1}};
     bool good = yaml_map(r->y, at, "a bump with a map", "map scale zero sign size repeat offset wrap samples");
     node *scale = yaml_need(r->y, at, "scale", "a bump with a map"),
@@ -50,8 +51,10 @@ static bump *read_map(reader *r, node *at, const double u[2], const double w[2],
     int up = sign ? yaml_word(r->y, sign, "up down", "up (higher values are higher) or down") : -1;
     good = reader_layout(r, at, u, w, &l) && up >= 0 && good;
     good = read_samples(r, yaml_get(at, "map"), &samples, note) && good;
-    if (!note->file) /* there are no samples */
+    if (!note->file) {
+        free(samples.v);
         return NULL;
+    }
     l.scale = up == 1 ? -l.scale : l.scale;
     const double low = l.scale * (note->low - l.zero), high = l.scale * (note->high - l.zero);
     if (good && fmax(fabs(low), fabs(high)) > BIG)

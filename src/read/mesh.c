@@ -39,9 +39,9 @@ surface *reader_mesh(reader *r, node *at, shape_spec *spec)
     if (!read_normals(r, at, &normals, &crease) || !name)
         return NULL;
     char *path = reader_beside(r, name);
-    bool good = path && mesh_file_read(path, r->progress, &r->s->made_from, &d, why);
+    bool good = path && mesh_file_read(path, r->from->model_reader, r->from->progress, &r->s->made_from, &d, why);
     if (good)
-        progress_show(r->progress, "checking", 1);
+        progress_show(r->from->progress, "checking", 1);
     good = good && mesh_clean(&d, normals, crease, BIG, why);
     if (path && !good)
         yaml_error(r->y, file, "'%s' can't be used: %s", name, why);
@@ -52,7 +52,7 @@ surface *reader_mesh(reader *r, node *at, shape_spec *spec)
         mesh_data_free(&d);
         return NULL;
     }
-    surface *f = mesh_new(&d, r->progress);
+    surface *f = mesh_new(&d, r->from->progress);
     if (!f) {
         errors_add(r->e, "out of memory");
         return NULL;

@@ -154,8 +154,13 @@ void reader_objects(reader *r)
         yaml_pair(q.at, i, &key);
         s->object[i].name = reader_name(r, q.at, key);
     }
-    for (int i = 0; i < s->objects; i++)
+    for (int i = 0; i < s->objects; i++) {
+        if (!progress_show(r->from->progress, PROGRESS_OBJECTS, (double)i / s->objects)) {
+            errors_add(r->e, "cancelled");
+            break;
+        }
         if (q.state[i] == WAITING)
             read_object(r, &q, i);
+    }
     free(q.state);
 }

@@ -46,11 +46,14 @@ static bool read_range(reader *r, node *at, const char *key, double x[2])
 /* The patch as a surface; takes the patch. NULL with an error, `what` where the patch has no bounds or no size. */
 static surface *search(reader *r, node *at, patch *q, const char *what)
 {
-    surface *f = q ? patch_surface_new(q) : NULL;
-    if (!q)
-        errors_add(r->e, "out of memory");
-    else if (!f)
+    if (q)
+        q->threads = r->from->threads;
+    bool bounded = true;
+    surface *f = q ? patch_surface_new_bounded(q, &bounded) : NULL;
+    if (!bounded)
         yaml_error(r->y, at, "%s", what);
+    else if (!f)
+        errors_add(r->e, "out of memory");
     return f;
 }
 

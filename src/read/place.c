@@ -49,21 +49,22 @@ static bool is_mesh_sized(const surface *f, const affine *m, double *wrong)
 }
 
 /* A closed form as a patch about the origin; NULL: it has no formula, or out of memory. */
-static surface *as_patch(const object *o)
+static surface *as_patch(const object *o, int threads)
 {
     form_formula formula;
     const shape_spec *f = &o->shape_spec;
-    return f->form->formula && f->form->formula(&f->values, &formula) ? patch_surface_formula(f->form->name, &formula)
-                                                                      : NULL;
+    return f->form->formula && f->form->formula(&f->values, &formula)
+               ? patch_surface_formula(f->form->name, &formula, threads)
+               : NULL;
 }
 
 /* The image of a closed form, which the values describe about the origin. */
-static surface *image_of_closed(object *o, const shape_values *values, const affine *m, bool truth)
+static surface *image_of_closed(object *o, const shape_values *values, const affine *m, bool truth, int threads)
 {
     form_fault fault;
     o->centred = o->shape_spec.form->make(values, &fault);
     surface *f = o->centred ? surface_transformed(o->centred, m) : NULL,
-            *searched = f && truth && !displaced_has_form(f) ? as_patch(o) : NULL;
+            *searched = f && truth && !displaced_has_form(f) ? as_patch(o, threads) : NULL;
     if (!searched)
         return f;
     surface_free(f);
@@ -73,10 +74,10 @@ static surface *image_of_closed(object *o, const shape_values *values, const aff
 }
 
 /* The image of the object's own shape; of a closed form that of `values`, about the origin. NULL: out of memory. */
-static surface *image_of(object *o, const shape_values *values, const affine *m, bool truth)
+static surface *image_of(object *o, const shape_values *values, const affine *m, bool truth, int threads)
 {
     if (o->shape_spec.kind == SHAPE_CLOSED)
-        return image_of_closed(o, values, m, truth);
+        return image_of_closed(o, values, m, truth, threads);
     if (!truth)
         return surface_transformed(o->own, m);
     return o->shape_spec.kind == SHAPE_MESH ? mesh_moved(o->own, m) : patch_surface_affine(o->own, m);
@@ -102,7 +103,7 @@ bool reader_place(reader *r, node *at, object *o)
         return yaml_error(r->y, at, "one way is stretched more than %g times as much as another, expected less",
                           STRETCH);
     whole = affine_then(&whole, m);
-    if (!(o->shape = image_of(o, &values, &whole, truth)))
+    if (!(o->shape = image_of(o, &values, &whole, truth, r->from->threads)))
         return errors_add(r->e, "out of memory");
     if (!(is_mesh ? is_mesh_sized(o->own, m, &wrong) : is_sized(o->shape, &wrong)))
         return yaml_error(r->y, at, "an edge or a radius of %.4g scene units comes from this, expected 1e-6 to 1e6",

@@ -24,14 +24,14 @@ static void make_bvh(reader *r)
         errors_add(r->e, "out of memory");
 }
 
-scene *scene_read(const char *path, int sets, char *const *set, const progress *w, errors *e)
+scene *scene_read(const scene_source *from, errors *e)
 {
-    reader r = {.e = e, .progress = w, .s = calloc(1, sizeof *r.s)};
+    reader r = {.e = e, .from = from, .s = calloc(1, sizeof *r.s)};
     int before = e->count;
-    r.y = r.s ? yaml_open(path, sets, set, "image render", e) : NULL;
+    r.y = r.s ? yaml_open(from->path, from->text, from->size, from->sets, from->set, "image render", e) : NULL;
     if (r.y) {
-        r.s->path = reader_copy(&r, path);
-        if (!files_add_path(&r.s->made_from, path))
+        r.s->path = reader_copy(&r, from->path);
+        if (!from->text && !files_add_path(&r.s->made_from, from->path))
             errors_add(e, "out of memory");
         r.s->source = reader_copy(&r, yaml_source(r.y));
         if (r.s->path) {
@@ -48,7 +48,7 @@ scene *scene_read(const char *path, int sets, char *const *set, const progress *
         yaml_close(r.y);
     }
     if (!r.y && e->count == before)
-        errors_add(e, "%s: out of memory", path);
+        errors_add(e, "%s: out of memory", from->path);
     if (e->count == before)
         return r.s;
     scene_free(r.s);

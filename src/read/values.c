@@ -60,12 +60,12 @@ bool reader_need_all(reader *r, node *map, const char *keys, const char *what)
 
 char *reader_beside(reader *r, const char *file)
 {
-    const char *slash = strrchr(r->s->path, '/');
-    int folder = slash && *file != '/' ? (int)(slash - r->s->path) + 1 : 0;
-    size_t size = (size_t)folder + strlen(file) + 1;
+    const char *given = r->from->folder, *folder = given ? given : r->s->path, *slash = strrchr(folder, '/');
+    const size_t n = *file == '/' ? 0 : given ? strlen(given) : slash ? (size_t)(slash - folder) + 1 : 0;
+    const size_t size = n + strlen(file) + 2;
     char *path = malloc(size);
     if (path)
-        snprintf(path, size, "%.*s%s", folder, r->s->path, file);
+        snprintf(path, size, "%.*s%s%s", (int)n, folder, given && n > 0 && given[n - 1] != '/' ? "/" : "", file);
     if (!path || !files_add_path(&r->s->made_from, path))
         errors_add(r->e, "out of memory");
     return path;

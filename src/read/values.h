@@ -16,7 +16,7 @@ typedef struct reader {
     yaml *y;
     scene *s;
     errors *e;
-    const progress *progress; /* NULL: nobody */
+    const scene_source *from;
 } reader;
 
 /* An owned copy of a text; NULL of NULL, or with an error. */

@@ -1,15 +1,12 @@
 /* The picture in tiles of 16 x 8 pixels, which the threads take as they come. */
 #include "render/render.h"
 
+#include "base/threads.h"
 #include "render/adaptive.h"
 #include "render/trace.h"
 
 #include <stdlib.h>
 #include <string.h>
-
-#if defined(_OPENMP)
-#include <omp.h>
-#endif
 
 enum { TILE = 16, TILE_ROWS = LANES / TILE, TIMED_TILES = 8 };
 
@@ -181,11 +178,24 @@ typedef struct pass {
     int aa;
     const unsigned char *marked; /* NULL: all */
     long done, all;              /* tiles, of this pass and of those before and after it */
+    bool stop;                   /* the caller wants no more */
 } pass;
 
 static long tiles(window w)
 {
     return (long)((w.x1 - w.x0 + TILE - 1) / TILE) * ((w.y1 - w.y0 + TILE_ROWS - 1) / TILE_ROWS);
+}
+
+/* One more tile is done. Only the caller's own thread shows it, so that a callback needs no lock. */
+static void note_tile(const render_options *o, pass *p)
+{
+    long done;
+#pragma omp atomic capture
+    done = ++p->done;
+    if (is_callers_thread() && !progress_show(o->progress, "rendering", (double)done / (double)p->all)) {
+#pragma omp atomic write
+        p->stop = true;
+    }
 }
 
 static bool run(const tracer *tr, const render_options *o, pass *p, film *f, stats *sum, errors *e)
@@ -194,21 +204,23 @@ static bool run(const tracer *tr, const render_options *o, pass *p, film *f, sta
     const int columns = (part.x1 - part.x0 + TILE - 1) / TILE;
     const long count = tiles(part);
     bool good = true;
-#if defined(_OPENMP)
-    const int threads = o->threads ? o->threads : omp_get_num_procs();
-#endif
+    const int threads = threads_of(o->threads);
+    (void)threads; /* without OpenMP */
 #pragma omp parallel num_threads(threads)
     {
         workspace *v = workspace_new(tr);
         if (v)
             camera_common(&tr->scene->camera, LANES, &v->x); /* no stage writes there, so once is enough */
         else {
-#pragma omp critical(kage_render)
+#pragma omp atomic write
             good = false;
         }
 #pragma omp for schedule(dynamic, 4)
         for (long n = 0; n < count; n++) {
-            if (!v)
+            bool stop;
+#pragma omp atomic read
+            stop = p->stop;
+            if (!v || stop)
                 continue;
             tile b = {part.x0 + (int)(n % columns) * TILE, part.y0 + (int)(n / columns) * TILE_ROWS, TILE, TILE_ROWS};
             b.width = b.x0 + TILE > part.x1 ? part.x1 - b.x0 : TILE;
@@ -220,21 +232,17 @@ static bool run(const tracer *tr, const render_options *o, pass *p, film *f, sta
                 refine_tile(tr, p->aa, &b, p->marked, f, v);
             else
                 render_tile(tr, p->aa, &b, f, v);
-            if (o->progress && n % 16 == 15) {
-#pragma omp critical(kage_render)
-                {
-                    p->done += 16;
-                    o->progress(o->user, p->done, p->all);
-                }
-            }
+            note_tile(o, p);
         }
         if (v) {
-#pragma omp critical(kage_render)
+#pragma omp critical /* without a name, which would be a global variable */
             stats_add(sum, v->stats);
         }
         workspace_free(v);
     }
-    return good || errors_add(e, "out of memory for the threads' waves");
+    if (!good)
+        return errors_add(e, "out of memory for the threads' waves");
+    return !p->stop || errors_add(e, "cancelled");
 }
 
 /* One sample a pixel, then more where neighbours differ. Those of the pixels at a crop's edge are beyond it, so the
@@ -244,7 +252,7 @@ static bool render_adaptive(const tracer *tr, const render_options *o, film *f, 
     const window part = f->part,
                  wide = {part.x0 - (part.x0 > 0), part.y0 - (part.y0 > 0), part.x1 + (part.x1 < tr->scene->width),
                          part.y1 + (part.y1 < tr->scene->height)};
-    pass first = {1, NULL, 0, tiles(wide) + tiles(part)}, second = {o->aa, NULL, tiles(wide), first.all};
+    pass first = {1, NULL, 0, tiles(wide) + tiles(part), false}, second = {o->aa, NULL, tiles(wide), first.all, false};
     film *margin = memcmp(&wide, &part, sizeof wide) ? film_new(tr->scene, wide, tr->layers, e) : f;
     bool good = margin && run(tr, o, &first, margin, sum, e);
     if (good && margin != f)
@@ -260,7 +268,7 @@ static bool render_adaptive(const tracer *tr, const render_options *o, film *f, 
 
 bool render(const tracer *tr, const render_options *o, film *f, stats *sum, errors *e)
 {
-    pass all = {o->aa, NULL, 0, tiles(f->part)};
+    pass all = {o->aa, NULL, 0, tiles(f->part), false};
     *sum = (stats){0};
     return o->aa > 1 && o->threshold >= 0 ? render_adaptive(tr, o, f, sum, e) : run(tr, o, &all, f, sum, e);
 }

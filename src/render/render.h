@@ -12,14 +12,13 @@ typedef struct render_options {
                          0: of all */
     int threads;      /* 0: as many as there are processors */
     bool timing;      /* time the stages, in one tile of TIMED_TILES */
-    /* Called now and then, by one thread at a time, with the tiles that are done. May be NULL. */
-    void (*progress)(void *user, long done, long all);
-    void *user;
+    const progress *progress; /* called now and then in the caller's thread; may end the render; NULL: nobody */
 } render_options;
 
 /* Render the part of the picture that is on the film; the layers too where the film has them. The bytes do not depend
  * on the threads. The picture and the visibilities are means over the samples of a pixel, the other layers are those of
- * the sample next to its middle (with a threshold: in its middle). False with a message: out of memory. */
+ * the sample next to its middle (with a threshold: in its middle). False with a message: out of
+ * memory, or ended by o->progress. */
 bool render(const tracer *tr, const render_options *o, film *f, stats *sum, errors *e);
 
 #endif

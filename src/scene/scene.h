@@ -35,7 +35,7 @@ typedef struct object {
 } object;
 
 typedef struct scene {
-    char *path;      /* of the file */
+    char *path;      /* of the file, or the name of a text in memory */
     char *source;    /* its text; with the maps and the --set changes all that the picture is made from */
     files made_from; /* with the scene's own file */
     int width, height;
@@ -65,10 +65,21 @@ static inline bool scene_wants_truth(const scene *s) { return s->displaced || s-
 /* The number of threads, lights and so on that a scene can have at most. */
 enum { SCENE_MAX_SIDE = 32768, SCENE_MAX_ITEMS = 4096, SCENE_MAX_AA = 16, SCENE_MAX_DEPTH = 32 };
 
-/* Read the scene in the file at `path`, with `sets` changes of the form PATH=VALUE made to it first. NULL, and every
- * error that can be told at once in *e, as `file:line:col: ...`, the line and a caret. w: sees how large files come in;
- * may be NULL. */
-scene *scene_read(const char *path, int sets, char *const *set, const progress *w, errors *e);
+/* Where a scene is read from. All but `path` may be zero. */
+typedef struct scene_source {
+    const char *path; /* of the file; of a text in memory a name, for errors */
+    const char *text; /* the scene itself, `size` bytes; NULL: it is in the file */
+    size_t size;
+    const char *folder; /* that relative names of files begin in; NULL: that of `path` */
+    int sets;           /* changes of the form PATH=VALUE, made first */
+    const char *const *set;
+    int threads;              /* 0: all processors */
+    const char *model_reader; /* the program that reads models; NULL: where mesh/load.c finds it */
+    const progress *progress; /* sees how large files come in; NULL: nobody */
+} scene_source;
+
+/* Read a scene. NULL: every error that can be found at once is in *e, as `file:line:col: ...`, the line and a caret. */
+scene *scene_read(const scene_source *from, errors *e);
 
 void scene_free(scene *s);
 

@@ -4,6 +4,7 @@
 
 #include <stdbool.h>
 
+#include "base/vec3.h"
 #include "geometry/closed_form.h"
 #include "mesh/mesh_data.h"
 #include "texture/table.h"

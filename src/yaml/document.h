@@ -45,6 +45,6 @@ bool yaml_add_error(yaml *y, const origin *o, int line, int column, const char *
 bool yaml_syntax_errors(yaml *y, const origin *o);
 
 /* Make the changes to the loaded document. A wrong one adds an error, and the next is made. False: out of memory. */
-bool yaml_change(yaml *y, int sets, char *const *set, const char *optional);
+bool yaml_change(yaml *y, int sets, const char *const *set, const char *optional);
 
 #endif

@@ -173,7 +173,7 @@ static bool apply(yaml *y, const char *set, const char *optional)
            set_error(y, set, set, "can't be set");
 }
 
-bool yaml_change(yaml *y, int sets, char *const *set, const char *optional)
+bool yaml_change(yaml *y, int sets, const char *const *set, const char *optional)
 {
     size_t origins = 1;
     for (int k = 0; k < sets; k++, origins += 5) /* the root, a map, two keys and a value, and what lies on the path */

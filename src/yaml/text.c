@@ -102,8 +102,7 @@ bool text_error(errors *e, const char *name, const char *text, int line, int col
             blank[pad++] = *c == '\t' ? '\t' : ' ';
     blank[pad] = 0;
     copy_shown(excerpt, sizeof excerpt, from, length);
-    return errors_add(e, "%s:%d:%d: %s\n%5d | %s\n      | %s^", name, line, column, shown_message, line, excerpt,
-                      blank);
+    return errors_add_at(e, name, line, column, shown_message, "\n%5d | %s\n      | %s^", line, excerpt, blank);
 }
 
 /* ---- scalars ---- */

@@ -96,7 +96,7 @@ static scene *many(const char *more)
     for (int i = 0; i < OBJECTS; i++)
         put_object(f, i);
     fclose(f);
-    scene *s = scene_read(path, 0, NULL, NULL, &e);
+    scene *s = scene_read(&(scene_source){.path = path}, &e);
     unlink(path);
     if (!s)
         fail_msg("%s", e.text);
