@@ -214,7 +214,8 @@ $(UNITS:%=$(BUILD)/%): $(BUILD)/%: $(BUILD)/%.o $(BUILD)/internal.a
 	$(Q)$(CC) $(LDFLAGS) -o $@ $^ -lcmocka $(LIBS)
 
 # A test in which memory runs out: our own objects ask its functions.
-$(BUILD)/unit/api/test_memory: override LDFLAGS += $(foreach f,malloc calloc realloc posix_memalign strdup free fy_node_build_from_malloc_string,-Wl$(comma)--wrap=$(f))
+WRAPPED   = malloc calloc realloc posix_memalign strdup free fy_node_build_from_malloc_string
+$(BUILD)/unit/api/test_memory: override LDFLAGS += $(WRAPPED:%=-Wl,--wrap=%)
 
 # ---- tests ----
 

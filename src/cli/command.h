@@ -59,9 +59,6 @@ int print_errors(kage_errors *e, int status);
 /* One line on stderr for a mistake on the command line. Always false. */
 bool usage_error(const char *fmt, ...) CLI_PRINTF(1, 2);
 
-/* Seconds by a clock that only goes forward. */
-double clock_now(void);
-
 /* ---- output.c ---- */
 
 /* Whether no output is a file that the scene is made from. False: why is on stderr. */
@@ -73,6 +70,9 @@ bool output_is_replaceable(const char *path);
 bool has_ending(const char *path, const char *ending);
 
 /* ---- progress_bar.c ---- */
+
+/* Seconds by a clock that only goes forward. */
+double clock_now(void);
 
 /* A bar on the terminal behind stderr: what is done, the rate, the time left. Nothing where that is no terminal. */
 typedef struct progress_bar {
