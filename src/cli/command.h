@@ -87,7 +87,7 @@ void progress_bar_start(progress_bar *p, bool quiet, const char *name, long pixe
 void progress_bar_end(progress_bar *p);
 
 /* For kage_progress: a render; and a scene's files, which have no pixels. */
-int progress_bar_render(void *p, const char *what, double share);
-int progress_bar_load(void *p, const char *what, double share);
+int progress_bar_render(void *user, const char *what, double share);
+int progress_bar_load(void *user, const char *what, double share);
 
 #endif
