@@ -263,9 +263,14 @@ SANE      = CLONES=no OPTIMISE='-O1 -fno-math-errno -fno-trapping-math -ffp-cont
 # Those that read every kind of input, right and wrong, and run every command.
 SANE_TESTS = $(addprefix tests/program/test_,cli.py input.py mesh.py patches.py)
 
+# Threads of one process on libkage, without OpenMP, whose barriers ThreadSanitizer does not see (see tsan.supp).
+TSAN      = $(SANE) OPENMP=no BUILD=build/tsan SANITIZE=thread
+
 sanitize: all
 	@CC='$(CC)' scripts/bootstrap test python
 	@$(MAKE) --no-print-directory $(JOBS) $(SANE) BUILD=build/asan SANITIZE=address,undefined unit-tests build/asan/kage
+	@TSAN_OPTIONS=suppressions=tests/support/tsan.supp \
+	    $(MAKE) --no-print-directory $(JOBS) $(TSAN) run-unit/api/test_threads
 	KAGE=build/asan/kage scripts/venv python -m pytest -q -n auto --dist loadfile $(SANE_TESTS)
 
 # ---- style ----
