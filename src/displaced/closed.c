@@ -1,10 +1,12 @@
-/* Displaced surfaces over surfaces whose closest points have closed forms: the members shell, foot and steep of
- * surface_ops. Each part of the surface is searched as if it alone were there. */
+/* Displaced surfaces over surfaces whose closest points have closed forms: the members bound, closest and
+ * lipschitz of surface_ops. Each part of the surface is searched as if it alone were there. */
 #include "displaced/form.h"
 #include "displaced/march.h"
 #include "wave/lane.h"
 
-enum { STEPS = 4096 }; /* of a search along one ray: its shortest step is this share of the shell, far below a pixel */
+enum {
+    STEPS = 4096
+}; /* of a search along one ray: its shortest step is this share of its stretch, far below a pixel */
 
 /* A part of a surface, the same for every lane. */
 typedef struct part_domain {
@@ -15,25 +17,25 @@ typedef struct part_domain {
 
 static const part_domain *part_of(const domain *g) { return (const part_domain *)g; }
 
-static void part_shell(const domain *g, int n, const rays *x, const real *end, real Pmin, real Pmax, real *t0, real *t1)
+static void part_bound(const domain *g, int n, const rays *x, const real *end, real Pmin, real Pmax, real *t0, real *t1)
 {
     const part_domain *k = part_of(g);
-    k->f->ops->shell(k->f, k->part, n, x, end, Pmin, Pmax, t0, t1);
+    k->f->ops->bound(k->f, k->part, n, x, end, Pmin, Pmax, t0, t1);
 }
 
-static void part_foot(const domain *g, int n, const int32_t *lane, const rays *x, const real *t, closest_points *p)
+static void part_closest(const domain *g, int n, const int32_t *lane, const rays *x, const real *t, closest_points *p)
 {
     const part_domain *k = part_of(g);
     (void)lane;
-    k->f->ops->foot(k->f, k->part, n, x, t, p);
+    k->f->ops->closest(k->f, k->part, n, x, t, p);
 }
 
-static void part_steep(const domain *g, int n, const int32_t *lane, const rays *x, const closest_points *p, real Pu_max,
-                       real Pw_max, real *rate, real *reach)
+static void part_lipschitz(const domain *g, int n, const int32_t *lane, const rays *x, const closest_points *p,
+                           real Pu_max, real Pw_max, real *rate, real *reach)
 {
     const part_domain *k = part_of(g);
     (void)lane;
-    k->f->ops->steep(k->f, k->part, n, x, p, Pu_max, Pw_max, rate, reach);
+    k->f->ops->lipschitz(k->f, k->part, n, x, p, Pu_max, Pw_max, rate, reach);
 }
 
 static void part_within(const domain *g, int n, const int32_t *lane, const closest_points *p, real *u, real *w)
@@ -53,11 +55,11 @@ static long search_part(const displaced *d, int part, int n, const rays *x, cons
                         real *t, int32_t *found)
 {
     const surface *f = d->smooth;
-    const part_domain k = {{part_shell, part_foot, part_steep, part_within, f->ops->loose, STEPS}, f, part};
+    const part_domain k = {{part_bound, part_closest, part_lipschitz, part_within, f->ops->unclamped, STEPS}, f, part};
     return displaced_search(&k.base, d->P, n, x, end, own, t, found);
 }
 
-static bool closed_fits(const surface *f) { return f->ops->foot != NULL; }
+static bool closed_fits(const surface *f) { return f->ops->closest != NULL; }
 
 /* The nearest hit over all parts. */
 static void closed_hit(const displaced *d, int n, const rays *x, const ray_origins *from, int32_t id, hits *h)
@@ -104,10 +106,10 @@ static void closed_occlude(const displaced *d, int n, const rays *x, const int32
 static void closed_closest(const displaced *d, int n, const rays *x, const real *t, int32_t *part, closest_points *all)
 {
     const surface *f = d->smooth;
-    f->ops->foot(f, 0, n, x, t, all);
+    f->ops->closest(f, 0, n, x, t, all);
     for (int k = 1; k < f->ops->parts; k++) {
         closest_points p;
-        f->ops->foot(f, k, n, x, t, &p);
+        f->ops->closest(f, k, n, x, t, &p);
         for (int i = 0; i < n; i++)
             if (part[i] == k) {
                 all->u[i] = p.u[i];

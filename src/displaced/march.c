@@ -36,10 +36,10 @@ STAGE static void gaps(search *restrict s, real *restrict slope)
 static void evaluate(const domain *f, const bump *P, search *s, real *slope)
 {
     real u[LANES], w[LANES];
-    f->foot(f, s->n, s->lane, &s->x, s->t, &s->p);
-    if (f->loose)
+    f->closest(f, s->n, s->lane, &s->x, s->t, &s->p);
+    if (f->unclamped)
         f->within(f, s->n, s->lane, &s->p, u, w);
-    P->ops->eval(P, s->n, f->loose ? u : s->p.u, f->loose ? w : s->p.w, 1, &s->h);
+    P->ops->eval(P, s->n, f->unclamped ? u : s->p.u, f->unclamped ? w : s->p.w, 1, &s->h);
     s->evaluations += s->n;
     gaps(s, slope);
 }
@@ -105,26 +105,26 @@ static displaced_result refine(const domain *f, const bump *P, search *s, int i,
     return least <= (s->own[i] ? 2 : 1) * s->tolerance[i] ? DISPLACED_HIT : DISPLACED_UNCERTAIN;
 }
 
-/* Whether the foot of a hit is on the piece, and not on what extends it. */
+/* Whether the closest point to a hit is on the piece, and not on what extends it. */
 static bool on_piece(const domain *f, const search *s, int i, real t)
 {
     rays x;
     closest_points p;
     real u, w;
-    if (!f->loose)
+    if (!f->unclamped)
         return true;
     lane_set(&x.r, 0, lane_get(&s->x.r, i));
     lane_set(&x.s, 0, lane_get(&s->x.s, i));
-    f->foot(f, 1, &s->lane[i], &x, &t, &p);
+    f->closest(f, 1, &s->lane[i], &x, &t, &p);
     f->within(f, 1, &s->lane[i], &p, &u, &w);
     return u == p.u[0] && w == p.w[0];
 }
 
-/* Open the search on the rays whose shell is not empty. */
+/* Open the search on the rays whose stretch is not empty. */
 static void begin(const domain *f, const bump *P, int n, const rays *x, const real *end, const int32_t *own, search *s)
 {
     real t0[LANES], t1[LANES];
-    f->shell(f, n, x, end, P->Pmin, P->Pmax, t0, t1);
+    f->bound(f, n, x, end, P->Pmin, P->Pmax, t0, t1);
     s->n = 0;
     s->evaluations = 0;
     for (int i = 0; i < n; i++) {
@@ -142,7 +142,7 @@ static void begin(const domain *f, const bump *P, int n, const rays *x, const re
         s->tolerance[k] = 8 * R(REAL_ROUNDING) * size;
         s->shortest[k] = real_max((t1[i] - t0[i]) / (real)f->steps, s->tolerance[k] / real_sqrt(bs_dot(d, d)));
         s->side[k] = 0;
-        /* one whose stretch begins farther on comes from what the shell leaves out */
+        /* one whose stretch begins farther on comes from what the bound leaves out */
         s->own[k] = own && own[i] && t0[i] <= s->shortest[k];
         s->left[k] = !s->own[k];
         s->open[k] = 1;
@@ -176,7 +176,7 @@ long displaced_search(const domain *f, const bump *P, int n, const rays *x, cons
     begin(f, P, n, x, end, own, &s);
     for (int step = 0; step < f->steps && s.n; step++) {
         evaluate(f, P, &s, slope);
-        f->steep(f, s.n, s.lane, &s.x, &s.p, P->Pu_max, P->Pw_max, s.rate, s.reach);
+        f->lipschitz(f, s.n, s.lane, &s.x, &s.p, P->Pu_max, P->Pw_max, s.rate, s.reach);
         for (int i = 0; i < s.n; i++) {
             if (!s.open[i])
                 continue;
@@ -194,7 +194,7 @@ long displaced_search(const domain *f, const bump *P, int n, const rays *x, cons
                 above = -above;
             }
             s.left[i] |= above > s.tolerance[i];
-            /* At the end of the shell, P = Pmin below it, rounding must not let the ray slip through. */
+            /* At the end of the stretch, P = Pmin below it, rounding must not let the ray slip through. */
             bool last = s.t[i] >= s.end[i], touches = last && above <= s.tolerance[i] && s.side[i] * slope[i] < 0;
             if (above <= -least || (touches && s.left[i])) {
                 /* no step goes past a crossing by more than the shortest does */

@@ -23,15 +23,15 @@ typedef enum displaced_result {
  * rays that the search began with is the i-th now. The rest is as in surface.h. */
 typedef struct domain domain;
 struct domain {
-    void (*shell)(const domain *g, int n, const rays *x, const real *end, real Pmin, real Pmax, real *t0, real *t1);
-    void (*foot)(const domain *g, int n, const int32_t *lane, const rays *x, const real *t, closest_points *p);
-    void (*steep)(const domain *g, int n, const int32_t *lane, const rays *x, const closest_points *p, real Pu_max,
-                  real Pw_max, real *rate, real *reach);
-    /* Where `loose`, as feet may be beyond the piece, and P has no bounds there: (u,w) of the nearest place of the
-     * piece, so that the displaced surface goes on from there; the foot's own where that is one. */
+    void (*bound)(const domain *g, int n, const rays *x, const real *end, real Pmin, real Pmax, real *t0, real *t1);
+    void (*closest)(const domain *g, int n, const int32_t *lane, const rays *x, const real *t, closest_points *p);
+    void (*lipschitz)(const domain *g, int n, const int32_t *lane, const rays *x, const closest_points *p, real Pu_max,
+                      real Pw_max, real *rate, real *reach);
+    /* Where `unclamped`, as closest points may be beyond the piece, and P has no bounds there: (u,w) of the nearest
+     * place of the piece, so that the displaced surface goes on from there; their own where they are on it. */
     void (*within)(const domain *g, int n, const int32_t *lane, const closest_points *p, real *u, real *w);
-    bool loose;
-    int steps; /* of a search at most: where the bounds are no help it goes on by this share of the shell */
+    bool unclamped;
+    int steps; /* of a search at most: where the bounds are no help steps are this share of the stretch */
 };
 
 /* The first hits with 0 < t < end[i]: t[i], where found[i] is DISPLACED_HIT (or DISPLACED_UNCERTAIN: then the best

@@ -18,9 +18,10 @@ enum {
     STEPS = 4, /* of Newton's iteration: normals turn by less than a right angle over a triangle, mostly by far less */
 };
 
-#define OVERLAP 1e-4 /* of a triangle: its displaced surface goes on beyond it by this, so that no hit is between two  \
-                      */
-#define ROOM 1e-5    /* of the mesh's radius, about boxes and shells: more than float's roundings of places */
+#define OVERLAP                                                                                                        \
+    1e-4          /* of a triangle: its displaced surface goes on beyond it by this, so that no hit is between two     \
+                   */
+#define ROOM 1e-5 /* of the mesh's radius, about boxes and shells: more than float's roundings of places */
 #define CONVERGED 1e-16 /* squared distance over the triangle's area: the step before was off by 1e-8 of its size */
 #define STEEPEST 1e-6   /* least volume of the prism over its area, where normals meet: bounds gradients */
 #define FLATTEST 1e-6   /* least turn of normals: normals that turn by less meet beyond a million sides */
@@ -96,7 +97,8 @@ static void narrow(double a, double b, double lo, double hi, double *t0, double 
 
 /* Between what is lowest and highest of it along the mean normal, and not farther out past each side than the normals
  * there lean. */
-static bool shell_of(const mesh_triangle *x, double air, vec3 r, vec3 s, double lo, double hi, double *from, double *to)
+static bool stretch_of(const mesh_triangle *x, double air, vec3 r, vec3 s, double lo, double hi, double *from,
+                       double *to)
 {
     double bulge, low = HUGE_VAL, high = -HUGE_VAL;
     const vec3 n = mean_normal(x, &bulge);
@@ -117,7 +119,7 @@ static bool shell_of(const mesh_triangle *x, double air, vec3 r, vec3 s, double 
     return *from <= *to;
 }
 
-/* ---- feet ---- */
+/* ---- closest points ---- */
 
 mesh_prism mesh_prism_at(const mesh_triangle *x, double b, double c, double h)
 {
@@ -142,7 +144,7 @@ void mesh_gradients(const mesh_triangle *x, const mesh_prism *p, double det, vec
 /* Not farther beyond a triangle than it is wide: what lies there is another's. */
 static double near_triangle(double b) { return b < -1 ? -1 : b > 2 ? 2 : b; }
 
-static void foot_of(const mesh_triangle *x, vec3 at, closest_points *out, int lane)
+static void closest_of(const mesh_triangle *x, vec3 at, closest_points *out, int lane)
 {
     const vec3 n = vec3_cross(vec3_sub(x->at[1], x->at[0]), vec3_sub(x->at[2], x->at[0]));
     double b = 1.0 / 3, c = 1.0 / 3, h = vec3_dot(vec3_sub(at, x->at[0]), n) / vec3_length(n);
@@ -179,29 +181,30 @@ typedef struct triangles {
 
 static const mesh_triangle *piece(const domain *g, int32_t lane) { return &((const triangles *)g)->x[lane]; }
 
-static void triangles_shell(const domain *g, int n, const rays *x, const real *end, real Pmin, real Pmax, real *t0,
+static void triangles_bound(const domain *g, int n, const rays *x, const real *end, real Pmin, real Pmax, real *t0,
                             real *t1)
 {
     const double air = ROOM * ((const triangles *)g)->radius;
     for (int i = 0; i < n; i++) {
         double from = 0, to = (double)end[i];
         const bool some =
-            shell_of(piece(g, i), air, get(&x->r, i), get(&x->s, i), (double)Pmin, (double)Pmax, &from, &to);
+            stretch_of(piece(g, i), air, get(&x->r, i), get(&x->s, i), (double)Pmin, (double)Pmax, &from, &to);
         t0[i] = some ? (real)from : R(1);
         t1[i] = some ? real_min((real)to, end[i]) : R(-1);
     }
 }
 
-static void triangles_foot(const domain *g, int n, const int32_t *lane, const rays *x, const real *t, closest_points *p)
+static void triangles_closest(const domain *g, int n, const int32_t *lane, const rays *x, const real *t,
+                              closest_points *p)
 {
     for (int i = 0; i < n; i++)
-        foot_of(piece(g, lane[i]), vec3_add(get(&x->r, i), vec3_scale(get(&x->s, i), (double)t[i])), p, i);
+        closest_of(piece(g, lane[i]), vec3_add(get(&x->r, i), vec3_scale(get(&x->s, i), (double)t[i])), p, i);
 }
 
 /* Normals that turn by `turn` along the shortest side meet about side/turn away. Halfway there gradients at most
  * double. Heights beyond a tenth of that distance are not counted on: there P folds the surface anyway. */
-static void triangles_steep(const domain *g, int n, const int32_t *lane, const rays *x, const closest_points *p,
-                            real Pu_max, real Pw_max, real *rate, real *reach)
+static void triangles_lipschitz(const domain *g, int n, const int32_t *lane, const rays *x, const closest_points *p,
+                                real Pu_max, real Pw_max, real *rate, real *reach)
 {
     const double height = ((const triangles *)g)->height;
     for (int i = 0; i < n; i++) {
@@ -222,8 +225,8 @@ static void triangles_steep(const domain *g, int n, const int32_t *lane, const r
     }
 }
 
-/* (u,w) of a place of the triangle, as far as it goes on, that is near the foot: the foot's own where it is one. So P
- * goes on from there without a step, which a ray that comes by would cross. */
+/* (u,w) of a place of the triangle, as far as it goes on, that is near the closest point: that itself where it is one.
+ * So P goes on from there without a step, which a ray that comes by would cross. */
 static void triangles_within(const domain *g, int n, const int32_t *lane, const closest_points *p, real *u, real *w)
 {
     for (int i = 0; i < n; i++) {
@@ -272,7 +275,7 @@ static void starts_on(traversal *k, const triangles *g, int32_t *own)
     bump_values h;
     for (int i = 0; i < k->n; i++)
         lane[i] = i;
-    triangles_foot(&g->base, k->n, lane, &k->y, zero, &p);
+    triangles_closest(&g->base, k->n, lane, &k->y, zero, &p);
     triangles_within(&g->base, k->n, lane, &p, u, w);
     k->P->ops->eval(k->P, k->n, u, w, 0, &h);
     k->evaluations += k->n;
@@ -286,11 +289,11 @@ static void starts_on(traversal *k, const triangles *g, int32_t *own)
 /* Each search knows its ray and its triangle alone, so that nothing depends on the order. */
 static void search_all(traversal *k)
 {
-    const triangles g = {{.shell = triangles_shell,
-                          .foot = triangles_foot,
-                          .steep = triangles_steep,
+    const triangles g = {{.bound = triangles_bound,
+                          .closest = triangles_closest,
+                          .lipschitz = triangles_lipschitz,
                           .within = triangles_within,
-                          .loose = true,
+                          .unclamped = true,
                           .steps = SEARCH},
                          k->f->space.radius,
                          k->height,
@@ -320,8 +323,8 @@ static void visit(void *user, int32_t index)
     const int i = k->n;
     double from = 0, to = (double)k->end[k->lane];
     k->triangle[i] = mesh_triangle_of(k->f, index);
-    if (!shell_of(&k->triangle[i], ROOM * k->f->space.radius, get(&k->x->r, k->lane), get(&k->x->s, k->lane),
-                  (double)k->P->Pmin, (double)k->P->Pmax, &from, &to))
+    if (!stretch_of(&k->triangle[i], ROOM * k->f->space.radius, get(&k->x->r, k->lane), get(&k->x->s, k->lane),
+                    (double)k->P->Pmin, (double)k->P->Pmax, &from, &to))
         return;
     k->n++;
     k->of[i] = k->lane;
@@ -400,7 +403,7 @@ static void over_mesh_closest(const displaced *d, int n, const rays *x, const re
     for (int i = 0; i < n; i++) {
         const mesh_triangle a = mesh_triangle_of(mesh_of(d), part[i]);
         double b, c;
-        foot_of(&a, vec3_add(get(&x->r, i), vec3_scale(get(&x->s, i), (double)t[i])), p, i);
+        closest_of(&a, vec3_add(get(&x->r, i), vec3_scale(get(&x->s, i), (double)t[i])), p, i);
         mesh_shares(&a, (double)p->u[i], (double)p->w[i], &b, &c);
         lane_set(&p->gh, i, to_real(vec3_unit(mesh_mix(a.normal, b, c))));
     }

@@ -162,7 +162,7 @@ static face box_face(const box *f, int part)
 static const real *axis(const vec3s *v, int k) { return k == 0 ? v->x : k == 1 ? v->y : v->z; }
 static real *component(vec3s *v, int k) { return k == 0 ? v->x : k == 1 ? v->y : v->z; }
 
-static void box_shell(const surface *base, int part, int n, const rays *x, const real *end, real Pmin, real Pmax,
+static void box_bound(const surface *base, int part, int n, const rays *x, const real *end, real Pmin, real Pmax,
                       real *t0, real *t1)
 {
     const box *f = (const box *)base;
@@ -179,7 +179,7 @@ static void box_shell(const surface *base, int part, int n, const rays *x, const
     }
 }
 
-static void box_foot(const surface *base, int part, int n, const rays *x, const real *t, closest_points *p)
+static void box_closest(const surface *base, int part, int n, const rays *x, const real *t, closest_points *p)
 {
     const box *f = (const box *)base;
     const face c = box_face(f, part);
@@ -199,7 +199,7 @@ static void box_foot(const surface *base, int part, int n, const rays *x, const 
     }
 }
 
-static void box_steep(const surface *base, int part, int n, const rays *x, const closest_points *p, real Pu_max,
+static void box_lipschitz(const surface *base, int part, int n, const rays *x, const closest_points *p, real Pu_max,
                       real Pw_max, real *rate, real *reach)
 {
     const box *f = (const box *)base;
@@ -241,9 +241,9 @@ static const surface_ops box_methods = {
     .extent = box_extent,
     .box = box_box,
     .parts = 6,
-    .shell = box_shell,
-    .foot = box_foot,
-    .steep = box_steep,
+    .bound = box_bound,
+    .closest = box_closest,
+    .lipschitz = box_lipschitz,
 };
 
 /* In the numbers that it is kept in. */

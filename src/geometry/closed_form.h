@@ -16,7 +16,8 @@
     NAME(sphere)                                                                                                       \
     NAME(cylinder)                                                                                                     \
     NAME(cone)                                                                                                         \
-    NAME(torus)
+    NAME(torus)                                                                                                        \
+    NAME(ellipsoid)
 
 #define SHAPE_SMALL 1e-6 /* shorter lengths are refused: their squares would vanish beside others in float */
 
@@ -99,7 +100,8 @@ extern const closed_form *const closed_forms[CLOSED_FORM_COUNT];
 /* The shape moved so that the middle of its places is in the origin; *middle: where it was. */
 shape_values shape_centred(const closed_form *form, const shape_values *v, vec3 *middle);
 
-/* The formula of what turns about the frame's y: rho and y are functions of w alone, u is the angle from x to z. */
+/* (formula.c) The formula of what turns about the frame's y: rho and y are functions of w alone, u is the angle from x
+ * to z. */
 void formula_revolve(form_formula *f, frame axes, const char *rho, const char *y);
 
 #endif

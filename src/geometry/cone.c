@@ -178,7 +178,7 @@ STAGE static void cone_capped_occlude_own(const surface *base, int n, const rays
 
 /* Q + P n/|n| on the side is on the cone whose radius is larger by P/cos a, from w = 0 to its side's end. Seen along
  * the axis that is from lo to hi. */
-STAGE static void cone_side_shell(const cone *restrict base, int n, const rays *restrict x, const real *restrict end,
+STAGE static void cone_side_bound(const cone *restrict base, int n, const rays *restrict x, const real *restrict end,
                                   real Pmin, real Pmax, real *restrict t0, real *restrict t1)
 {
     const cone f = *base;
@@ -198,18 +198,18 @@ STAGE static void cone_side_shell(const cone *restrict base, int n, const rays *
     }
 }
 
-static void cone_shell(const surface *base, int part, int n, const rays *x, const real *end, real Pmin, real Pmax,
+static void cone_bound(const surface *base, int part, int n, const rays *x, const real *end, real Pmin, real Pmax,
                        real *t0, real *t1)
 {
     if (part == 0)
-        cone_side_shell((const cone *)base, n, x, end, Pmin, Pmax, t0, t1);
+        cone_side_bound((const cone *)base, n, x, end, Pmin, Pmax, t0, t1);
     else {
         const surface *cap = &cone_cap(base, part)->base;
-        cap->ops->shell(cap, 0, n, x, end, Pmin, Pmax, t0, t1);
+        cap->ops->bound(cap, 0, n, x, end, Pmin, Pmax, t0, t1);
     }
 }
 
-STAGE static void cone_side_foot(const cone *restrict base, int n, const rays *restrict x, const real *restrict t,
+STAGE static void cone_side_closest(const cone *restrict base, int n, const rays *restrict x, const real *restrict t,
                                  closest_points *restrict p)
 {
     const cone f = *base;
@@ -227,19 +227,19 @@ STAGE static void cone_side_foot(const cone *restrict base, int n, const rays *r
     }
 }
 
-static void cone_foot(const surface *base, int part, int n, const rays *x, const real *t, closest_points *p)
+static void cone_closest(const surface *base, int part, int n, const rays *x, const real *t, closest_points *p)
 {
     if (part == 0)
-        cone_side_foot((const cone *)base, n, x, t, p);
+        cone_side_closest((const cone *)base, n, x, t, p);
     else {
         const surface *cap = &cone_cap(base, part)->base;
-        cap->ops->foot(cap, 0, n, x, t, p);
+        cap->ops->closest(cap, 0, n, x, t, p);
     }
 }
 
 /* The directions of h, of w and around the axis are at right angles, so that the ray's way is shared between them
  * (Cauchy and Schwarz); |grad u| is 1/(distance to the axis), within half of which it at most doubles. */
-STAGE static void cone_side_steep(int n, const rays *restrict x, const closest_points *restrict p, real Pu_max,
+STAGE static void cone_side_lipschitz(int n, const rays *restrict x, const closest_points *restrict p, real Pu_max,
                                   real Pw_max, real *restrict rate, real *restrict reach)
 {
     for (int i = 0; i < n; i++) {
@@ -250,14 +250,14 @@ STAGE static void cone_side_steep(int n, const rays *restrict x, const closest_p
     }
 }
 
-static void cone_steep(const surface *base, int part, int n, const rays *x, const closest_points *p, real Pu_max,
+static void cone_lipschitz(const surface *base, int part, int n, const rays *x, const closest_points *p, real Pu_max,
                        real Pw_max, real *rate, real *reach)
 {
     if (part == 0)
-        cone_side_steep(n, x, p, Pu_max, Pw_max, rate, reach);
+        cone_side_lipschitz(n, x, p, Pu_max, Pw_max, rate, reach);
     else {
         const surface *cap = &cone_cap(base, part)->base;
-        cap->ops->steep(cap, 0, n, x, p, Pu_max, Pw_max, rate, reach);
+        cap->ops->lipschitz(cap, 0, n, x, p, Pu_max, Pw_max, rate, reach);
     }
 }
 
@@ -266,8 +266,8 @@ static void cone_steep(const surface *base, int part, int n, const rays *x, cons
     {                                                                                                                  \
         .kind = name, .hit = cone_##form##_hit, .hit_own = cone_##form##_hit_own, .locate = cone_locate,               \
         .eval = cone_eval, .occlude = cone_##form##_occlude, .occlude_own = cone_##form##_occlude_own,                 \
-        .extent = cone_extent, .box = cone_box, .parts = number, .shell = cone_shell, .foot = cone_foot,               \
-        .steep = cone_steep, .loose = is_cone                                                                          \
+        .extent = cone_extent, .box = cone_box, .parts = number, .bound = cone_bound, .closest = cone_closest,            \
+        .lipschitz = cone_lipschitz, .unclamped = is_cone                                                                  \
     }
 
 static const surface_ops cone_methods[2][2] = {

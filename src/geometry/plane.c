@@ -159,21 +159,21 @@ static inline void shell(const surface *base, enum bounds bound, int n, const ra
     }
 }
 
-static void plane_shell(const surface *base, int part, int n, const rays *x, const real *end, real Pmin, real Pmax,
+static void plane_bound(const surface *base, int part, int n, const rays *x, const real *end, real Pmin, real Pmax,
                         real *t0, real *t1)
 {
     (void)part;
     shell(base, NOWHERE, n, x, end, Pmin, Pmax, t0, t1);
 }
 
-static void rectangle_shell(const surface *base, int part, int n, const rays *x, const real *end, real Pmin, real Pmax,
+static void rectangle_bound(const surface *base, int part, int n, const rays *x, const real *end, real Pmin, real Pmax,
                             real *t0, real *t1)
 {
     (void)part;
     shell(base, AT_SIDES, n, x, end, Pmin, Pmax, t0, t1);
 }
 
-static void disc_shell(const surface *base, int part, int n, const rays *x, const real *end, real Pmin, real Pmax,
+static void disc_bound(const surface *base, int part, int n, const rays *x, const real *end, real Pmin, real Pmax,
                        real *t0, real *t1)
 {
     (void)part;
@@ -181,7 +181,7 @@ static void disc_shell(const surface *base, int part, int n, const rays *x, cons
 }
 
 /* The dual basis is in the plane, so Du.(X - O) is u of the foot. */
-STAGE static void plane_foot(const surface *base, int part, int n, const rays *x, const real *restrict t,
+STAGE static void plane_closest(const surface *base, int part, int n, const rays *x, const real *restrict t,
                              closest_points *restrict p)
 {
     const plane f = *(const plane *)base;
@@ -198,7 +198,7 @@ STAGE static void plane_foot(const surface *base, int part, int n, const rays *x
 }
 
 /* u, w and the height are linear along a ray, so the rate holds for all of it. */
-STAGE static void plane_steep(const surface *base, int part, int n, const rays *x, const closest_points *p, real Pu_max,
+STAGE static void plane_lipschitz(const surface *base, int part, int n, const rays *x, const closest_points *p, real Pu_max,
                               real Pw_max, real *restrict rate, real *restrict reach)
 {
     const plane f = *(const plane *)base;
@@ -277,9 +277,9 @@ static const surface_ops plane_methods = {
     .extent = plane_extent,
     .box = plane_box,
     .parts = 1,
-    .shell = plane_shell,
-    .foot = plane_foot,
-    .steep = plane_steep,
+    .bound = plane_bound,
+    .closest = plane_closest,
+    .lipschitz = plane_lipschitz,
 };
 
 static const surface_ops rectangle_methods = {
@@ -292,9 +292,9 @@ static const surface_ops rectangle_methods = {
     .extent = rectangle_extent,
     .box = rectangle_box,
     .parts = 1,
-    .shell = rectangle_shell,
-    .foot = plane_foot,
-    .steep = plane_steep,
+    .bound = rectangle_bound,
+    .closest = plane_closest,
+    .lipschitz = plane_lipschitz,
 };
 
 static const surface_ops disc_methods = {
@@ -307,9 +307,9 @@ static const surface_ops disc_methods = {
     .extent = disc_extent,
     .box = disc_box,
     .parts = 1,
-    .shell = disc_shell,
-    .foot = plane_foot,
-    .steep = plane_steep,
+    .bound = disc_bound,
+    .closest = plane_closest,
+    .lipschitz = plane_lipschitz,
 };
 
 /* The squared sine of the angle between U and W below which float has no digits of N: an angle of 1e-6, float's

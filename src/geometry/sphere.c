@@ -136,7 +136,7 @@ STAGE static void sphere_occlude_own(const surface *base, int n, const rays *x, 
 
 /* The outer sphere's stretch. From within the inner one it begins at that one's far side; all others go through it, as
  * a ray that is below the rough surface already meets it on the far side only. */
-STAGE static void sphere_shell(const surface *base, int part, int n, const rays *x, const real *restrict end, real Pmin,
+STAGE static void sphere_bound(const surface *base, int part, int n, const rays *x, const real *restrict end, real Pmin,
                                real Pmax, real *restrict t0, real *restrict t1)
 {
     sphere outer = *(const sphere *)base, inner = outer;
@@ -153,7 +153,7 @@ STAGE static void sphere_shell(const surface *base, int part, int n, const rays 
     }
 }
 
-STAGE static void sphere_foot(const surface *base, int part, int n, const rays *x, const real *restrict t,
+STAGE static void sphere_closest(const surface *base, int part, int n, const rays *x, const real *restrict t,
                               closest_points *restrict p)
 {
     const sphere f = *(const sphere *)base;
@@ -181,7 +181,7 @@ STAGE static void sphere_foot(const surface *base, int part, int n, const rays *
 
 /* |grad u| is 1/(distance to the axis), |grad w| 1/(distance to the centre): within half of either they at most double.
  */
-STAGE static void sphere_steep(const surface *base, int part, int n, const rays *x, const closest_points *p,
+STAGE static void sphere_lipschitz(const surface *base, int part, int n, const rays *x, const closest_points *p,
                                real Pu_max, real Pw_max, real *restrict rate, real *restrict reach)
 {
     (void)base;
@@ -226,9 +226,9 @@ static const surface_ops sphere_methods = {
     .extent = sphere_extent,
     .box = sphere_box,
     .parts = 1,
-    .shell = sphere_shell,
-    .foot = sphere_foot,
-    .steep = sphere_steep,
+    .bound = sphere_bound,
+    .closest = sphere_closest,
+    .lipschitz = sphere_lipschitz,
 };
 
 surface *sphere_new(vec3 centre, double radius)

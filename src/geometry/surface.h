@@ -51,25 +51,25 @@ typedef struct surface_ops {
     int parts; /* how many there are; 1 of a mesh, whose triangles do not differ in anything that depends on part alone
                 */
 
-    /* For true displacement (displace.c), with a part of the surface taken as if it alone were there. All three are
-     * NULL where no foot is known (surface_transformed). */
+    /* For displaced surfaces (displaced.h), with a part of the surface as if it alone were there. All three are NULL
+     * where closest points have no closed form, as of a stretched sphere. */
 
     /* The stretch t0 <= t <= t1 of each ray, within 0..end[i], that may meet Q + P n/|n| for Pmin <= P <= Pmax: all
      * such places are in it. t0 > t1: there is none. */
-    void (*shell)(const surface *f, int part, int n, const rays *x, const real *end, real Pmin, real Pmax, real *t0,
+    void (*bound)(const surface *f, int part, int n, const rays *x, const real *end, real Pmin, real Pmax, real *t0,
                   real *t1);
 
-    /* The foot of the perpendicular from each r + s t to the surface: (u,w), the height over it, and how these change
-     * in space (gradients). (u,w) may lie outside the extent. */
-    void (*foot)(const surface *f, int part, int n, const rays *x, const real *t, closest_points *p);
+    /* The closest point of the surface to each r + s t: (u,w), the height over it, and the gradients of the three.
+     * (u,w) may lie outside the extent. */
+    void (*closest)(const surface *f, int part, int n, const rays *x, const real *t, closest_points *p);
 
-    /* Bounds along each ray from r + s t on, for a P that changes by at most Pu_max and Pw_max per u and w: how fast
-     * height - P can change with t, and how far in t that holds. */
-    void (*steep)(const surface *f, int part, int n, const rays *x, const closest_points *p, real Pu_max, real Pw_max,
-                  real *rate, real *reach);
+    /* Lipschitz bounds along each ray from r + s t on, for a P that changes by at most Pu_max and Pw_max per u and w:
+     * how fast height - P can change with t, and how far in t that holds. */
+    void (*lipschitz)(const surface *f, int part, int n, const rays *x, const closest_points *p, real Pu_max,
+                      real Pw_max, real *rate, real *reach);
 
-    /* Whether a stretch may also lead over places beyond the part's extent, so that hits there are none. */
-    bool loose;
+    /* Whether stretches may also lead over places beyond the part's extent, so that hits there do not count. */
+    bool unclamped;
 } surface_ops;
 
 struct surface {

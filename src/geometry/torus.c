@@ -81,7 +81,7 @@ STAGE static void torus_enter(const torus *restrict base, double m, int n, const
 }
 
 /* What lies between two places of the shell, the hole or the tube's core, is left to the search. */
-static void torus_shell(const surface *base, int part, int n, const rays *x, const real *end, real Pmin, real Pmax,
+static void torus_bound(const surface *base, int part, int n, const rays *x, const real *end, real Pmin, real Pmax,
                         real *t0, real *t1)
 {
     const torus *f = (const torus *)base;
@@ -96,7 +96,7 @@ static void torus_shell(const surface *base, int part, int n, const rays *x, con
     }
 }
 
-STAGE static void torus_foot(const surface *base, int part, int n, const rays *x, const real *t, closest_points *q)
+STAGE static void torus_closest(const surface *base, int part, int n, const rays *x, const real *t, closest_points *q)
 {
     const torus f = *(const torus *)base;
     (void)part;
@@ -116,7 +116,7 @@ STAGE static void torus_foot(const surface *base, int part, int n, const rays *x
 /* The directions of h, u and w are at right angles, so that the ray's way is shared between them (Cauchy and Schwarz).
  * |grad u| is 1/(distance to the axis), |grad w| 1/(distance to the tube's middle): within half of either they at most
  * double. */
-STAGE static void torus_steep(const surface *base, int part, int n, const rays *x, const closest_points *p, real Pu_max,
+STAGE static void torus_lipschitz(const surface *base, int part, int n, const rays *x, const closest_points *p, real Pu_max,
                               real Pw_max, real *restrict rate, real *restrict reach)
 {
     (void)base;
@@ -161,9 +161,9 @@ static const surface_ops torus_methods = {
     .extent = torus_extent,
     .box = torus_box,
     .parts = 1,
-    .shell = torus_shell,
-    .foot = torus_foot,
-    .steep = torus_steep,
+    .bound = torus_bound,
+    .closest = torus_closest,
+    .lipschitz = torus_lipschitz,
 };
 
 static void store(double to[3], vec3 v)

@@ -180,21 +180,21 @@ static void transformed_extent(const surface *base, int part, double u[2], doubl
 
 /* ---- for true displacement, by maps that keep angles ---- */
 
-static void similar_shell(const surface *base, int part, int n, const rays *x, const real *end, real Pmin, real Pmax,
+static void similar_bound(const surface *base, int part, int n, const rays *x, const real *end, real Pmin, real Pmax,
                           real *t0, real *t1)
 {
     const transformed *f = of(base);
     rays y;
     rays_back(f, n, x, &y);
-    f->from->ops->shell(f->from, part, n, &y, end, Pmin * f->over, Pmax * f->over, t0, t1);
+    f->from->ops->bound(f->from, part, n, &y, end, Pmin * f->over, Pmax * f->over, t0, t1);
 }
 
-static void similar_foot(const surface *base, int part, int n, const rays *x, const real *t, closest_points *p)
+static void similar_closest(const surface *base, int part, int n, const rays *x, const real *t, closest_points *p)
 {
     const transformed *f = of(base);
     rays y;
     rays_back(f, n, x, &y);
-    f->from->ops->foot(f->from, part, n, &y, t, p);
+    f->from->ops->closest(f->from, part, n, &y, t, p);
     mirror_u(f, n, p->u, p->u);
     stretch(n, f->scale, p->h);
     gradients_to(f, n, f->mirror, &p->gu);
@@ -202,7 +202,7 @@ static void similar_foot(const surface *base, int part, int n, const rays *x, co
     gradients_to(f, n, f->scale, &p->gh);
 }
 
-static void similar_steep(const surface *base, int part, int n, const rays *x, const closest_points *p, real Pu_max,
+static void similar_lipschitz(const surface *base, int part, int n, const rays *x, const closest_points *p, real Pu_max,
                           real Pw_max, real *rate, real *reach)
 {
     const transformed *f = of(base);
@@ -216,30 +216,30 @@ static void similar_steep(const surface *base, int part, int n, const rays *x, c
     gradients_back(f, n, f->mirror, &p->gu, &q.gu);
     gradients_back(f, n, 1, &p->gw, &q.gw);
     gradients_back(f, n, f->over, &p->gh, &q.gh);
-    f->from->ops->steep(f->from, part, n, &y, &q, Pu_max * f->over, Pw_max * f->over, rate, reach);
+    f->from->ops->lipschitz(f->from, part, n, &y, &q, Pu_max * f->over, Pw_max * f->over, rate, reach);
     stretch(n, f->scale, rate);
 }
 
 /* ---- the same on a box, by any map ---- */
 
-static void faces_shell(const surface *base, int part, int n, const rays *x, const real *end, real Pmin, real Pmax,
+static void faces_bound(const surface *base, int part, int n, const rays *x, const real *end, real Pmin, real Pmax,
                         real *t0, real *t1)
 {
     const surface *face = &of(base)->face[part].base;
-    face->ops->shell(face, 0, n, x, end, Pmin, Pmax, t0, t1);
+    face->ops->bound(face, 0, n, x, end, Pmin, Pmax, t0, t1);
 }
 
-static void faces_foot(const surface *base, int part, int n, const rays *x, const real *t, closest_points *p)
+static void faces_closest(const surface *base, int part, int n, const rays *x, const real *t, closest_points *p)
 {
     const surface *face = &of(base)->face[part].base;
-    face->ops->foot(face, 0, n, x, t, p);
+    face->ops->closest(face, 0, n, x, t, p);
 }
 
-static void faces_steep(const surface *base, int part, int n, const rays *x, const closest_points *p, real Pu_max,
+static void faces_lipschitz(const surface *base, int part, int n, const rays *x, const closest_points *p, real Pu_max,
                         real Pw_max, real *rate, real *reach)
 {
     const surface *face = &of(base)->face[part].base;
-    face->ops->steep(face, 0, n, x, p, Pu_max, Pw_max, rate, reach);
+    face->ops->lipschitz(face, 0, n, x, p, Pu_max, Pw_max, rate, reach);
 }
 
 /* The box of the image of the original's box. */
@@ -292,9 +292,9 @@ static bool box_image(transformed *f, const affine *m)
         rectangle_set(&f->face[part]);
         good = flat_image(&f->face[part], f->from, part, m, (double)f->mirror, (double)f->u_ends_sum) && good;
     }
-    f->methods.shell = faces_shell;
-    f->methods.foot = faces_foot;
-    f->methods.steep = faces_steep;
+    f->methods.bound = faces_bound;
+    f->methods.closest = faces_closest;
+    f->methods.lipschitz = faces_lipschitz;
     return good;
 }
 
@@ -310,10 +310,10 @@ static void choose_methods(transformed *f, double scale)
     f->methods.occlude_own = f->from->ops->occlude_own ? transformed_occlude_own : NULL;
     f->methods.extent = transformed_extent;
     f->methods.box = transformed_box;
-    const bool foot = scale > 0 && f->from->ops->foot;
-    f->methods.shell = foot ? similar_shell : NULL;
-    f->methods.foot = foot ? similar_foot : NULL;
-    f->methods.steep = foot ? similar_steep : NULL;
+    const bool known = scale > 0 && f->from->ops->closest;
+    f->methods.bound = known ? similar_bound : NULL;
+    f->methods.closest = known ? similar_closest : NULL;
+    f->methods.lipschitz = known ? similar_lipschitz : NULL;
 }
 
 surface *surface_transformed(const surface *from, const affine *m)

@@ -5,7 +5,6 @@
 #include "povray/material.h"
 
 #include "patch/surface.h"
-
 #include "povray/flat.h"
 #include "povray/povray.h"
 

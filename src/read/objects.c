@@ -1,7 +1,7 @@
 /* The scene reader's objects: their shapes, materials, bumps and transforms, and what is copied from others. */
+#include "base/spelling.h"
 #include "displaced/displaced.h"
 #include "read/parts.h"
-#include "base/spelling.h"
 
 #include <stdlib.h>
 #include <string.h>

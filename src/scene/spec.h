@@ -1,4 +1,4 @@
-/* What the scene file said, for exports and reports. Tracing does not read it, but for shape_has_inside. */
+/* What the scene file said, for exports and reports. Tracing reads only shape_has_inside of it. */
 #ifndef KAGE_SCENE_SPEC_H
 #define KAGE_SCENE_SPEC_H
 
@@ -22,7 +22,7 @@ typedef struct map_note {
     double low, high; /* of the samples, before scale and zero */
 } map_note;
 
-/* A shape as the file said it, for exports and transforms. */
+/* A shape, for exports and transforms. */
 typedef enum shape_kind {
     SHAPE_CLOSED, /* of a closed form */
     SHAPE_PATCH,  /* parametric, patches */

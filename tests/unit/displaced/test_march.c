@@ -10,6 +10,7 @@
 
 #include <cmocka.h>
 
+#include "support/check.h"
 #include "base/frame.h"
 #include "wave/lane.h"
 #include "method/method.h"
@@ -74,7 +75,7 @@ static wide bump_at(int kind, int bumped, wide u, wide w)
 }
 
 /* The foot of X on a part of a surface about an axis, and the height over it. */
-static wide turned_foot(int kind, int part, const wide X[3], wide *u, wide *w, int *inside)
+static wide turned_closest(int kind, int part, const wide X[3], wide *u, wide *w, int *inside)
 {
     const turned *f = &turns[kind - DISC];
     const vec3 axis = kind == DISC || kind == TORUS ? f->b : vec3_sub(f->b, f->a);
@@ -116,7 +117,7 @@ static wide gap_at(int kind, int bumped, int part, const wide X[3], int *inside)
         w = atan2l(hypotl(d[0], d[2]), d[1]);
         h = sqrtl(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]) - (wide)sphere_R;
     } else if (kind >= DISC) {
-        h = turned_foot(kind, part, X, &u, &w, inside);
+        h = turned_closest(kind, part, X, &u, &w, inside);
     } else if (kind == BOX) {
         int k = part / 2, high = part % 2, a = (k + (high ? 1 : 2)) % 3, b = (k + (high ? 2 : 1)) % 3;
         u = (X[a] - (wide)box_lo[a]) / ((wide)box_hi[a] - (wide)box_lo[a]);

@@ -271,10 +271,10 @@ static void feet_are_below(int kind, int map, const surface *own, const surface 
     static rays x;
     (void)own;
     (void)m;
-    CHECK((f->ops->foot != NULL), ==, has_feet(kind, map));
-    CHECK((f->ops->shell != NULL), ==, has_feet(kind, map));
-    CHECK((f->ops->steep != NULL), ==, has_feet(kind, map));
-    if (!f->ops->foot)
+    CHECK((f->ops->closest != NULL), ==, has_feet(kind, map));
+    CHECK((f->ops->bound != NULL), ==, has_feet(kind, map));
+    CHECK((f->ops->lipschitz != NULL), ==, has_feet(kind, map));
+    if (!f->ops->closest)
         return;
     for (int32_t part = 0; part < f->ops->parts; part++) {
         double U[2], W[2];
@@ -288,7 +288,7 @@ static void feet_are_below(int kind, int map, const surface *own, const surface 
         const bs_vec3 X = {Q.x + h * n.x, Q.y + h * n.y, Q.z + h * n.z};
         lane_set(&x.r, 0, X);
         lane_set(&x.s, 0, n);
-        f->ops->foot(f, part, 1, &x, &zero, &p);
+        f->ops->closest(f, part, 1, &x, &zero, &p);
         NEAR(p.u[0], u, 300 * EPS);
         NEAR(p.w[0], w, 300 * EPS);
         NEAR(p.h[0], h, 100 * EPS);
@@ -299,13 +299,13 @@ static void feet_are_below(int kind, int map, const surface *own, const surface 
         const real t = (real)half, minus = (real)-half;
         real rate, reach;
         lane_set(&x.s, 0, d);
-        f->ops->foot(f, part, 1, &x, &t, &a);
-        f->ops->foot(f, part, 1, &x, &minus, &b);
+        f->ops->closest(f, part, 1, &x, &t, &a);
+        f->ops->closest(f, part, 1, &x, &minus, &b);
         NEAR((double)(a.u[0] - b.u[0]) / step, (double)bs_dot(d, lane_get(&p.gu, 0)), 60 * sqrt(EPS));
         NEAR((double)(a.w[0] - b.w[0]) / step, (double)bs_dot(d, lane_get(&p.gw, 0)), 60 * sqrt(EPS));
         NEAR((double)(a.h[0] - b.h[0]) / step, (double)bs_dot(d, lane_get(&p.gh, 0)), 60 * sqrt(EPS));
         const real Pu = R(0.3), Pw = R(0.4);
-        f->ops->steep(f, part, 1, &x, &p, Pu, Pw, &rate, &reach);
+        f->ops->lipschitz(f, part, 1, &x, &p, Pu, Pw, &rate, &reach);
         const real worst = real_abs(bs_dot(d, lane_get(&p.gh, 0))) + Pu * real_abs(bs_dot(d, lane_get(&p.gu, 0))) +
                            Pw * real_abs(bs_dot(d, lane_get(&p.gw, 0)));
         CHECK(rate, >=, worst * R(0.999));
