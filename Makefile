@@ -214,7 +214,8 @@ $(UNITS:%=$(BUILD)/%): $(BUILD)/%: $(BUILD)/%.o $(BUILD)/internal.a
 	$(Q)$(CC) $(LDFLAGS) -o $@ $^ -lcmocka $(LIBS)
 
 # A test in which memory runs out: our own objects ask its functions.
-$(BUILD)/unit/api/test_memory: override LDFLAGS += $(foreach f,malloc calloc realloc posix_memalign strdup free fy_node_build_from_malloc_string,-Wl$(comma)--wrap=$(f))
+WRAPPED   = malloc calloc realloc posix_memalign strdup free fy_node_build_from_malloc_string
+$(BUILD)/unit/api/test_memory: override LDFLAGS += $(WRAPPED:%=-Wl,--wrap=%)
 
 # ---- tests ----
 
@@ -262,9 +263,14 @@ SANE      = CLONES=no OPTIMISE='-O1 -fno-math-errno -fno-trapping-math -ffp-cont
 # Those that read every kind of input, right and wrong, and run every command.
 SANE_TESTS = $(addprefix tests/program/test_,cli.py input.py mesh.py patches.py)
 
+# Threads of one process on libkage, without OpenMP, whose barriers ThreadSanitizer does not see (see tsan.supp).
+TSAN      = $(SANE) OPENMP=no BUILD=build/tsan SANITIZE=thread
+
 sanitize: all
 	@CC='$(CC)' scripts/bootstrap test python
 	@$(MAKE) --no-print-directory $(JOBS) $(SANE) BUILD=build/asan SANITIZE=address,undefined unit-tests build/asan/kage
+	@TSAN_OPTIONS=suppressions=tests/support/tsan.supp \
+	    $(MAKE) --no-print-directory $(JOBS) $(TSAN) run-unit/api/test_threads
 	KAGE=build/asan/kage scripts/venv python -m pytest -q -n auto --dist loadfile $(SANE_TESTS)
 
 # ---- style ----
