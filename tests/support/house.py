@@ -23,9 +23,11 @@ OUTSIDE = {"png.h": "image/png.c", "openexr.h": "image/exr_", "libfyaml.h": "yam
 
 #: What a library leaves to its caller: the streams, the process, its signals and settings.
 FORBIDDEN = {
-    "printf", "vprintf", "puts", "putchar", "perror", "stdout", "stderr", "exit", "_exit", "_Exit", "quick_exit", "abort",
-    "atexit", "fork", "vfork", "system", "popen", "signal", "__sysv_signal", "sigaction", "raise", "kill", "setrlimit",
-    "setlocale", "chdir", "umask", "setenv", "putenv", "srand", "rand", "strtok", "omp_set_num_threads",
+    "printf", "vprintf", "puts", "putchar", "perror", "stdout", "stderr", "exit", "_exit", "_Exit", "quick_exit",
+    "abort", "atexit", "fork", "vfork", "system", "popen", "signal", "__sysv_signal", "sigaction", "raise", "kill",
+    "setrlimit",
+    "setlocale", "chdir", "umask", "setenv", "putenv", "srand", "rand", "strtok",
+    "omp_set_num_threads",
 }
 
 #: Circles of calls that stay, and why. A circle is named by its files below src/, without .c.
