@@ -4,20 +4,27 @@
 #   CC=gcc|clang          the compiler
 #   SANITIZE=address,undefined
 #   CLONES=no             without the AVX2 copies of the stages
+#   OPENMP=no             one thread a render, without OpenMP: for SANITIZE=thread, which does not see the barriers of
+#                         its library (CLONES=no, too: functions that choose their copy run before it is ready)
 #   BUILD=DIR             where the objects and the program go
 #   V=1                   print the whole commands
 
 REAL     ?= float
 SANITIZE ?=
 CLONES   ?= yes
+OPENMP   ?= yes
 BUILD    ?= build/$(REAL)
 BENCH    ?= normal
+OBJCOPY  ?= objcopy
 PREFIX   ?= /usr/local
+LIBDIR   ?= $(PREFIX)/lib
+LIBEXEC  ?= $(PREFIX)/libexec/kage
 Q         = $(if $(V),,@)
+comma    := ,
 # As many jobs as processors, unless make was told how many.
 JOBS      = $(if $(findstring jobserver,$(MAKEFLAGS)),,-j$(shell nproc 2>/dev/null || echo 1))
 
-PKGS      = libpng libfyaml OpenEXR assimp
+PKGS      = libpng libfyaml OpenEXR
 WARNINGS  = -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wdouble-promotion -Wmissing-prototypes \
             -Wstrict-prototypes -Wwrite-strings -Wundef
 # No -ffast-math: these three keep sums as written (the same bytes on every processor), while loops vectorise.
@@ -31,24 +38,37 @@ endif
 ifeq ($(CLONES),no)
 DEFINES  += -DKAGE_NO_CLONES
 endif
+ifeq ($(OPENMP),no)
+THREADS   = -pthread -Wno-unknown-pragmas
+else
+THREADS   = -pthread -fopenmp
+endif
 ifneq ($(SANITIZE),)
 SANITIZER = -fsanitize=$(SANITIZE) -fno-sanitize-recover=all -fno-omit-frame-pointer -g
 endif
 
 # The libraries' headers as system headers: their warnings are not ours.
-PKG_CFLAGS := $(patsubst -I%,-isystem %,$(shell pkg-config --cflags $(PKGS) 2>/dev/null))
+PKG_CFLAGS := $(patsubst -I%,-isystem %,$(shell pkg-config --cflags $(PKGS) assimp 2>/dev/null))
 # Embree 4 or 3, whichever has its headers here: it need not have a pkg-config file.
 EMBREE     := $(firstword $(foreach v,4 3,$(shell printf '\043include <embree$(v)/rtcore.h>\n' | \
                   $(CC) -fsyntax-only -x c - 2>/dev/null && echo $(v))))
 DEFINES    += -DKAGE_EMBREE=$(or $(EMBREE),0)
-PKG_LIBS   := $(shell pkg-config --libs-only-L OpenEXR 2>/dev/null) -lOpenEXRCore $(shell pkg-config --libs libpng libfyaml assimp 2>/dev/null)
-override CFLAGS  += -Iinclude -Isrc $(STANDARD) $(OPTIMISE) -fopenmp $(WARNINGS) $(DEFINES) $(SANITIZER) $(PKG_CFLAGS) -MMD -MP
-override LDFLAGS += -fopenmp $(SANITIZER)
-LIBS       = $(PKG_LIBS) -lembree$(or $(EMBREE),3) -lm
+PKG_LIBS   := $(shell pkg-config --libs-only-L OpenEXR 2>/dev/null) -lOpenEXRCore \
+              $(shell pkg-config --libs libpng libfyaml 2>/dev/null)
+# All objects can go into the shared library, and only what kage.h declares can be seen from outside.
+VISIBILITY = -fPIC -fvisibility=hidden
+override CFLAGS  += -Iinclude -Isrc $(STANDARD) $(OPTIMISE) $(VISIBILITY) $(THREADS) $(WARNINGS) $(DEFINES) \
+                    $(SANITIZER) $(PKG_CFLAGS) -MMD -MP
+override LDFLAGS += $(THREADS) $(SANITIZER)
+LIBS       = $(PKG_LIBS) -lembree$(or $(EMBREE),3) -ldl -lm
+IMPORT_LIBS := $(shell pkg-config --libs assimp 2>/dev/null) -lm
 
 SOURCES   = $(patsubst src/%.c,%,$(wildcard src/*/*.c))
 PROGRAM   = $(filter cli/%,$(SOURCES))
-LIBRARY   = $(filter-out cli/%,$(SOURCES))
+IMPORT    = $(filter import/%,$(SOURCES)) # kage-import, which alone links assimp
+LIBRARY   = $(filter-out cli/% import/%,$(SOURCES))
+VERSION  := $(shell sed -n 's/.*define KAGE_VERSION "\(.*\)".*/\1/p' include/kage.h)
+SONAME    = libkage.so.$(firstword $(subst ., ,$(VERSION)))
 UNITS     = $(patsubst tests/%.c,%,$(wildcard tests/unit/*/test_*.c))
 
 FIGURES   = figure4 figure5 figure6 figure7 figure8-none figure8 terrain-none terrain
@@ -60,10 +80,12 @@ GALLERY   = $(patsubst scenes/gallery/%.yaml,%,$(wildcard scenes/gallery/*.yaml)
 C_FILES   = $(wildcard include/*.h src/*/*.[ch] examples/*.c tests/support/*.h tests/unit/*/*.[ch] bench/limits/*.c)
 TIDY      = $(filter-out bench/limits/%,$(filter %.c,$(C_FILES)))
 
-.PHONY: all render bench readme reference accept test unit-tests program-tests sanitize format lint tidy same install
-.PHONY: clean help bootstrap FORCE
+.PHONY: all render bench readme reference accept test unit-tests program-tests programs sanitize format lint tidy same
+.PHONY: install install-files uninstall clean help bootstrap FORCE
 all: bootstrap
-	@$(MAKE) --no-print-directory $(JOBS) $(BUILD)/kage
+	@$(MAKE) --no-print-directory $(JOBS) programs
+
+programs: $(BUILD)/kage $(BUILD)/kage-import $(BUILD)/libkage.a $(BUILD)/libkage.so
 
 help:
 	@echo 'make            build the tracer, $(BUILD)/kage'
@@ -76,7 +98,8 @@ help:
 	@echo 'make sanitize   the tests in C and some of the others, with checks of memory and arithmetic'
 	@echo 'make lint       layout, likely mistakes and types; make format mends the layout'
 	@echo 'make same       are all pictures those of another commit? REV=COMMIT ONLY=TEXT'
-	@echo 'make install    to PREFIX ($(PREFIX)), under DESTDIR: the program, and bumpshadow.h'
+	@echo 'make install    to PREFIX ($(PREFIX)), under DESTDIR: the program, libkage, kage.h and bumpshadow.h'
+	@echo 'make uninstall  what install has put there'
 	@echo 'make clean      remove build/ and out/'
 	@echo 'Settings: REAL=float|double CC=gcc|clang CLONES=no SANITIZE=address,undefined BOOTSTRAP=no V=1'
 
@@ -136,14 +159,47 @@ out/gallery/index.html: $(GALLERY:%=out/gallery/%-none.png) $(GALLERY:%=out/gall
 
 # ---- the program ----
 
-$(BUILD)/kage: $(PROGRAM:%=$(BUILD)/%.o) $(BUILD)/internal.a
+# It knows the library by kage.h alone. Models are read by kage-import, which it finds beside itself.
+$(BUILD)/kage: $(PROGRAM:%=$(BUILD)/%.o) $(BUILD)/libkage.a | $(BUILD)/kage-import
 	@echo '  LD  $@'
 	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(LIBS)
+
+$(BUILD)/kage-import: $(IMPORT:%=$(BUILD)/%.o)
+	@echo '  LD  $@'
+	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(IMPORT_LIBS)
+
+# ---- the library ----
+
+# One object, in which what is hidden is local: only kage_... can be seen by a program that it is linked to.
+$(BUILD)/libkage.o: $(LIBRARY:%=$(BUILD)/%.o)
+	@echo '  LD  $@'
+	$(Q)$(LD) -r -o $@ $^ && $(OBJCOPY) --localize-hidden $@
+
+$(BUILD)/libkage.a: $(BUILD)/libkage.o
+	$(Q)rm -f $@ && $(AR) rcs $@ $^
+
+$(BUILD)/$(SONAME): $(LIBRARY:%=$(BUILD)/%.o)
+	@echo '  LD  $@'
+	$(Q)$(CC) $(LDFLAGS) -shared -Wl,-soname,$(SONAME) $(if $(SANITIZE),,-Wl$(comma)--no-undefined) -o $@ $^ $(LIBS)
+
+$(BUILD)/libkage.so: $(BUILD)/$(SONAME)
+	$(Q)ln -sf $(SONAME) $@
+
+$(BUILD)/kage.pc: src/api/kage.pc.in include/kage.h FORCE
+	$(Q)sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@LIBDIR@|$(LIBDIR)|' -e 's|@VERSION@|$(VERSION)|' \
+	    -e 's|@LIBS@|$(strip $(THREADS) $(LIBS))|' $< > $@
 
 # Objects depend on the flags that made them.
 $(BUILD)/flags: FORCE
 	@mkdir -p $(BUILD)
 	@echo '$(CC) $(CFLAGS) $(LDFLAGS)' | cmp -s - $@ || echo '$(CC) $(CFLAGS) $(LDFLAGS)' > $@
+
+$(BUILD)/mesh/find_reader.o: DEFINES += -DKAGE_LIBEXEC='"$(LIBEXEC)"'
+$(BUILD)/mesh/find_reader.o: $(BUILD)/libexec
+
+$(BUILD)/libexec: FORCE
+	@mkdir -p $(BUILD)
+	@echo '$(LIBEXEC)' | cmp -s - $@ || echo '$(LIBEXEC)' > $@
 
 $(BUILD)/%.o: src/%.c $(BUILD)/flags
 	@echo '  CC  $@'
@@ -163,6 +219,9 @@ $(UNITS:%=$(BUILD)/%): $(BUILD)/%: $(BUILD)/%.o $(BUILD)/internal.a
 	@echo '  LD  $@'
 	$(Q)$(CC) $(LDFLAGS) -o $@ $^ -lcmocka $(LIBS)
 
+# A test in which memory runs out: our own objects ask its functions.
+$(BUILD)/unit/api/test_memory: override LDFLAGS += $(foreach f,malloc calloc realloc posix_memalign strdup free fy_node_build_from_malloc_string,-Wl$(comma)--wrap=$(f))
+
 # ---- tests ----
 
 # The units in C, in float and in double; then the program and the scripts, in Python.
@@ -176,10 +235,10 @@ unit-tests: $(UNITS:%=$(BUILD)/%)
 	@$(MAKE) --no-print-directory --keep-going --output-sync=target $(UNITS:%=run-%)
 
 # All run, side by side; one that fails shows what it printed, and its name.
-$(UNITS:%=run-%): run-%: $(BUILD)/%
-	@$< >$<.log 2>&1 && echo '  OK  $<' || { cat $<.log; echo '  FAILED  $<'; exit 1; }
+$(UNITS:%=run-%): run-%: $(BUILD)/% $(BUILD)/kage-import
+	@KAGE_IMPORT=$(BUILD)/kage-import $< >$<.log 2>&1 && echo '  OK  $<' || { cat $<.log; echo '  FAILED  $<'; exit 1; }
 
-program-tests: $(BUILD)/kage
+program-tests: programs
 	@$(MAKE) --no-print-directory $(JOBS) REAL=double build/double/kage
 	scripts/venv python -m pytest -q -n auto --dist loadfile tests # a file's tests share what they make
 
@@ -241,10 +300,27 @@ same: all
 	@CC='$(CC)' scripts/bootstrap python valgrind
 	scripts/venv python -m scripts.same $(or $(REV),HEAD) --real $(REAL) $(ONLY:%=--only %)
 
+# LIBDIR, LIBEXEC: of the library, and of kage-import, where they are not in PREFIX/lib and PREFIX/libexec/kage.
 install: all
-	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/include
+	@$(MAKE) --no-print-directory install-files
+
+# The same of what is built already.
+install-files: $(BUILD)/kage.pc
+	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/include $(DESTDIR)$(LIBDIR)/pkgconfig $(DESTDIR)$(LIBEXEC)
 	install -m 755 $(BUILD)/kage $(DESTDIR)$(PREFIX)/bin/kage
-	install -m 644 include/bumpshadow.h $(DESTDIR)$(PREFIX)/include/bumpshadow.h
+	install -m 755 $(BUILD)/kage-import $(DESTDIR)$(LIBEXEC)/kage-import
+	install -m 644 include/kage.h include/bumpshadow.h $(DESTDIR)$(PREFIX)/include
+	install -m 644 $(BUILD)/libkage.a $(DESTDIR)$(LIBDIR)/libkage.a
+	install -m 755 $(BUILD)/$(SONAME) $(DESTDIR)$(LIBDIR)/$(SONAME)
+	ln -sf $(SONAME) $(DESTDIR)$(LIBDIR)/libkage.so
+	install -m 644 $(BUILD)/kage.pc $(DESTDIR)$(LIBDIR)/pkgconfig/kage.pc
+
+uninstall:
+	rm -f $(DESTDIR)$(PREFIX)/bin/kage $(DESTDIR)$(LIBEXEC)/kage-import \
+	    $(DESTDIR)$(PREFIX)/include/kage.h $(DESTDIR)$(PREFIX)/include/bumpshadow.h \
+	    $(DESTDIR)$(LIBDIR)/libkage.a $(DESTDIR)$(LIBDIR)/$(SONAME) $(DESTDIR)$(LIBDIR)/libkage.so \
+	    $(DESTDIR)$(LIBDIR)/pkgconfig/kage.pc
+	rmdir $(DESTDIR)$(LIBEXEC) 2>/dev/null || true
 
 clean:
 	rm -rf build out

@@ -114,7 +114,7 @@ bool file_writer_close(file_writer *f, const char *why, errors *e)
 {
     if (!why && !f->error && !f->target)
         f->error = copy_to(f->path, f->fd);
-    if (close(f->fd) != 0 && !f->error) /* some file systems tell only now that the disk is full */
+    if (close(f->fd) != 0 && !f->error) /* some file systems only report here that the disk is full */
         f->error = errno;
     if (!why && !f->error && f->target && rename(f->aside, f->target) != 0)
         f->error = errno;

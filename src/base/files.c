@@ -1,3 +1,4 @@
+/* Sets of files, known by device and inode. */
 #include "base/files.h"
 
 #include <stdlib.h>

@@ -1,4 +1,5 @@
-/* The files that a scene is made from, known by what they are and not by a name: no output replaces one of them. */
+/* The files that a scene is made from, so that no output replaces one of them. A file is known by its device and inode,
+ * since it can have several names. */
 #ifndef KAGE_BASE_FILES_H
 #define KAGE_BASE_FILES_H
 
@@ -26,7 +27,8 @@ static inline file_id file_id_of(const struct stat *about)
 /* Add a file, once. False: out of memory. */
 bool files_add(files *f, file_id id);
 
-/* The same by a name, links followed. What is not there, or no regular file, has nothing to lose and is not added. */
+/* The same by a path, links followed. What does not exist, or is not a regular file, is not added: it cannot be lost.
+ */
 bool files_add_path(files *f, const char *path);
 
 bool files_have_path(const files *f, const char *path);

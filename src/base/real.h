@@ -26,7 +26,7 @@ typedef float real;
 /* A literal of type real: R(0.5). */
 #define R(x) ((real)(x))
 
-/* No real number of the scene: the t of a ray that has met nothing. */
+/* The t of a ray that has met nothing: larger than any of a scene. */
 #define REAL_FAR ((real)1e30)
 
 /* Put before the definition of a stage, a static function that is one plain loop over lanes (static, as clang 14
@@ -48,8 +48,8 @@ typedef float real;
  * NaN the result is y. (fmin and fmax promise more, and cost a branch.) */
 static inline real real_min(real x, real y) { return x < y ? x : y; }
 static inline real real_max(real x, real y) { return x > y ? x : y; }
-static inline double double_min(double x, double y) { return x < y ? x : y; }
-static inline double double_max(double x, double y) { return x > y ? x : y; }
+static inline double lesser(double x, double y) { return x < y ? x : y; }
+static inline double greater(double x, double y) { return x > y ? x : y; }
 
 /* floor without a call to libm, which SSE2 would need: adding REAL_INTEGER leaves no bit for a fraction. From
  * REAL_INTEGER / 3 on, where it would fail, x comes back; it has no more than one bit of a fraction then. */

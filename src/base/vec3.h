@@ -1,16 +1,12 @@
-/* A vector in double, for setting scenes up. The waves have their own layout, wave.h. */
+/* A vector in double, for setting scenes up. Waves have a layout of their own (wave/wave.h). */
 #ifndef KAGE_BASE_VEC3_H
 #define KAGE_BASE_VEC3_H
 
-#include <math.h>
+#include "base/real.h"
 
 typedef struct vec3 {
     double x, y, z;
 } vec3;
-
-/* Of two numbers, as the hardware has them: libm's fmin and fmax are calls. */
-static inline double lesser(double x, double y) { return x < y ? x : y; }
-static inline double greater(double x, double y) { return x > y ? x : y; }
 
 static inline vec3 vec3_add(vec3 a, vec3 b) { return (vec3){a.x + b.x, a.y + b.y, a.z + b.z}; }
 static inline vec3 vec3_sub(vec3 a, vec3 b) { return (vec3){a.x - b.x, a.y - b.y, a.z - b.z}; }

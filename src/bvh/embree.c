@@ -1,5 +1,5 @@
-/* Embree's hierarchy over boxes of ours (user geometry): it walks, and we note which boxes it came to. Nothing that it
- * computes reaches a picture, since its roundings differ between processors. */
+/* Embree's hierarchy over boxes as user geometry: Embree walks, and the callbacks here note which boxes it comes to.
+ * Nothing that Embree computes reaches a picture, since its roundings differ between processors. */
 #include "bvh/bvh.h"
 
 #if KAGE_EMBREE == 4
@@ -37,7 +37,7 @@ static void bounds(const struct RTCBoundsFunctionArguments *a)
     o->upper_x = b->hi[0], o->upper_y = b->hi[1], o->upper_z = b->hi[2];
 }
 
-/* A box is met: noted, and never told to Embree as a hit, so that it goes on to all others. */
+/* A box is met: it is noted, but not reported to Embree as a hit, so that Embree goes on to all others. */
 static void met(const struct RTCOccludedFunctionNArguments *a)
 {
     const walk *k = (const walk *)(const void *)a->context;
@@ -45,7 +45,7 @@ static void met(const struct RTCOccludedFunctionNArguments *a)
         k->visit(k->user, (int32_t)a->primID);
 }
 
-/* On a walk that ends sooner: no hit is told either, but where the ray ends now. */
+/* On a walk whose end can come nearer: no hit is reported either, only the new end of the ray. */
 static void met_toward(const struct RTCIntersectFunctionNArguments *a)
 {
     const walk *k = (const walk *)(const void *)a->context;
@@ -61,15 +61,15 @@ static bool near_one(struct RTCPointQueryFunctionArguments *a)
     return false; /* the radius stays */
 }
 
-/* What Embree calls while it builds. */
-typedef struct onlooker {
+/* For the calls that Embree makes while it builds. */
+typedef struct monitor {
     bvh_progress *progress;
     void *user;
-} onlooker;
+} monitor;
 
-static bool look(void *user, double share)
+static bool report_progress(void *user, double share)
 {
-    const onlooker *k = user;
+    const monitor *k = user;
     k->progress(k->user, share);
     return true;
 }
@@ -78,7 +78,7 @@ bvh *bvh_new(int n, const bvh_box *box) { return bvh_new_with_progress(n, box, N
 
 bvh *bvh_new_with_progress(int n, const bvh_box *box, bvh_progress *progress, void *user)
 {
-    onlooker k = {progress, user};
+    monitor k = {progress, user};
     bvh *b = calloc(1, sizeof *b);
     if (!b)
         return NULL;
@@ -102,7 +102,7 @@ bvh *bvh_new_with_progress(int n, const bvh_box *box, bvh_progress *progress, vo
     rtcReleaseGeometry(g);
     rtcSetSceneFlags(b->scene, RTC_SCENE_FLAG_ROBUST);
     if (progress)
-        rtcSetSceneProgressMonitorFunction(b->scene, look, &k);
+        rtcSetSceneProgressMonitorFunction(b->scene, report_progress, &k);
     rtcCommitScene(b->scene);
     rtcSetSceneProgressMonitorFunction(b->scene, NULL, NULL);
     if (rtcGetDeviceError(b->device) != RTC_ERROR_NONE) {

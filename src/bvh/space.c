@@ -1,9 +1,11 @@
+/* The space in which a hierarchy keeps its boxes, and rays brought into it. */
 #include "bvh/bvh.h"
 
 #include <math.h>
 
-#define AIR 4e-6     /* of the boxes, in radii: more than what float leaves of coordinates about 1, and of a ray's */
-#define MARGIN 4e-6f /* of a ray's end, likewise */
+/* Boxes are widened, and rays prolonged, by this many radii. Coordinates are at most 1, so float rounds each by 6e-8 at
+ * the most; a box, a ray's origin and its end, 2 away, make some ten of these, and Embree's own arithmetic as many. */
+#define MARGIN 4e-6
 
 bvh_space bvh_space_about(const double lo[3], const double hi[3])
 {
@@ -19,13 +21,14 @@ bvh_box bvh_box_in(const bvh_space *p, const double lo[3], const double hi[3])
     const double C[3] = {p->centre.x, p->centre.y, p->centre.z};
     bvh_box b;
     for (int k = 0; k < 3; k++) {
-        b.lo[k] = (float)((lo[k] - C[k]) / p->radius - AIR);
-        b.hi[k] = (float)((hi[k] - C[k]) / p->radius + AIR);
+        b.lo[k] = (float)((lo[k] - C[k]) / p->radius - MARGIN);
+        b.hi[k] = (float)((hi[k] - C[k]) / p->radius + MARGIN);
     }
     return b;
 }
 
-/* Without a direction, or with NaN, there is no stretch. */
+/* A ray without direction, or with NaN, has no part inside. The sphere is a little larger, by more than the rounding.
+ */
 bool bvh_enter(const bvh_space *p, double reach, vec3 r, vec3 s, double *from, double *to, float at[3], float way[3],
                float *end)
 {
@@ -41,6 +44,6 @@ bool bvh_enter(const bvh_space *p, double reach, vec3 r, vec3 s, double *from, d
     const vec3 q = vec3_scale(vec3_add(near, vec3_scale(s, *from - start)), unit), d = vec3_scale(s, 1 / length);
     at[0] = (float)q.x, at[1] = (float)q.y, at[2] = (float)q.z;
     way[0] = (float)d.x, way[1] = (float)d.y, way[2] = (float)d.z;
-    *end = (float)((*to - *from) * length * unit) + MARGIN;
+    *end = (float)((*to - *from) * length * unit) + (float)MARGIN;
     return true;
 }

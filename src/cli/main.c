@@ -1,14 +1,8 @@
+/* The program: which command is to run. */
 #include "cli/command.h"
-#include "base/version.h"
 
 #include <stdio.h>
 #include <string.h>
-
-#if defined(_OPENMP)
-#include <omp.h>
-#endif
-
-#include "base/real.h"
 
 static const char help[] =
     "kage renders shadows of other objects on bump-mapped surfaces (Sumi and Noma's method).\n"
@@ -52,53 +46,6 @@ static const char help[] =
     "docs/povray.md.\n"
     "Exit status: 0; 1 where a picture can't be written; 2 for bad input.\n";
 
-const char *base_name(const char *path)
-{
-    const char *slash = strrchr(path, '/');
-    return slash ? slash + 1 : path;
-}
-
-int command_fail(errors *e, int status)
-{
-    if (e->text)
-        fputs(e->text, stderr);
-    else
-        fputs("kage: out of memory\n", stderr);
-    if (status == EXIT_INPUT && e->count > 1)
-        fprintf(stderr, "%d errors%s\n", e->count, e->count > ERRORS_SHOWN ? ", the first of them above" : "");
-    errors_free(e);
-    return status;
-}
-
-/* A model is shown without its triangles that have no area; that is nothing to see, but may be a sign. */
-static void tell_flat(const object *o)
-{
-    const shape_spec *f = &o->shape_spec;
-    if (f->kind == SHAPE_MESH && !o->copy_of && f->found.flat)
-        fprintf(stderr, "kage: object %s: %d of the %d triangles in %s have no area; they are left out\n", o->name,
-                f->found.flat, f->triangles + f->found.flat, f->file);
-}
-
-scene *command_scene(const arguments *a)
-{
-    errors e = {0};
-    progress_bar p;
-    progress_bar_start(&p, a->quiet, base_name(a->operand[0]), 0);
-    const progress w = {progress_bar_load, &p};
-#if defined(_OPENMP)
-    if (a->threads > 0) /* also where a scene is made ready (leaf.c) */
-        omp_set_num_threads(a->threads);
-#endif
-    scene *s = scene_read(a->operand[0], a->sets, a->set, &w, &e);
-    progress_bar_end(&p);
-    if (!s)
-        command_fail(&e, EXIT_INPUT);
-    const bool tell = !a->quiet && strcmp(a->command, "check") != 0; /* which tells it itself */
-    for (int k = 0; s && tell && k < s->objects; k++)
-        tell_flat(&s->object[k]);
-    return s;
-}
-
 /* The exit status, once all that was said on stdout has gone out. */
 static int finish(int status)
 {
@@ -108,10 +55,10 @@ static int finish(int status)
     return status ? status : EXIT_OUTPUT;
 }
 
-static int methods(void)
+static int print_methods(void)
 {
-    for (int k = 0; k < method_help_count; k++)
-        printf("%-8s  %s\n", method_helps[k].name, method_helps[k].text);
+    for (int k = 0; k < kage_method_count(); k++)
+        printf("%-8s  %s\n", kage_method_get(k).name, kage_method_get(k).text);
     return 0;
 }
 
@@ -119,9 +66,12 @@ int main(int argc, char **argv)
 {
     static const struct {
         const char *name;
+        int command;
         int (*run)(const arguments *a);
-    } commands[] = {
-        {"render", command_render}, {"check", command_check}, {"pixel", command_pixel}, {"pov", command_pov}};
+    } commands[] = {{"render", COMMAND_RENDER, command_render},
+                    {"check", COMMAND_CHECK, command_check},
+                    {"pixel", COMMAND_PIXEL, command_pixel},
+                    {"pov", COMMAND_POV, command_pov}};
     if (argc < 2) {
         fputs(help, stderr);
         return EXIT_INPUT;
@@ -132,15 +82,15 @@ int main(int argc, char **argv)
             return finish(0);
         }
     if (strcmp(argv[1], "--version") == 0) {
-        printf("kage %s (%s)\n", KAGE_VERSION, REAL_NAME);
+        printf("kage %s (%s)\n", kage_version(), kage_precision());
         return finish(0);
     }
     if (strcmp(argv[1], "methods") == 0)
-        return finish(methods());
+        return finish(print_methods());
     for (size_t k = 0; k < sizeof commands / sizeof *commands; k++)
         if (strcmp(argv[1], commands[k].name) == 0) {
             arguments a;
-            int status = arguments_read(&a, argc, argv) ? commands[k].run(&a) : EXIT_INPUT;
+            int status = arguments_read(&a, argc, argv, commands[k].command) ? commands[k].run(&a) : EXIT_INPUT;
             arguments_free(&a);
             return finish(status);
         }

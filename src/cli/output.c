@@ -1,13 +1,19 @@
 /* What an output must not replace. */
 #include "cli/command.h"
 
-#include <stdio.h>
+#include <string.h>
 #include <sys/stat.h>
 
-bool outputs_spare_inputs(const scene *s, const char *const *output, int outputs)
+bool has_ending(const char *path, const char *ending)
+{
+    const size_t n = strlen(path), m = strlen(ending);
+    return n > m && strcmp(path + n - m, ending) == 0;
+}
+
+bool outputs_spare_inputs(const kage_scene *s, const char *const *output, int outputs)
 {
     for (int k = 0; k < outputs; k++)
-        if (files_have_path(&s->made_from, output[k]))
+        if (kage_scene_uses_file(s, output[k]))
             return usage_error("%s: the scene is made from this file, expected -o with another name", output[k]);
     return true;
 }
@@ -15,7 +21,7 @@ bool outputs_spare_inputs(const scene *s, const char *const *output, int outputs
 bool output_is_replaceable(const char *path)
 {
     struct stat about;
-    if (stat(path, &about) != 0 || !S_ISREG(about.st_mode) || image_png_is_from(path, OUTPUT_SOFTWARE))
+    if (stat(path, &about) != 0 || !S_ISREG(about.st_mode) || kage_file_is_picture(path))
         return true;
     return usage_error("%s: kage did not write this file, expected -o with another name, or --overwrite", path);
 }

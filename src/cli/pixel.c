@@ -1,95 +1,95 @@
-/* kage pixel: the way of one ray, every value by the same stages as in a picture. */
+/* kage pixel: the way of one ray. */
 #include "cli/command.h"
-#include "wave/lane.h"
-#include "render/render.h"
 
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
-static void scalar(const char *name, real x) { printf("%-10s %.9g\n", name, (double)x); }
+static void print_scalar(const char *name, double x) { printf("%-10s %.9g\n", name, x); }
 
-static void vector(const char *name, const vec3s *v)
+static void print_vector(const char *name, const double v[3])
 {
-    printf("%-10s %.9g %.9g %.9g\n", name, (double)v->x[0], (double)v->y[0], (double)v->z[0]);
+    printf("%-10s %.9g %.9g %.9g\n", name, v[0], v[1], v[2]);
 }
 
-static void shape(const hit_group *g, const object *o)
+static void print_bump(const kage_probe *p)
 {
-    vector("Q", &g->q.Q);
-    vector("Qu", &g->q.Qu);
-    vector("Qw", &g->q.Qw);
-    vector("Quu", &g->q.Quu);
-    vector("Quw", &g->q.Quw);
-    vector("Qww", &g->q.Qww);
-    vector("n", &g->n_smooth);
-    if (!o->bump)
-        return;
-    scalar("P", g->h.P[0]);
-    scalar("Pu", g->h.Pu[0]);
-    scalar("Pw", g->h.Pw[0]);
-    scalar("Puu", g->h.Puu[0]);
-    scalar("Puw", g->h.Puw[0]);
-    scalar("Pww", g->h.Pww[0]);
-    scalar("Pmin", o->bump->Pmin);
-    scalar("Pmax", o->bump->Pmax);
-    bs_vec3 s = lane_get(&g->x.s, 0), n = lane_get(&g->n_smooth, 0), Qu = lane_get(&g->q.Qu, 0),
-            Qw = lane_get(&g->q.Qw, 0);
-    bs_vec3 np = bs_perturbed_normal(n, Qu, Qw, g->h.Pu[0], g->h.Pw[0]);
-    printf("%-10s %.9g %.9g %.9g\n", "n'", (double)np.x, (double)np.y, (double)np.z);
-    if (!bs_regular(n, Qu, Qw)) {
+    print_scalar("P", p->P);
+    print_scalar("Pu", p->Pu);
+    print_scalar("Pw", p->Pw);
+    print_scalar("Puu", p->Puu);
+    print_scalar("Puw", p->Puw);
+    print_scalar("Pww", p->Pww);
+    print_scalar("Pmin", p->Pmin);
+    print_scalar("Pmax", p->Pmax);
+    print_vector("n'", p->n_bump);
+    if (!p->regular) {
         printf("|n| is 0 against the edges here: the smooth normal and order none are used\n");
         return;
     }
-    bs_view v = bs_view_of(s, n, Qu, Qw);
-    bs_slab slab = bs_slab_of(v, o->bump->Pmin, o->bump->Pmax);
-    scalar("s.n/|n|", v.sn);
-    scalar("a", v.a);
-    scalar("b", v.b);
-    printf("%-10s %.9g to %.9g in tau\n", "slab", (double)slab.front, (double)slab.back);
+    print_scalar("s.n/|n|", p->sn);
+    print_scalar("a", p->a);
+    print_scalar("b", p->b);
+    printf("%-10s %.9g to %.9g in tau\n", "slab", p->slab[0], p->slab[1]);
 }
 
-/* One method's row: tau, t0, the origin of the shadow rays, the order, and what each light gives. */
-static void row(const tracer *k, int id, workspace *v, const char *label)
+static void print_surface(const kage_probe *p)
 {
-    trace_group(k, id, v);
-    const hit_group *g = &v->g;
-    const int asked = k->scene->object[id].bump ? method_code(k->shadow) : -1;
-    bs_vec3 o = lane_at(&g->x, 0, g->t[0] + g->tau[0]);
-    printf("%-10s %13.6g %13.6g  %11.6g %11.6g %11.6g  %-6s", label, (double)g->tau[0], (double)(g->t[0] + g->tau[0]),
-           (double)o.x, (double)o.y, (double)o.z, g->order[0] == asked ? "" : method_code_name(g->order[0]));
-    for (int l = 0; l < k->scene->lights; l++) {
-        const double share = (double)v->visibility[l][0]; /* of an area's samples */
-        if (share > 0 && share < 1)
-            printf(" %-9.4g", share);
+    print_scalar("t_hit", p->t);
+    print_scalar("u", p->u);
+    print_scalar("w", p->w);
+    print_vector("Q", p->Q);
+    print_vector("Qu", p->Qu);
+    print_vector("Qw", p->Qw);
+    print_vector("Quu", p->Quu);
+    print_vector("Quw", p->Quw);
+    print_vector("Qww", p->Qww);
+    print_vector("n", p->n);
+}
+
+static void print_row(const kage_probe_row *x, int lights)
+{
+    char label[32];
+    snprintf(label, sizeof label, "%s%s", x->method, x->guard ? "" : " bare");
+    printf("%-10s %13.6g %13.6g  %11.6g %11.6g %11.6g  %-6s", label, x->tau, x->t0, x->origin[0], x->origin[1],
+           x->origin[2], x->fell_back ? x->fell_back : "");
+    for (int l = 0; l < lights; l++)
+        if (x->visible[l] > 0 && x->visible[l] < 1) /* of an area's samples */
+            printf(" %-9.4g", x->visible[l]);
         else
-            printf(" %-9s", share > 0 ? "lit" : "shadow");
-    }
-    printf("  %.4f %.4f %.4f\n", (double)g->rgb.x[0], (double)g->rgb.y[0], (double)g->rgb.z[0]);
+            printf(" %-9s", x->visible[l] > 0 ? "lit" : "shadow");
+    printf("  %.4f %.4f %.4f\n", x->color[0], x->color[1], x->color[2]);
 }
 
-static void table(const scene *s, int id, workspace *v)
+static void print_table(const kage_scene_info *s, const kage_probe *p)
 {
-    static const char *const names[] = {"none",   "0",       "1",       "2",       "2+",      "iter:2",
-                                        "iter:4", "march:2", "march:4", "march:8", "march:16"};
     printf("\n%-10s %13s %13s  %11s %11s %11s  %-6s", "method", "tau", "t0", "r + s t0: x", "y", "z", "fell");
-    for (int l = 0; l < s->lights; l++)
-        printf(" %-9.9s", s->light[l].name);
+    for (int l = 0; l < s->light_count; l++)
+        printf(" %-9.9s", s->lights[l].name);
     printf("  red    green  blue\n");
-    for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
-        tracer x = {.scene = s, .guard = true, .layers = true};
-        char label[32];
-        method_parse(names[k], &x.shadow);
-        row(&x, id, v, names[k]);
-        if (x.shadow.kind == METHOD_ORDER && x.shadow.n > 0) {
-            x.guard = false;
-            snprintf(label, sizeof label, "%s bare", names[k]);
-            row(&x, id, v, label);
-        }
-    }
+    for (int k = 0; k < p->row_count; k++)
+        print_row(&p->rows[k], s->light_count);
 }
 
-static bool pixel(const char *text, const scene *s, int *x, int *y)
+static void print_probe(const kage_scene_info *s, int x, int y, const kage_probe *p)
+{
+    printf("pixel      %d,%d\n", x, y);
+    print_vector("r", p->r);
+    print_vector("s", p->s);
+    if (p->object < 0) {
+        printf("meets nothing\n");
+        return;
+    }
+    const kage_object_info *o = &s->objects[p->object];
+    printf("object     %s: %s, %s%s\n", o->name, o->shape, o->bump ? "bump by " : "no bump", o->bump ? o->bump : "");
+    print_surface(p);
+    if (p->bumped)
+        print_bump(p);
+    print_table(s, p);
+    if (p->sends)
+        printf("without the light that it mirrors or lets through; such rays start at r + s t0, too\n");
+}
+
+static bool read_pixel(const char *text, const kage_scene_info *s, int *x, int *y)
 {
     char end;
     if (sscanf(text, "%5d,%5d%c", x, y, &end) != 2 || text[0] == '+' || strpbrk(text, " +-"))
@@ -100,44 +100,18 @@ static bool pixel(const char *text, const scene *s, int *x, int *y)
     return true;
 }
 
-static int print_pixel(const scene *s, int x, int y)
-{
-    workspace *v = workspace_new(s);
-    if (!v) {
-        usage_error("out of memory");
-        return EXIT_OUTPUT;
-    }
-    /* 2+ asks every surface and bump for all of its partials */
-    tracer k = {.scene = s, .shadow = {METHOD_ORDER, 3}, .guard = true, .layers = true};
-    render_ray(&s->camera, s->width, s->height, x + 0.5, y + 0.5, v, 0);
-    const int32_t id = trace_nearest(&k, 1, v);
-    printf("pixel      %d,%d\n", x, y);
-    vector("r", &v->x.r);
-    vector("s", &v->x.s);
-    if (id >= 0) {
-        const object *o = &s->object[id];
-        trace_group(&k, id, v);
-        printf("object     %s: %s, %s%s\n", o->name, o->shape->ops->kind, o->bump ? "bump by " : "no bump",
-               o->bump ? o->bump->ops->kind : "");
-        scalar("t_hit", v->g.t[0]);
-        scalar("u", v->g.u[0]);
-        scalar("w", v->g.w[0]);
-        shape(&v->g, o);
-        table(s, id, v);
-        if (material_sends(&s->material[o->material]))
-            printf("without the light that it mirrors or lets through; such rays start at r + s t0, too\n");
-    } else
-        printf("meets nothing\n");
-    workspace_free(v);
-    return 0;
-}
-
 int command_pixel(const arguments *a)
 {
-    scene *s = command_scene(a);
+    kage_scene *s = load_scene(a);
     int x = 0, y = 0, status = EXIT_INPUT;
-    if (s && pixel(a->operand[1], s, &x, &y))
-        status = print_pixel(s, x, y);
-    scene_free(s);
+    if (s && read_pixel(a->operand[1], kage_scene_get_info(s), &x, &y)) {
+        kage_probe *p;
+        kage_errors *e;
+        status = kage_scene_probe(s, x, y, &p, &e) == KAGE_OK ? 0 : print_errors(e, EXIT_OUTPUT);
+        if (p)
+            print_probe(kage_scene_get_info(s), x, y, p);
+        kage_probe_free(p);
+    }
+    kage_scene_free(s);
     return status;
 }

@@ -1,12 +1,11 @@
 /* kage pov: the scene for POV-Ray. */
 #include "cli/command.h"
-#include "povray/povray.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* The command as the file tells it: the scene's base name, the options, no other path. NULL: out of memory. */
+/* The command as the file shows it: the scene's base name, the options, no other path. NULL: out of memory. */
 static char *command_text(const arguments *a)
 {
     const char *name = base_name(a->operand[0]);
@@ -26,30 +25,36 @@ static char *command_text(const arguments *a)
     return text;
 }
 
+static int write_scene(kage_scene *s, const arguments *a)
+{
+    char *text = command_text(a);
+    if (!text) {
+        usage_error("out of memory");
+        return EXIT_OUTPUT;
+    }
+    const kage_povray_options how = {.command = text, .no_cast = a->no_cast};
+    kage_povray_report r;
+    kage_errors *e;
+    const kage_status status = kage_scene_write_povray(s, a->output[0], &how, &r, &e);
+    free(text);
+    if (status != KAGE_OK)
+        return print_errors(e, status == KAGE_BAD_INPUT ? EXIT_INPUT : EXIT_OUTPUT);
+    if (r.coarse)
+        fprintf(stderr,
+                "kage: object %s: coarse mesh: heights are off by up to %.3g, %.3g pixels; a finer one has too many "
+                "triangles\n",
+                r.coarse, r.height, r.pixels);
+    return 0;
+}
+
 int command_pov(const arguments *a)
 {
     if (!a->outputs) {
         usage_error("'kage pov' lacks -o FILE.pov; see kage --help");
         return EXIT_INPUT;
     }
-    scene *s = command_scene(a);
-    errors e = {0};
-    if (!s)
-        return EXIT_INPUT;
-    if (!outputs_spare_inputs(s, a->output, 1) || !pov_possible(s, &e)) {
-        scene_free(s);
-        return e.count ? command_fail(&e, EXIT_INPUT) : EXIT_INPUT;
-    }
-    char *text = command_text(a);
-    pov_options how = {text, a->no_cast};
-    pov_report r;
-    bool good = text ? pov_write(s, &how, a->output[0], &r, &e) : usage_error("out of memory");
-    if (good && r.coarse)
-        fprintf(stderr,
-                "kage: object %s: coarse mesh: heights are off by up to %.3g, %.3g pixels; a finer one has too many "
-                "triangles\n",
-                r.coarse, r.height, r.pixels);
-    free(text);
-    scene_free(s);
-    return good ? 0 : e.count ? command_fail(&e, EXIT_OUTPUT) : EXIT_OUTPUT;
+    kage_scene *s = load_scene(a);
+    const int status = s && outputs_spare_inputs(s, a->output, 1) ? write_scene(s, a) : EXIT_INPUT;
+    kage_scene_free(s);
+    return status;
 }

@@ -1,12 +1,13 @@
+/* The progress bar. */
 #include "cli/command.h"
-#include "render/stats.h"
 
 #include <stdio.h>
+#include <string.h>
 #include <unistd.h>
 
 void progress_bar_start(progress_bar *p, bool quiet, const char *name, long pixels)
 {
-    *p = (progress_bar){.on = !quiet && isatty(STDERR_FILENO), .start = stats_clock(), .pixels = pixels, .name = name};
+    *p = (progress_bar){.on = !quiet && isatty(STDERR_FILENO), .start = clock_now(), .pixels = pixels, .name = name};
     p->shown = p->start;
 }
 
@@ -14,7 +15,7 @@ void progress_bar_start(progress_bar *p, bool quiet, const char *name, long pixe
 enum { BAR = 30 };
 static bool is_due(progress_bar *p, double share, char bar[BAR + 1])
 {
-    const double now = stats_clock();
+    const double now = p->on ? clock_now() : 0;
     if (!p->on || now - p->shown < 0.1)
         return false;
     p->shown = now;
@@ -24,28 +25,32 @@ static bool is_due(progress_bar *p, double share, char bar[BAR + 1])
     return true;
 }
 
-void progress_bar_show(void *user, long done, long all)
+int progress_bar_render(void *user, const char *what, double share)
 {
     progress_bar *p = user;
     char bar[BAR + 1];
-    const double share = (double)done / (double)all;
+    (void)what;
     if (!is_due(p, share, bar))
-        return;
+        return 0;
     const double gone = p->shown - p->start;
     fprintf(stderr, "\r%.24s [%s] %3.0f %%  %.1f Mpixel/s  %.1f s left \033[K", p->name, bar, 100 * share,
             share * (double)p->pixels / gone / 1e6, gone / share - gone);
+    return 0;
 }
 
-void progress_bar_load(void *user, const char *what, double share)
+int progress_bar_load(void *user, const char *what, double share)
 {
     progress_bar *p = user;
     char bar[BAR + 1];
-    if (p->what != what) { /* the first of each is seen, and the last of none hides it */
-        p->what = what;
+    if (strcmp(what, "objects") == 0) /* most take no time that anybody sees */
+        return 0;
+    if (strcmp(p->what, what) != 0) { /* the first of each is seen, and the last of none hides it */
+        snprintf(p->what, sizeof p->what, "%s", what);
         p->shown = 0;
     }
     if (is_due(p, share, bar))
         fprintf(stderr, "\r%.24s [%s] %3.0f %%  %s \033[K", p->name, bar, 100 * share, what);
+    return 0;
 }
 
 void progress_bar_end(progress_bar *p)

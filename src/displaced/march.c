@@ -1,14 +1,11 @@
+/* The search along rays for the displaced surface over a domain, many rays side by side. */
 #include "displaced/march.h"
 
 #include "wave/lane.h"
-#include "method/method.h"
-
-#include <string.h>
 
 enum {
-    STEPS = 4096, /* of a search along one ray */
-    REFINE = 64,  /* halvings at most: more than a real has digits */
-    COMPACT = 4,  /* after so many steps the rays that have ended are dropped from the wave */
+    REFINE = 64, /* halvings at most: more than a real has digits */
+    COMPACT = 4, /* after so many steps the rays that have ended are dropped from the wave */
 };
 
 /* What is known of the rays that are still searched, side by side. */
@@ -17,7 +14,7 @@ typedef struct search {
     int32_t lane[LANES]; /* whose ray it is */
     rays x;
     real t[LANES], gap[LANES], end[LANES], shortest[LANES], tolerance[LANES];
-    real side[LANES]; /* 1: the ray comes from above the rough surface; -1: from below; 0: not known yet */
+    real side[LANES]; /* 1: the ray comes from above the displaced surface; -1: from below; 0: not known yet */
     int32_t own[LANES], left[LANES], open[LANES]; /* starts on this part; has clearly left it; is still searched */
     closest_points p;
     bump_values h;
@@ -36,13 +33,13 @@ STAGE static void gaps(search *restrict s, real *restrict slope)
     }
 }
 
-static void look(const domain *f, const bump *P, search *s, real *slope)
+static void evaluate(const domain *f, const bump *P, search *s, real *slope)
 {
     real u[LANES], w[LANES];
-    f->foot(f, s->n, s->lane, &s->x, s->t, &s->p);
-    if (f->loose)
+    f->closest(f, s->n, s->lane, &s->x, s->t, &s->p);
+    if (f->unclamped)
         f->within(f, s->n, s->lane, &s->p, u, w);
-    P->ops->eval(P, s->n, f->loose ? u : s->p.u, f->loose ? w : s->p.w, 1, &s->h);
+    P->ops->eval(P, s->n, f->unclamped ? u : s->p.u, f->unclamped ? w : s->p.w, 1, &s->h);
     s->evaluations += s->n;
     gaps(s, slope);
 }
@@ -84,7 +81,7 @@ static displaced_result refine(const domain *f, const bump *P, search *s, int i,
     lane_set(&one.x.s, 0, lane_get(&s->x.s, i));
     one.t[0] = b;
     for (int k = 0; k < REFINE; k++) {
-        look(f, P, &one, slope);
+        evaluate(f, P, &one, slope);
         real gap = s->side[i] * one.gap[0], size = real_abs(gap);
         if (size < least) {
             least = size;
@@ -108,26 +105,26 @@ static displaced_result refine(const domain *f, const bump *P, search *s, int i,
     return least <= (s->own[i] ? 2 : 1) * s->tolerance[i] ? DISPLACED_HIT : DISPLACED_UNCERTAIN;
 }
 
-/* Whether the foot of a hit is on the piece, and not on what extends it. */
-static bool counts(const domain *f, const search *s, int i, real t)
+/* Whether the closest point to a hit is on the piece, and not on what extends it. */
+static bool on_piece(const domain *f, const search *s, int i, real t)
 {
     rays x;
     closest_points p;
     real u, w;
-    if (!f->loose)
+    if (!f->unclamped)
         return true;
     lane_set(&x.r, 0, lane_get(&s->x.r, i));
     lane_set(&x.s, 0, lane_get(&s->x.s, i));
-    f->foot(f, 1, &s->lane[i], &x, &t, &p);
+    f->closest(f, 1, &s->lane[i], &x, &t, &p);
     f->within(f, 1, &s->lane[i], &p, &u, &w);
     return u == p.u[0] && w == p.w[0];
 }
 
-/* Open the search on the rays whose shell is not empty. */
+/* Open the search on the rays whose stretch is not empty. */
 static void begin(const domain *f, const bump *P, int n, const rays *x, const real *end, const int32_t *own, search *s)
 {
     real t0[LANES], t1[LANES];
-    f->shell(f, n, x, end, P->Pmin, P->Pmax, t0, t1);
+    f->bound(f, n, x, end, P->Pmin, P->Pmax, t0, t1);
     s->n = 0;
     s->evaluations = 0;
     for (int i = 0; i < n; i++) {
@@ -145,7 +142,7 @@ static void begin(const domain *f, const bump *P, int n, const rays *x, const re
         s->tolerance[k] = 8 * R(REAL_ROUNDING) * size;
         s->shortest[k] = real_max((t1[i] - t0[i]) / (real)f->steps, s->tolerance[k] / real_sqrt(bs_dot(d, d)));
         s->side[k] = 0;
-        /* one whose stretch begins farther on comes from what the shell leaves out */
+        /* one whose stretch begins farther on comes from what the bound leaves out */
         s->own[k] = own && own[i] && t0[i] <= s->shortest[k];
         s->left[k] = !s->own[k];
         s->open[k] = 1;
@@ -169,8 +166,8 @@ static real tolerance_of(const search *s, int i)
     return real_max(s->tolerance[i], real_min(off, 8 * s->tolerance[i]));
 }
 
-long displaced_search_over(const domain *f, const bump *P, int n, const rays *x, const real *end, const int32_t *own,
-                           real *t, int32_t *found)
+long displaced_search(const domain *f, const bump *P, int n, const rays *x, const real *end, const int32_t *own,
+                      real *t, int32_t *found)
 {
     search s;
     real slope[LANES];
@@ -178,8 +175,8 @@ long displaced_search_over(const domain *f, const bump *P, int n, const rays *x,
         found[i] = DISPLACED_MISSED;
     begin(f, P, n, x, end, own, &s);
     for (int step = 0; step < f->steps && s.n; step++) {
-        look(f, P, &s, slope);
-        f->steep(f, s.n, s.lane, &s.x, &s.p, P->Pu_max, P->Pw_max, s.rate, s.reach);
+        evaluate(f, P, &s, slope);
+        f->lipschitz(f, s.n, s.lane, &s.x, &s.p, P->Pu_max, P->Pw_max, s.rate, s.reach);
         for (int i = 0; i < s.n; i++) {
             if (!s.open[i])
                 continue;
@@ -197,13 +194,13 @@ long displaced_search_over(const domain *f, const bump *P, int n, const rays *x,
                 above = -above;
             }
             s.left[i] |= above > s.tolerance[i];
-            /* At the end of the shell, P = Pmin below it, rounding must not let the ray slip through. */
+            /* At the end of the stretch, P = Pmin below it, rounding must not let the ray slip through. */
             bool last = s.t[i] >= s.end[i], touches = last && above <= s.tolerance[i] && s.side[i] * slope[i] < 0;
             if (above <= -least || (touches && s.left[i])) {
                 /* no step goes past a crossing by more than the shortest does */
                 real from = real_max(s.t[i] - s.shortest[i], 0), at;
                 displaced_result end_of = refine(f, P, &s, i, from, s.t[i], &at);
-                if (counts(f, &s, i, at)) {
+                if (on_piece(f, &s, i, at)) {
                     t[s.lane[i]] = at;
                     found[s.lane[i]] = (int32_t)end_of;
                     s.open[i] = 0;
@@ -226,179 +223,9 @@ long displaced_search_over(const domain *f, const bump *P, int n, const rays *x,
     }
     compact(&s);
     for (int i = 0; i < s.n; i++)
-        if (counts(f, &s, i, s.t[i])) {
+        if (on_piece(f, &s, i, s.t[i])) {
             t[s.lane[i]] = s.t[i];
             found[s.lane[i]] = DISPLACED_UNCERTAIN;
         }
     return s.evaluations;
-}
-
-/* ---- a part of a surface, the same for every lane ---- */
-
-typedef struct part_ground {
-    domain base;
-    const surface *f;
-    int part;
-} part_ground;
-
-static const part_ground *part_of(const domain *g) { return (const part_ground *)g; }
-
-static void part_shell(const domain *g, int n, const rays *x, const real *end, real Pmin, real Pmax, real *t0, real *t1)
-{
-    const part_ground *k = part_of(g);
-    k->f->ops->shell(k->f, k->part, n, x, end, Pmin, Pmax, t0, t1);
-}
-
-static void part_foot(const domain *g, int n, const int32_t *lane, const rays *x, const real *t, closest_points *p)
-{
-    const part_ground *k = part_of(g);
-    (void)lane;
-    k->f->ops->foot(k->f, k->part, n, x, t, p);
-}
-
-static void part_steep(const domain *g, int n, const int32_t *lane, const rays *x, const closest_points *p, real Pu_max,
-                       real Pw_max, real *rate, real *reach)
-{
-    const part_ground *k = part_of(g);
-    (void)lane;
-    k->f->ops->steep(k->f, k->part, n, x, p, Pu_max, Pw_max, rate, reach);
-}
-
-static void part_within(const domain *g, int n, const int32_t *lane, const closest_points *p, real *u, real *w)
-{
-    const part_ground *k = part_of(g);
-    double U[2], W[2];
-    (void)lane;
-    k->f->ops->extent(k->f, k->part, U, W);
-    for (int i = 0; i < n; i++) {
-        u[i] = real_min(real_max(p->u[i], (real)U[0]), (real)U[1]);
-        w[i] = real_min(real_max(p->w[i], (real)W[0]), (real)W[1]);
-    }
-}
-
-long displaced_search(const surface *f, const bump *P, int part, int n, const rays *x, const real *end,
-                      const int32_t *on, real *t, int32_t *found)
-{
-    const part_ground k = {{part_shell, part_foot, part_steep, part_within, f->ops->loose, STEPS}, f, part};
-    int32_t own[LANES];
-    for (int i = 0; i < n; i++)
-        own[i] = on && on[i] == part;
-    return displaced_search_over(&k.base, P, n, x, end, own, t, found);
-}
-
-static void keep_nearer(int n, int part, const real *t, const int32_t *found, int32_t id, hits *h, displaced_counts *c)
-{
-    for (int i = 0; i < n; i++)
-        if (found[i] != DISPLACED_MISSED && t[i] > 0 && t[i] < h->t[i]) {
-            h->t[i] = t[i];
-            h->id[i] = id;
-            h->part[i] = part;
-            c->uncertain += found[i] == DISPLACED_UNCERTAIN;
-        }
-}
-
-void displaced_hit(const surface *f, const bump *P, int n, const rays *x, const ray_origins *from, int32_t id, hits *h,
-                   displaced_counts *c)
-{
-    real t[LANES];
-    int32_t found[LANES], on[LANES];
-    if (f->rough) {
-        f->rough->hit(f, P, n, x, from, id, h, c);
-        return;
-    }
-    for (int i = 0; from && i < n; i++)
-        on[i] = from->id[i] == id ? from->part[i] : -1;
-    for (int part = 0; part < f->ops->parts; part++) {
-        c->evaluations += displaced_search(f, P, part, n, x, h->t, from ? on : NULL, t, found);
-        keep_nearer(n, part, t, found, id, h, c);
-    }
-}
-
-void displaced_occlude(const surface *f, const bump *P, int n, const rays *x, const int32_t *on, real *lit,
-                       displaced_counts *c)
-{
-    real t[LANES], end[LANES];
-    int32_t found[LANES];
-    if (f->rough) {
-        f->rough->occlude(f, P, n, x, on, lit, c);
-        return;
-    }
-    for (int i = 0; i < n; i++)
-        end[i] = lit[i] > 0 ? R(1) : R(-1); /* what is dark already need not be searched */
-    for (int part = 0; part < f->ops->parts; part++) {
-        c->evaluations += displaced_search(f, P, part, n, x, end, on, t, found);
-        for (int i = 0; i < n; i++)
-            if (found[i] != DISPLACED_MISSED) {
-                lit[i] = 0;
-                c->uncertain += found[i] == DISPLACED_UNCERTAIN;
-            }
-    }
-}
-
-/* The feet of a group's hits, each on its own part. */
-static void group_feet(const surface *f, const hit_group *g, closest_points *all)
-{
-    f->ops->foot(f, 0, g->n, &g->x, g->t, all);
-    for (int part = 1; part < f->ops->parts; part++) {
-        closest_points p;
-        f->ops->foot(f, part, g->n, &g->x, g->t, &p);
-        for (int i = 0; i < g->n; i++)
-            if (g->part[i] == part) {
-                all->u[i] = p.u[i];
-                all->w[i] = p.w[i];
-                lane_set(&all->gu, i, lane_get(&p.gu, i));
-                lane_set(&all->gw, i, lane_get(&p.gw, i));
-                lane_set(&all->gh, i, lane_get(&p.gh, i));
-            }
-    }
-}
-
-void displaced_shape(const surface *f, const bump *P, hit_group *g)
-{
-    closest_points p;
-    if (f->rough)
-        f->rough->closest_points(f, P, g->n, &g->x, g->t, g->part, &p);
-    else
-        group_feet(f, g, &p);
-    memcpy(g->u, p.u, sizeof g->u);
-    memcpy(g->w, p.w, sizeof g->w);
-    P->ops->eval(P, g->n, g->u, g->w, 1, &g->h);
-    f->ops->eval(f, g->n, g->part, g->u, g->w, 1, &g->q);
-    /* the rough surface is where height - P = 0: its normal is the gradient of that */
-    for (int i = 0; i < g->n; i++) {
-        bs_vec3 h = lane_get(&p.gh, i), u = lane_get(&p.gu, i), w = lane_get(&p.gw, i);
-        bs_vec3 n = {h.x - g->h.Pu[i] * u.x - g->h.Pw[i] * w.x, h.y - g->h.Pu[i] * u.y - g->h.Pw[i] * w.y,
-                     h.z - g->h.Pu[i] * u.z - g->h.Pw[i] * w.z};
-        n = lane_unit(n);
-        lane_set(&g->n_smooth, i, n);
-        lane_set(&g->n_bump, i, n);
-        lane_set(&g->q.Q, i, lane_at(&g->x, i, g->t[i]));
-        g->tau[i] = 0;
-        g->order[i] = ORDER_EXACT;
-    }
-}
-
-void displaced_shift(const surface *f, const bump *P, hit_group *g, displaced_counts *c)
-{
-    hits h;
-    for (int i = 0; i < g->n; i++) {
-        h.t[i] = REAL_FAR;
-        h.id[i] = -1;
-    }
-    displaced_hit(f, P, g->n, &g->x, NULL, 0, &h, c);
-    for (int i = 0; i < g->n; i++) {
-        bs_vec3 n = lane_get(&g->n_smooth, i), Qu = lane_get(&g->q.Qu, i), Qw = lane_get(&g->q.Qw, i);
-        bs_real sn = bs_dot(lane_get(&g->x.s, i), n) / real_sqrt(bs_dot(n, n));
-        bs_view v = {sn, 0, 0};
-        real order_0 = bs_regular(n, Qu, Qw) ? bs_tau0(v, g->h.P[i]) : 0;
-        g->tau[i] = h.id[i] == 0 ? h.t[i] - g->t[i] : order_0;
-        g->order[i] = h.id[i] == 0 ? ORDER_EXACT : 0;
-    }
-}
-
-bool displaced_prepare(surface *f, const bump *P) { return !f->rough || f->rough->prepare(f, P); }
-
-bool displaced_possible(const bump *P)
-{
-    return P->Pmax - P->Pmin < REAL_FAR && P->Pu_max < REAL_FAR && P->Pw_max < REAL_FAR;
 }

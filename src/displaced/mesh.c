@@ -1,27 +1,31 @@
-/* True displacement of a mesh: Q + P N over each triangle, N the unit of the normal between its corners. What stands
+/* Displaced surfaces over meshes: Q + P N over each triangle, N the unit of the normal between its corners. What stands
  * over a triangle is a prism whose sides two neighbours share where their normals at the common corners are the same:
- * then the rough surface has no gap. It has one at a crease, and at a seam of the texture where P differs.
+ * there the displaced surface has no gap. It has one at a crease, and at a seam of the texture where P differs.
  *
- * displace.c searches along a ray over each triangle whose prism the ray may pass, many pairs side by side. The foot of
- * a place is that from which N leads to it, by Newton's iteration.
+ * A ray is searched (march.h) over each triangle whose prism it may pass, many pairs of rays and triangles side by
+ * side. The closest point to a place is that from which N leads to it, by Newton's iteration.
  */
-#include "mesh/mesh.h"
+#include "displaced/form.h"
 
 #include "displaced/march.h"
+#include "mesh/mesh.h"
 #include "wave/lane.h"
 
 #include <stdlib.h>
 
 enum {
-    SEARCH = 1024, /* steps along a ray over one triangle: what is steeper than they tell apart is at a pole of the
-                      texture */
-    STEPS = 4, /* of Newton's iteration: normals turn by less than a right angle over a triangle, and by far less on a
-                  fine mesh */
+    SEARCH = 1024, /* step limit per triangle, reached only near poles of the texture */
+    STEPS = 4, /* of Newton's iteration: normals turn by less than a right angle over a triangle, mostly by far less */
 };
 
-#define OVERLAP 1e-4 /* by how much of a triangle its rough surface goes on beyond it, so that no hit is between two   \
-                      */
-#define AIR 1e-5     /* of the boxes, against float */
+#define OVERLAP                                                                                                        \
+    1e-4          /* of a triangle: its displaced surface goes on beyond it by this, so that no hit is between two     \
+                   */
+#define ROOM 1e-5 /* of the mesh's radius, about boxes and shells: more than float's roundings of places */
+#define CONVERGED 1e-16 /* squared distance over the triangle's area: the step before was off by 1e-8 of its size */
+#define STEEPEST 1e-6   /* least volume of the prism over its area, where normals meet: bounds gradients */
+#define FLATTEST 1e-6   /* least turn of normals: normals that turn by less meet beyond a million sides */
+#define ROUNDINGS 64    /* a hit's height, by the ray, Newton's iteration and P, is off by fewer */
 
 static inline vec3 get(const vec3s *v, int i) { return (vec3){(double)v->x[i], (double)v->y[i], (double)v->z[i]}; }
 static inline bs_vec3 to_real(vec3 v) { return (bs_vec3){(real)v.x, (real)v.y, (real)v.z}; }
@@ -37,7 +41,7 @@ static vec3 mean_normal(const mesh_triangle *x, double *bulge)
     return n;
 }
 
-static void rough_box(const mesh_triangle *x, double lo, double hi, double box[2][3])
+static void prism_box(const mesh_triangle *x, double lo, double hi, double box[2][3])
 {
     double bulge;
     mean_normal(x, &bulge);
@@ -54,29 +58,29 @@ static void rough_box(const mesh_triangle *x, double lo, double hi, double box[2
     }
 }
 
-static bool rough_prepare(surface *base, const bump *P)
+static const mesh *mesh_of(const displaced *d) { return (const mesh *)d->smooth; }
+
+static double greatest_height(const bump *P) { return fmax(fabs((double)P->Pmin), fabs((double)P->Pmax)); }
+
+static bool over_mesh_prepare(displaced *d)
 {
-    mesh *f = (mesh *)base;
-    if (f->rough && f->lowest <= (double)P->Pmin && f->highest >= (double)P->Pmax)
-        return true;
-    const double lo = f->lowest = fmin(f->lowest, (double)P->Pmin), hi = f->highest = fmax(f->highest, (double)P->Pmax);
-    f->height = fmax(fabs(lo), fabs(hi));
+    const mesh *f = mesh_of(d);
+    const double lo = fmin(0, (double)d->P->Pmin), hi = fmax(0, (double)d->P->Pmax);
+    const double air = ROOM * (f->space.radius + greatest_height(d->P));
     bvh_box *box = malloc(sizeof *box * (size_t)f->d.n);
-    const double air = AIR * (f->space.radius + f->height);
     for (int i = 0; box && i < f->d.n; i++) {
         const mesh_triangle x = mesh_triangle_of(f, i);
         double b[2][3];
-        rough_box(&x, lo, hi, b);
+        prism_box(&x, lo, hi, b);
         for (int a = 0; a < 3; a++) {
             b[0][a] -= air;
             b[1][a] += air;
         }
         box[i] = bvh_box_in(&f->space, b[0], b[1]);
     }
-    bvh_free(f->rough);
-    f->rough = box ? bvh_new(f->d.n, box) : NULL;
+    d->prisms = box ? bvh_new(f->d.n, box) : NULL;
     free(box);
-    return f->rough;
+    return d->prisms;
 }
 
 /* Narrow t0..t1 to where a + b t is in lo..hi. */
@@ -93,7 +97,8 @@ static void narrow(double a, double b, double lo, double hi, double *t0, double 
 
 /* Between what is lowest and highest of it along the mean normal, and not farther out past each side than the normals
  * there lean. */
-static bool shell_of(const mesh_triangle *x, double air, vec3 r, vec3 s, double lo, double hi, double *from, double *to)
+static bool stretch_of(const mesh_triangle *x, double air, vec3 r, vec3 s, double lo, double hi, double *from,
+                       double *to)
 {
     double bulge, low = HUGE_VAL, high = -HUGE_VAL;
     const vec3 n = mean_normal(x, &bulge);
@@ -114,7 +119,7 @@ static bool shell_of(const mesh_triangle *x, double air, vec3 r, vec3 s, double 
     return *from <= *to;
 }
 
-/* ---- feet ---- */
+/* ---- closest points ---- */
 
 mesh_prism mesh_prism_at(const mesh_triangle *x, double b, double c, double h)
 {
@@ -139,13 +144,12 @@ void mesh_gradients(const mesh_triangle *x, const mesh_prism *p, double det, vec
 /* Not farther beyond a triangle than it is wide: what lies there is another's. */
 static double near_triangle(double b) { return b < -1 ? -1 : b > 2 ? 2 : b; }
 
-static void foot_of(const mesh_triangle *x, vec3 at, closest_points *out, int lane)
+static void closest_of(const mesh_triangle *x, vec3 at, closest_points *out, int lane)
 {
     const vec3 n = vec3_cross(vec3_sub(x->at[1], x->at[0]), vec3_sub(x->at[2], x->at[0]));
     double b = 1.0 / 3, c = 1.0 / 3, h = vec3_dot(vec3_sub(at, x->at[0]), n) / vec3_length(n);
     double off = HUGE_VAL, area = vec3_length(n);
-    for (int step = 0; step < STEPS && off > 1e-16 * area;
-         step++) { /* what is off by 1e-8 of the size, squared: the step was the last */
+    for (int step = 0; step < STEPS && off > CONVERGED * area; step++) {
         const mesh_prism p = mesh_prism_at(x, b, c, h);
         const vec3 d = vec3_sub(at, p.place), up = vec3_cross(p.Xb, p.Xc);
         const double det = vec3_dot(up, p.N), k = det > 0 ? 1 / det : 0; /* beyond where normals meet: stay */
@@ -156,7 +160,7 @@ static void foot_of(const mesh_triangle *x, vec3 at, closest_points *out, int la
     }
     const mesh_prism p = mesh_prism_at(x, b, c, h);
     const vec3 up = vec3_cross(p.Xb, p.Xc);
-    const double det = fmax(vec3_dot(up, p.N), 1e-6 * area); /* beyond where normals meet: as steep as may be */
+    const double det = fmax(vec3_dot(up, p.N), STEEPEST * area);
     vec3 gu, gw;
     mesh_gradients(x, &p, det, &gu, &gw);
     out->u[lane] = (real)(x->u[0] + b * (x->u[1] - x->u[0]) + c * (x->u[2] - x->u[0]));
@@ -167,41 +171,42 @@ static void foot_of(const mesh_triangle *x, vec3 at, closest_points *out, int la
     lane_set(&out->gh, lane, to_real(vec3_scale(up, 1 / det)));
 }
 
-/* ---- triangles as the ground of a search ---- */
+/* ---- triangles as the domain of a search ---- */
 
-typedef struct pieces {
+typedef struct triangles {
     domain base;
-    const mesh *f;
+    double radius, height;  /* of the mesh; of the highest place over it */
     const mesh_triangle *x; /* of each lane */
-} pieces;
+} triangles;
 
-static const mesh_triangle *piece(const domain *g, int32_t lane) { return &((const pieces *)g)->x[lane]; }
+static const mesh_triangle *piece(const domain *g, int32_t lane) { return &((const triangles *)g)->x[lane]; }
 
-static void pieces_shell(const domain *g, int n, const rays *x, const real *end, real Pmin, real Pmax, real *t0,
-                         real *t1)
+static void triangles_bound(const domain *g, int n, const rays *x, const real *end, real Pmin, real Pmax, real *t0,
+                            real *t1)
 {
-    const double air = AIR * ((const pieces *)g)->f->space.radius;
+    const double air = ROOM * ((const triangles *)g)->radius;
     for (int i = 0; i < n; i++) {
         double from = 0, to = (double)end[i];
         const bool some =
-            shell_of(piece(g, i), air, get(&x->r, i), get(&x->s, i), (double)Pmin, (double)Pmax, &from, &to);
+            stretch_of(piece(g, i), air, get(&x->r, i), get(&x->s, i), (double)Pmin, (double)Pmax, &from, &to);
         t0[i] = some ? (real)from : R(1);
         t1[i] = some ? real_min((real)to, end[i]) : R(-1);
     }
 }
 
-static void pieces_foot(const domain *g, int n, const int32_t *lane, const rays *x, const real *t, closest_points *p)
+static void triangles_closest(const domain *g, int n, const int32_t *lane, const rays *x, const real *t,
+                              closest_points *p)
 {
     for (int i = 0; i < n; i++)
-        foot_of(piece(g, lane[i]), vec3_add(get(&x->r, i), vec3_scale(get(&x->s, i), (double)t[i])), p, i);
+        closest_of(piece(g, lane[i]), vec3_add(get(&x->r, i), vec3_scale(get(&x->s, i), (double)t[i])), p, i);
 }
 
-/* By how much normals turn over a triangle for its shortest side says how far it is to where they meet; halfway there
- * gradients at most double. */
-static void pieces_steep(const domain *g, int n, const int32_t *lane, const rays *x, const closest_points *p,
-                         real Pu_max, real Pw_max, real *rate, real *reach)
+/* Normals that turn by `turn` along the shortest side meet about side/turn away. Halfway there gradients at most
+ * double. Heights beyond a tenth of that distance are not counted on: there P folds the surface anyway. */
+static void triangles_lipschitz(const domain *g, int n, const int32_t *lane, const rays *x, const closest_points *p,
+                                real Pu_max, real Pw_max, real *rate, real *reach)
 {
-    const double height = ((const pieces *)g)->f->height;
+    const double height = ((const triangles *)g)->height;
     for (int i = 0; i < n; i++) {
         const mesh_triangle *f = piece(g, lane[i]);
         double turn = 0, side = HUGE_VAL;
@@ -209,7 +214,7 @@ static void pieces_steep(const domain *g, int n, const int32_t *lane, const rays
             turn = fmax(turn, vec3_length(vec3_sub(f->normal[(k + 1) % 3], f->normal[k])));
             side = fmin(side, vec3_length(vec3_sub(f->at[(k + 1) % 3], f->at[k])));
         }
-        const double bend = side / fmax(turn, 1e-6), radius = fmax(bend - height, 0.1 * bend);
+        const double bend = side / fmax(turn, FLATTEST), radius = fmax(bend - height, 0.1 * bend);
         const bs_vec3 gu = lane_get(&p->gu, i), gw = lane_get(&p->gw, i), gh = lane_get(&p->gh, i),
                       d = lane_get(&x->s, i);
         const real s = real_sqrt(bs_dot(d, d));
@@ -220,9 +225,9 @@ static void pieces_steep(const domain *g, int n, const int32_t *lane, const rays
     }
 }
 
-/* (u,w) of a place of the triangle, as far as it goes on, that is near the foot: the foot's own where it is one. So P
- * goes on from there without a step, which a ray that comes by would cross. */
-static void pieces_within(const domain *g, int n, const int32_t *lane, const closest_points *p, real *u, real *w)
+/* (u,w) of a place of the triangle, as far as it goes on, that is near the closest point: that itself where it is one.
+ * So P goes on from there without a step, which a ray that comes by would cross. */
+static void triangles_within(const domain *g, int n, const int32_t *lane, const closest_points *p, real *u, real *w)
 {
     for (int i = 0; i < n; i++) {
         const mesh_triangle *x = piece(g, lane[i]);
@@ -242,13 +247,15 @@ static void pieces_within(const domain *g, int n, const int32_t *lane, const clo
 
 /* ---- rays and triangles ---- */
 
-typedef struct tour {
+typedef struct traversal {
+    const displaced *d;
     const mesh *f;
     const bump *P;
+    double height;
     const rays *x;
     real end[LANES];
-    bool own[LANES]; /* the ray starts on the rough surface */
-    displaced_counts counts;
+    bool own[LANES]; /* the ray starts on the displaced surface */
+    long evaluations, uncertain;
     real *t; /* the nearest hits so far */
     int32_t *index_hit;
     int lane;
@@ -257,10 +264,10 @@ typedef struct tour {
     int32_t of[LANES], index[LANES]; /* lane and triangle */
     mesh_triangle triangle[LANES];
     rays y;
-} tour;
+} traversal;
 
-/* Whether each ray starts on the rough surface of its triangle. */
-static void starts_on(tour *k, const pieces *g, int32_t *own)
+/* Whether each ray starts on the displaced surface of its triangle. */
+static void starts_on(traversal *k, const triangles *g, int32_t *own)
 {
     real zero[LANES] = {0}, u[LANES], w[LANES];
     int32_t lane[LANES];
@@ -268,34 +275,35 @@ static void starts_on(tour *k, const pieces *g, int32_t *own)
     bump_values h;
     for (int i = 0; i < k->n; i++)
         lane[i] = i;
-    pieces_foot(&g->base, k->n, lane, &k->y, zero, &p);
-    pieces_within(&g->base, k->n, lane, &p, u, w);
+    triangles_closest(&g->base, k->n, lane, &k->y, zero, &p);
+    triangles_within(&g->base, k->n, lane, &p, u, w);
     k->P->ops->eval(k->P, k->n, u, w, 0, &h);
-    k->counts.evaluations += k->n;
+    k->evaluations += k->n;
     for (int i = 0; i < k->n; i++) {
-        const double size = vec3_length(get(&k->y.r, i)) + k->f->height;
+        const double size = vec3_length(get(&k->y.r, i)) + k->height;
         const bool in = u[i] == p.u[i] && w[i] == p.w[i];
-        own[i] = k->own[k->of[i]] && in && fabs((double)p.h[i] - (double)h.P[i]) <= 64 * REAL_ROUNDING * size;
+        own[i] = k->own[k->of[i]] && in && fabs((double)p.h[i] - (double)h.P[i]) <= ROUNDINGS * REAL_ROUNDING * size;
     }
 }
 
 /* Each search knows its ray and its triangle alone, so that nothing depends on the order. */
-static void search_all(tour *k)
+static void search_all(traversal *k)
 {
-    const pieces g = {{.shell = pieces_shell,
-                       .foot = pieces_foot,
-                       .steep = pieces_steep,
-                       .within = pieces_within,
-                       .loose = true,
-                       .steps = SEARCH},
-                      k->f,
-                      k->triangle};
+    const triangles g = {{.bound = triangles_bound,
+                          .closest = triangles_closest,
+                          .lipschitz = triangles_lipschitz,
+                          .within = triangles_within,
+                          .unclamped = true,
+                          .steps = SEARCH},
+                         k->f->space.radius,
+                         k->height,
+                         k->triangle};
     real end[LANES], t[LANES];
     int32_t found[LANES], own[LANES];
     for (int i = 0; i < k->n; i++)
         end[i] = k->end[k->of[i]];
     starts_on(k, &g, own);
-    k->counts.evaluations += displaced_search_over(&g.base, k->P, k->n, &k->y, end, own, t, found);
+    k->evaluations += displaced_search(&g.base, k->P, k->n, &k->y, end, own, t, found);
     for (int i = 0; i < k->n; i++) {
         const int at = k->of[i];
         const bool nearer = found[i] != DISPLACED_MISSED && t[i] > 0 &&
@@ -304,19 +312,19 @@ static void search_all(tour *k)
             continue;
         k->t[at] = t[i];
         k->index_hit[at] = k->index[i];
-        k->counts.uncertain += found[i] == DISPLACED_UNCERTAIN;
+        k->uncertain += found[i] == DISPLACED_UNCERTAIN;
     }
     k->n = 0;
 }
 
 static void visit(void *user, int32_t index)
 {
-    tour *k = user;
+    traversal *k = user;
     const int i = k->n;
     double from = 0, to = (double)k->end[k->lane];
     k->triangle[i] = mesh_triangle_of(k->f, index);
-    if (!shell_of(&k->triangle[i], AIR * k->f->space.radius, get(&k->x->r, k->lane), get(&k->x->s, k->lane),
-                  (double)k->P->Pmin, (double)k->P->Pmax, &from, &to))
+    if (!stretch_of(&k->triangle[i], ROOM * k->f->space.radius, get(&k->x->r, k->lane), get(&k->x->s, k->lane),
+                    (double)k->P->Pmin, (double)k->P->Pmax, &from, &to))
         return;
     k->n++;
     k->of[i] = k->lane;
@@ -327,40 +335,45 @@ static void visit(void *user, int32_t index)
         search_all(k);
 }
 
+static void traversal_begin(traversal *k, const displaced *d)
+{
+    k->d = d;
+    k->f = mesh_of(d);
+    k->P = d->P;
+    k->height = greatest_height(d->P);
+    k->evaluations = k->uncertain = 0;
+    k->n = 0;
+}
+
 /* t[i] becomes the nearest hit with 0 < t < t[i], on the triangle index[i], which is -1 where there is none. k->own is
  * set. */
-static void go_round(tour *k, int n, const rays *x, real *t, int32_t *index, displaced_counts *c)
+static void traverse(traversal *k, int n, const rays *x, real *t, int32_t *index)
 {
     k->x = x;
-    k->counts = (displaced_counts){0};
     k->t = t;
     k->index_hit = index;
-    k->n = 0;
     for (int i = 0; i < n; i++) {
         double from = 0, to = (double)t[i];
         float at[3], way[3], far;
         k->end[i] = t[i];
         index[i] = -1;
         k->lane = i;
-        if (bvh_enter(&k->f->space, k->f->space.radius + k->f->height, get(&x->r, i), get(&x->s, i), &from, &to, at,
-                      way, &far))
-            bvh_along(k->f->rough, at, way, far, visit, k);
+        if (bvh_enter(&k->f->space, k->f->space.radius + k->height, get(&x->r, i), get(&x->s, i), &from, &to, at, way,
+                      &far))
+            bvh_along(k->d->prisms, at, way, far, visit, k);
     }
     search_all(k);
-    c->evaluations += k->counts.evaluations;
-    c->uncertain += k->counts.uncertain;
+    displaced_count(k->d, k->evaluations, k->uncertain);
 }
 
-static void rough_hit(const surface *base, const bump *P, int n, const rays *x, const ray_origins *from, int32_t id,
-                      hits *h, displaced_counts *c)
+static void over_mesh_hit(const displaced *d, int n, const rays *x, const ray_origins *from, int32_t id, hits *h)
 {
     int32_t index[LANES];
-    tour k;
-    k.f = (const mesh *)base;
-    k.P = P;
+    traversal k;
+    traversal_begin(&k, d);
     for (int i = 0; i < n; i++)
         k.own[i] = from && from->id[i] == id;
-    go_round(&k, n, x, h->t, index, c);
+    traverse(&k, n, x, h->t, index);
     for (int i = 0; i < n; i++)
         if (index[i] >= 0) {
             h->id[i] = id;
@@ -368,36 +381,33 @@ static void rough_hit(const surface *base, const bump *P, int n, const rays *x, 
         }
 }
 
-static void rough_occlude(const surface *base, const bump *P, int n, const rays *x, bool from_it, real *lit,
-                          displaced_counts *c)
+static void over_mesh_occlude(const displaced *d, int n, const rays *x, const int32_t *part, real *lit)
 {
     int32_t index[LANES];
     real t[LANES];
-    tour k;
-    k.f = (const mesh *)base;
-    k.P = P;
+    traversal k;
+    traversal_begin(&k, d);
     for (int i = 0; i < n; i++) {
         t[i] = lit[i] > 0 ? R(1) : R(-1);
-        k.own[i] = from_it;
+        k.own[i] = part != NULL;
     }
-    go_round(&k, n, x, t, index, c);
+    traverse(&k, n, x, t, index);
     for (int i = 0; i < n; i++)
         lit[i] = index[i] >= 0 ? 0 : lit[i];
 }
 
-/* The height changes along N there, whatever the triangle itself is like: so the rough surface is as smooth as the mesh
- * is shown. */
-static void rough_feet(const surface *base, const bump *P, int n, const rays *x, const real *t, int32_t *part,
-                       closest_points *p)
+/* The height changes along N there, whatever the triangle itself is like: so the displaced surface is as smooth as the
+ * mesh is shown. */
+static void over_mesh_closest(const displaced *d, int n, const rays *x, const real *t, int32_t *part, closest_points *p)
 {
-    (void)P;
     for (int i = 0; i < n; i++) {
-        const mesh_triangle a = mesh_triangle_of((const mesh *)base, part[i]);
+        const mesh_triangle a = mesh_triangle_of(mesh_of(d), part[i]);
         double b, c;
-        foot_of(&a, vec3_add(get(&x->r, i), vec3_scale(get(&x->s, i), (double)t[i])), p, i);
+        closest_of(&a, vec3_add(get(&x->r, i), vec3_scale(get(&x->s, i), (double)t[i])), p, i);
         mesh_shares(&a, (double)p->u[i], (double)p->w[i], &b, &c);
         lane_set(&p->gh, i, to_real(vec3_unit(mesh_mix(a.normal, b, c))));
     }
 }
 
-const displaced_ops mesh_displaced = {rough_prepare, rough_hit, rough_occlude, rough_feet};
+const displaced_form displaced_over_mesh = {mesh_is, over_mesh_prepare, over_mesh_hit, over_mesh_occlude,
+                                            over_mesh_closest};

@@ -1,4 +1,4 @@
-/* The rough surface X = Q + P n/|n| over a smooth one that is known by its partials, for one lane. */
+/* The displaced surface X = Q + P n/|n| over a smooth one that is known by its partials, for one lane. */
 #ifndef KAGE_DISPLACED_OFFSET_H
 #define KAGE_DISPLACED_OFFSET_H
 
@@ -46,7 +46,7 @@ static inline offset offset_of(bs_vec3 Qu, bs_vec3 Qw, bs_vec3 Quu, bs_vec3 Quw,
     return o;
 }
 
-/* The unit normal of the rough surface, on the side of n: Xu x Xw, Xu = U + Pu n, Xw = W + Pw n. */
+/* The unit normal of the displaced surface, on the side of n: Xu x Xw, Xu = U + Pu n, Xw = W + Pw n. */
 static inline bs_vec3 offset_normal(offset o, real Pu, real Pw)
 {
     const bs_vec3 N = bs_cross(offset_mix(o.U, Pu, o.n), offset_mix(o.W, Pw, o.n));

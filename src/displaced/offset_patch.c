@@ -1,23 +1,22 @@
-/* The rough surface of a sheet, X = Q + P n/|n|, as a sheet itself: so that rays are searched for it as for any other.
+/* The displaced surface of a patch, X = Q + P n/|n|, as a patch itself, so that its hits are found as any patch's.
  *
  * With n = Qu x Qw, X_u = Qu + P_u n/|n| + P (n/|n|)_u, and (n/|n|)_u is n_u = Quu x Qw + Qu x Quw without its part
- * along n, over |n|. Bounds are those of balls: a vector that is within r of c.
+ * along n, over |n|. Vectors are bounded by balls: within r of c.
  */
-#include "patch/patch.h"
+#include "displaced/offset_patch.h"
 
-#include "texture/bump.h"
 #include "base/real.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-#define AIR 1e-13 /* of what is summed: more than its roundings */
+#define ROUNDING 1e-13 /* of what is summed: some hundred roundings of double */
 
-typedef struct rough {
+typedef struct offset_patch {
     patch base;
     const patch *q;
     const bump *P;
-} rough;
+} offset_patch;
 
 /* In place: the jets of Q, of order 2, become those of X, of order 1. */
 STAGE static void add_bump(int n, const expr_jets *restrict P, patch_jets *restrict j)
@@ -69,10 +68,10 @@ STAGE static void add_height(int n, const double *restrict P, patch_jets *restri
     }
 }
 
-static void rough_eval(const patch *base, int n, const int32_t *part, const double *u, const double *w, int order,
-                       patch_jets *out)
+static void offset_eval(const patch *base, int n, const int32_t *part, const double *u, const double *w, int order,
+                        patch_jets *out)
 {
-    const rough *k = (const rough *)base;
+    const offset_patch *k = (const offset_patch *)base;
     expr_jets P;
     k->q->ops->eval(k->q, n, part, u, w, order ? 2 : 1, out);
     k->P->ops->jets(k->P, n, u, w, &P);
@@ -134,7 +133,7 @@ static void add_to(double range[2], const double p[2], double n, double n_air, c
                    double v_air)
 {
     const double off = most(p) * n_air + most(h) * v_air;
-    const double air = off + AIR * (most(range) + most(p) * (fabs(n) + n_air) + most(h) * (fabs(v) + v_air));
+    const double air = off + ROUNDING * (most(range) + most(p) * (fabs(n) + n_air) + most(h) * (fabs(v) + v_air));
     range[0] += lesser(p[0] * n, p[1] * n) + lesser(h[0] * v, h[1] * v) - air;
     range[1] += greater(p[0] * n, p[1] * n) + greater(h[0] * v, h[1] * v) + air;
 }
@@ -145,10 +144,10 @@ static void unknown(double range[2])
     range[1] = HUGE_VAL;
 }
 
-static void rough_bound(const patch *base, int part, const double u[2], const double w[2], patch_bounds *out,
-                        patch_hessians *second)
+static void offset_bound(const patch *base, int part, const double u[2], const double w[2], patch_bounds *out,
+                         patch_hessians *second)
 {
-    const rough *k = (const rough *)base;
+    const offset_patch *k = (const offset_patch *)base;
     const double none[2] = {0, 0};
     patch_hessians z;
     expr_bounds P;
@@ -179,17 +178,17 @@ static void rough_bound(const patch *base, int part, const double u[2], const do
     }
 }
 
-static void rough_free(patch *q) { free(q); }
+static void offset_free(patch *q) { free(q); }
 
-static const patch_ops rough_methods = {rough_eval, rough_bound, rough_free};
+static const patch_ops offset_methods = {offset_eval, offset_bound, offset_free};
 
 patch *patch_offset_new(const patch *q, const bump *P)
 {
-    rough *k = calloc(1, sizeof *k);
+    offset_patch *k = calloc(1, sizeof *k);
     if (!k)
         return NULL;
     k->base = *q;
-    k->base.ops = &rough_methods;
+    k->base.ops = &offset_methods;
     k->q = q;
     k->P = P;
     return &k->base;

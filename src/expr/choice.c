@@ -58,13 +58,13 @@ static void run_max(const expr_code *c, int n, int order, expr_view z, const exp
 static interval min_value(const expr_ranges *r)
 {
     const interval a = r->x[0], b = r->x[1];
-    return (interval){double_min(a.lo, b.lo), double_min(a.hi, b.hi)};
+    return (interval){lesser(a.lo, b.lo), lesser(a.hi, b.hi)};
 }
 
 static interval max_value(const expr_ranges *r)
 {
     const interval a = r->x[0], b = r->x[1];
-    return (interval){double_max(a.lo, b.lo), double_max(a.hi, b.hi)};
+    return (interval){greater(a.lo, b.lo), greater(a.hi, b.hi)};
 }
 
 static int min_reached(const expr_ranges *r) { return (r->x[0].lo <= r->x[1].hi) | (r->x[1].lo <= r->x[0].hi) << 1; }

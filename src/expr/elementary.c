@@ -4,6 +4,11 @@
 #include "expr/operation.h"
 #include "expr/rule.h"
 
+/* The loop over a function's rule, and the range of its value. */
+#define FUNCTION(f)                                                                                                    \
+    RULE1(f)                                                                                                           \
+    static interval f##_value(const expr_ranges *r) { return interval_##f(r->x[0]); }
+
 static expr_gradient slope(interval d) { return (expr_gradient){{d}}; }
 static expr_hessian second(interval dd) { return (expr_hessian){{dd}}; }
 
@@ -12,7 +17,7 @@ static expr_hessian second(interval dd) { return (expr_hessian){{dd}}; }
 static interval positive(double x, double y)
 {
     interval z = interval_between(x, y);
-    return (interval){z.lo > 1e-300 ? z.lo : 0, double_max(z.hi, INTERVAL_TINY)};
+    return (interval){z.lo > 1e-300 ? z.lo : 0, greater(z.hi, INTERVAL_TINY)};
 }
 
 static interval at_least_0(interval a) { return interval_clip(a, 0, KM_INF); }
@@ -37,13 +42,9 @@ KM_INLINE rule1 tan_at(double a)
     return (rule1){t, d, 2 * t * d};
 }
 
-RULE1(sin)
-RULE1(cos)
-RULE1(tan)
-
-static interval sin_value(const expr_ranges *r) { return interval_sin(r->x[0]); }
-static interval cos_value(const expr_ranges *r) { return interval_cos(r->x[0]); }
-static interval tan_value(const expr_ranges *r) { return interval_tan(r->x[0]); }
+FUNCTION(sin)
+FUNCTION(cos)
+FUNCTION(tan)
 
 static expr_gradient sin_gradient(const expr_ranges *r) { return slope(interval_cos(r->x[0])); }
 static expr_gradient cos_gradient(const expr_ranges *r) { return slope(interval_negate(interval_sin(r->x[0]))); }
@@ -79,13 +80,9 @@ KM_INLINE rule1 atan_at(double a)
     return (rule1){km_atan(a), d, -2 * a * d * d};
 }
 
-RULE1(asin)
-RULE1(acos)
-RULE1(atan)
-
-static interval asin_value(const expr_ranges *r) { return interval_asin(r->x[0]); }
-static interval acos_value(const expr_ranges *r) { return interval_acos(r->x[0]); }
-static interval atan_value(const expr_ranges *r) { return interval_atan(r->x[0]); }
+FUNCTION(asin)
+FUNCTION(acos)
+FUNCTION(atan)
 
 /* (1 - a^2)^(-1/2) and a (1 - a^2)^(-3/2): the first grows with |a|, the second with a. */
 static interval asin_slope(interval a)
@@ -137,13 +134,9 @@ KM_INLINE rule1 tanh_at(double a)
     return (rule1){t, d, -2 * t * d};
 }
 
-RULE1(sinh)
-RULE1(cosh)
-RULE1(tanh)
-
-static interval sinh_value(const expr_ranges *r) { return interval_sinh(r->x[0]); }
-static interval cosh_value(const expr_ranges *r) { return interval_cosh(r->x[0]); }
-static interval tanh_value(const expr_ranges *r) { return interval_tanh(r->x[0]); }
+FUNCTION(sinh)
+FUNCTION(cosh)
+FUNCTION(tanh)
 
 static expr_gradient sinh_gradient(const expr_ranges *r) { return slope(interval_cosh(r->x[0])); }
 static expr_gradient cosh_gradient(const expr_ranges *r) { return slope(interval_sinh(r->x[0])); }
@@ -181,13 +174,9 @@ KM_INLINE rule1 sqrt_at(double a)
     return (rule1){s, d, -0.5 * d / a};
 }
 
-RULE1(exp)
-RULE1(log)
-RULE1(sqrt)
-
-static interval exp_value(const expr_ranges *r) { return interval_exp(r->x[0]); }
-static interval log_value(const expr_ranges *r) { return interval_log(r->x[0]); }
-static interval sqrt_value(const expr_ranges *r) { return interval_sqrt(r->x[0]); }
+FUNCTION(exp)
+FUNCTION(log)
+FUNCTION(sqrt)
 
 static expr_gradient exp_gradient(const expr_ranges *r) { return slope(r->f); }
 static expr_gradient log_gradient(const expr_ranges *r) { return slope(interval_reciprocal(at_least_0(r->x[0]))); }
@@ -221,11 +210,8 @@ KM_INLINE rule1 abs_at(double a)
 
 KM_INLINE rule1 floor_at(double a) { return (rule1){km_floor(a), 0, 0}; }
 
-RULE1(abs)
-RULE1(floor)
-
-static interval abs_value(const expr_ranges *r) { return interval_abs(r->x[0]); }
-static interval floor_value(const expr_ranges *r) { return interval_floor(r->x[0]); }
+FUNCTION(abs)
+FUNCTION(floor)
 
 static expr_gradient abs_gradient(const expr_ranges *r)
 {
@@ -253,13 +239,24 @@ static expr_hessian floor_hessian(const expr_ranges *r) { return second(floor_gr
         .gradient = f##_gradient, .hessian = f##_hessian, .pov = text, __VA_ARGS__                                     \
     }
 #define ROW(f, text, ...) &(const expr_op)ELEMENTARY(f, text, __VA_ARGS__)
+#define CURVED(f, text) ROW(f, text, .curved = EXPR_AA)
 
 const expr_op expr_sqrt = ELEMENTARY(sqrt, "sqrt", .curved = EXPR_AA);
 
 const expr_op *const expr_elementary[] = {
-    ROW(sin, "sin", .curved = EXPR_AA),   ROW(cos, "cos", .curved = EXPR_AA),   ROW(tan, "tan", .curved = EXPR_AA),
-    ROW(asin, "asin", .curved = EXPR_AA), ROW(acos, "acos", .curved = EXPR_AA), ROW(atan, "atan", .curved = EXPR_AA),
-    ROW(sinh, "sinh", .curved = EXPR_AA), ROW(cosh, "cosh", .curved = EXPR_AA), ROW(tanh, "tanh", .curved = EXPR_AA),
-    ROW(exp, "exp", .curved = EXPR_AA),   ROW(log, "ln", .curved = EXPR_AA),    &expr_sqrt,
-    ROW(abs, "abs", .curved = 0),         ROW(floor, "floor", .steps = true),   NULL,
+    CURVED(sin, "sin"),
+    CURVED(cos, "cos"),
+    CURVED(tan, "tan"),
+    CURVED(asin, "asin"),
+    CURVED(acos, "acos"),
+    CURVED(atan, "atan"),
+    CURVED(sinh, "sinh"),
+    CURVED(cosh, "cosh"),
+    CURVED(tanh, "tanh"),
+    CURVED(exp, "exp"),
+    CURVED(log, "ln"),
+    &expr_sqrt,
+    ROW(abs, "abs", .curved = 0),
+    ROW(floor, "floor", .steps = true),
+    NULL,
 };

@@ -59,7 +59,7 @@ static interval angle_by(interval t, interval r2)
 {
     interval z = interval_multiply(t, interval_reciprocal(r2));
     double steepest = interval_reciprocal(interval_sqrt(r2)).hi * (1 + INTERVAL_ROUNDINGS);
-    return interval_widen((interval){double_max(z.lo, -steepest), double_min(z.hi, steepest)}, INTERVAL_ROUNDINGS);
+    return interval_widen((interval){greater(z.lo, -steepest), lesser(z.hi, steepest)}, INTERVAL_ROUNDINGS);
 }
 
 static expr_gradient atan2_gradient(const expr_ranges *r)
@@ -109,6 +109,82 @@ static expr_hessian mod_hessian(const expr_ranges *r)
 {
     const bool jumps = !interval_is_point(mod_gradient(r).d[1]);
     return jumps ? (expr_hessian){{all, all, {0, 0}, all}} : (expr_hessian){{{0, 0}}};
+}
+
+/* ---- smoothstep ---- */
+
+/* s(t) = t^2 (3 - 2t) with t = (x - a) / (b - a) between 0 and 1, and beyond that 0 or 1, without slope; so it is a
+ * step where b = a. At the edges the second partials are 0, those of the outer side. */
+KM_INLINE rule3 smoothstep_at(double a, double b, double x)
+{
+    double t = (x - a) / (b - a), c = t < 0 ? 0 : t, d = t > 0 ? 1 / (b - a) : 0; /* NaN stays NaN */
+    c = c > 1 ? 1 : c;
+    d = t < 1 ? d : 0; /* 1/(b - a) between, 0 beyond */
+    double s1 = 6 * c * (1 - c) * d, s2 = (6 - 12 * c) * d * d, s1d = s1 * d;
+    return (rule3){.f = c * c * (3 - 2 * c),
+                   .a = s1 * (c - 1),
+                   .b = -s1 * c,
+                   .c = s1,
+                   .aa = (2 * s1d + s2 * (c - 1)) * (c - 1),
+                   .ab = 2 * s1d * (1 - 2 * c),
+                   .ac = s1d + s2 * (c - 1),
+                   .bb = (2 * s1d + s2 * c) * c,
+                   .bc = -s1d - s2 * c,
+                   .cc = s2};
+}
+
+RULE3(smoothstep)
+
+/* Bounds of t in 0..1, 1/(b - a), s' and s''. */
+typedef struct step_bounds {
+    interval t, d, s1, s2;
+} step_bounds;
+
+static step_bounds step_over(const expr_ranges *r)
+{
+    const interval a = interval_negate(r->x[0]), width = interval_add(r->x[1], a);
+    const interval d = interval_has(width, 0) ? interval_all : interval_reciprocal(width); /* it jumps where b = a */
+    const interval t = interval_multiply(interval_add(r->x[2], a), d);
+    const double lo = lesser(greater(t.lo, 0), 1), hi = lesser(greater(t.hi, 0), 1);
+    step_bounds z = {{lo, hi}, d, interval_between(6 * lo * (1 - lo), 6 * hi * (1 - hi)), {0, 0}};
+    if (lo <= 0.5 && hi >= 0.5)
+        z.s1.hi = 1.5 * (1 + INTERVAL_ROUNDINGS);
+    if (lo < hi || (t.lo > 0 && t.hi < 1))
+        z.s2 = interval_between(6 - 12 * lo, 6 - 12 * hi);
+    if (t.lo <= 0 || t.hi >= 1)
+        z.s2 = interval_hull(z.s2, interval_zero);
+    return z;
+}
+
+static interval smoothstep_value(const expr_ranges *r)
+{
+    const interval t = step_over(r).t;
+    return interval_clip(interval_between(t.lo * t.lo * (3 - 2 * t.lo), t.hi * t.hi * (3 - 2 * t.hi)), 0, 1);
+}
+
+static expr_gradient smoothstep_gradient(const expr_ranges *r)
+{
+    const step_bounds s = step_over(r);
+    const interval by_x = interval_multiply(s.s1, s.d), less = interval_add(s.t, interval_at(-1));
+    return (expr_gradient){{interval_multiply(by_x, less), interval_negate(interval_multiply(by_x, s.t)), by_x}};
+}
+
+/* With t_a = (t - 1) d, t_b = -t d and t_x = d: s' t_ij + s'' t_i t_j. */
+static expr_hessian smoothstep_hessian(const expr_ranges *r)
+{
+    const step_bounds s = step_over(r);
+    const interval d2 = interval_square(s.d), t = s.t, u = interval_add(t, interval_at(-1));
+    const interval s1 = interval_multiply(s.s1, d2), s2 = interval_multiply(s.s2, d2), twice = interval_scale(2, s1);
+    const interval middle = interval_add(interval_one, interval_scale(-2, t));
+    const interval ac = interval_add(s1, interval_multiply(s2, u)), bc = interval_add(s1, interval_multiply(s2, t));
+    return (expr_hessian){{
+        interval_multiply(interval_add(twice, interval_multiply(s2, u)), u),
+        interval_multiply(twice, middle),
+        ac,
+        interval_multiply(interval_add(twice, interval_multiply(s2, t)), t),
+        interval_negate(bc),
+        s2,
+    }};
 }
 
 /* ---- powers ---- */
@@ -253,5 +329,9 @@ const expr_op *const expr_functions[] = {
     &(const expr_op){"mod", OF_TWO(rule_mod), .value = mod_value, .gradient = mod_gradient, .hessian = mod_hessian,
                      .pov = "mod"},
     &expr_pow,
+    /* the formula has $3 once: t^2 (3 - 2t) = 1/2 + 1/2 sin(3 asin(t - 1/2)) */
+    &(const expr_op){"smoothstep", OF_THREE(rule_smoothstep), .curved = EXPR_ALL, .value = smoothstep_value,
+                     .gradient = smoothstep_gradient, .hessian = smoothstep_hessian,
+                     .pov = "0.5 + 0.5*sin(3*asin(min(max(($3 - $1)/($2 - $1), 0), 1) - 0.5))"},
     NULL,
 };

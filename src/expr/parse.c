@@ -13,6 +13,7 @@
 #include <string.h>
 
 #include "base/errors.h"
+#include "base/spelling.h"
 #include "expr/operation.h"
 
 enum { LONGEST_NAME = 24 };
@@ -117,25 +118,6 @@ static operand parse_number(parser *p)
     return expr_emit_constant(k);
 }
 
-/* How many characters must be inserted, left out or replaced to make a of b (Levenshtein), ignoring case. */
-static int distance(const char *a, const char *b)
-{
-    int row[LONGEST_NAME + 1], columns = (int)strlen(b);
-    for (int j = 0; j <= columns; j++)
-        row[j] = j;
-    for (int i = 1; a[i - 1]; i++) {
-        int diagonal = row[0];
-        row[0] = i;
-        for (int j = 1; j <= columns; j++) {
-            int replaced = diagonal + (lower(a[i - 1]) != lower(b[j - 1]));
-            int other = 1 + (row[j] < row[j - 1] ? row[j] : row[j - 1]);
-            diagonal = row[j];
-            row[j] = replaced < other ? replaced : other;
-        }
-    }
-    return row[columns];
-}
-
 static const expr_op *function_named(const char *name)
 {
     for (int t = 0; t < TABLES; t++)
@@ -151,7 +133,7 @@ static operand unknown_name(parser *p, const char *where, const char *name, bool
     int best = 3; /* more than two slips are another word */
     for (int t = 0; t < TABLES; t++)
         for (const expr_op *const *f = tables[t]; *f; f++) {
-            int d = distance(name, (*f)->name);
+            int d = spelling_distance(name, strlen(name), (*f)->name, strlen((*f)->name));
             if (d < best && d < (int)strlen(name) - 1) {
                 best = d;
                 nearest = (*f)->name;

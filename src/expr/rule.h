@@ -26,23 +26,21 @@ typedef struct rule3 {
     double f, a, b, c, aa, ab, ac, bb, bc, cc;
 } rule3;
 
+#define RULE_EACH(...)                                                                                                 \
+    for (int i = 0; i < n; i++) {                                                                                      \
+        __VA_ARGS__                                                                                                    \
+    }
+
 #define RULE1(name)                                                                                                    \
     STAGE static void rule_##name(int n, int order, const double *restrict a, double *restrict f, double *restrict d,  \
                                   double *restrict dd)                                                                 \
     {                                                                                                                  \
         if (order == 0)                                                                                                \
-            for (int i = 0; i < n; i++)                                                                                \
-                f[i] = name##_at(a[i]).f;                                                                              \
+            RULE_EACH(f[i] = name##_at(a[i]).f;)                                                                       \
         else if (order == 1)                                                                                           \
-            for (int i = 0; i < n; i++) {                                                                              \
-                rule1 r = name##_at(a[i]);                                                                             \
-                f[i] = r.f, d[i] = r.d;                                                                                \
-            }                                                                                                          \
+            RULE_EACH(const rule1 r = name##_at(a[i]); f[i] = r.f, d[i] = r.d;)                                        \
         else                                                                                                           \
-            for (int i = 0; i < n; i++) {                                                                              \
-                rule1 r = name##_at(a[i]);                                                                             \
-                f[i] = r.f, d[i] = r.d, dd[i] = r.dd;                                                                  \
-            }                                                                                                          \
+            RULE_EACH(const rule1 r = name##_at(a[i]); f[i] = r.f, d[i] = r.d, dd[i] = r.dd;)                          \
     }
 
 #define RULE2(name)                                                                                                    \
@@ -50,19 +48,12 @@ typedef struct rule3 {
                                   double *restrict f, expr_partials *restrict p)                                       \
     {                                                                                                                  \
         if (order == 0)                                                                                                \
-            for (int i = 0; i < n; i++)                                                                                \
-                f[i] = name##_at(a[i], b[i]).f;                                                                        \
+            RULE_EACH(f[i] = name##_at(a[i], b[i]).f;)                                                                 \
         else if (order == 1)                                                                                           \
-            for (int i = 0; i < n; i++) {                                                                              \
-                rule2 r = name##_at(a[i], b[i]);                                                                       \
-                f[i] = r.f, p->d[0][i] = r.a, p->d[1][i] = r.b;                                                        \
-            }                                                                                                          \
+            RULE_EACH(const rule2 r = name##_at(a[i], b[i]); f[i] = r.f, p->d[0][i] = r.a, p->d[1][i] = r.b;)          \
         else                                                                                                           \
-            for (int i = 0; i < n; i++) {                                                                              \
-                rule2 r = name##_at(a[i], b[i]);                                                                       \
-                f[i] = r.f, p->d[0][i] = r.a, p->d[1][i] = r.b;                                                        \
-                p->dd[0][i] = r.aa, p->dd[1][i] = r.ab, p->dd[3][i] = r.bb;                                            \
-            }                                                                                                          \
+            RULE_EACH(const rule2 r = name##_at(a[i], b[i]); f[i] = r.f, p->d[0][i] = r.a, p->d[1][i] = r.b;           \
+                      p->dd[0][i] = r.aa, p->dd[1][i] = r.ab, p->dd[3][i] = r.bb;)                                     \
     }
 
 #define RULE3(name)                                                                                                    \
@@ -70,20 +61,15 @@ typedef struct rule3 {
                                   const double *restrict c, double *restrict f, expr_partials *restrict p)             \
     {                                                                                                                  \
         if (order == 0)                                                                                                \
-            for (int i = 0; i < n; i++)                                                                                \
-                f[i] = name##_at(a[i], b[i], c[i]).f;                                                                  \
+            RULE_EACH(f[i] = name##_at(a[i], b[i], c[i]).f;)                                                           \
         else if (order == 1)                                                                                           \
-            for (int i = 0; i < n; i++) {                                                                              \
-                rule3 r = name##_at(a[i], b[i], c[i]);                                                                 \
-                f[i] = r.f, p->d[0][i] = r.a, p->d[1][i] = r.b, p->d[2][i] = r.c;                                      \
-            }                                                                                                          \
+            RULE_EACH(const rule3 r = name##_at(a[i], b[i], c[i]);                                                     \
+                      f[i] = r.f, p->d[0][i] = r.a, p->d[1][i] = r.b, p->d[2][i] = r.c;)                               \
         else                                                                                                           \
-            for (int i = 0; i < n; i++) {                                                                              \
-                rule3 r = name##_at(a[i], b[i], c[i]);                                                                 \
-                f[i] = r.f, p->d[0][i] = r.a, p->d[1][i] = r.b, p->d[2][i] = r.c;                                      \
-                p->dd[0][i] = r.aa, p->dd[1][i] = r.ab, p->dd[2][i] = r.ac;                                            \
-                p->dd[3][i] = r.bb, p->dd[4][i] = r.bc, p->dd[5][i] = r.cc;                                            \
-            }                                                                                                          \
+            RULE_EACH(const rule3 r = name##_at(a[i], b[i], c[i]);                                                     \
+                      f[i] = r.f, p->d[0][i] = r.a, p->d[1][i] = r.b, p->d[2][i] = r.c;                                \
+                      p->dd[0][i] = r.aa, p->dd[1][i] = r.ab, p->dd[2][i] = r.ac;                                      \
+                      p->dd[3][i] = r.bb, p->dd[4][i] = r.bc, p->dd[5][i] = r.cc;)                                     \
     }
 
 #endif

@@ -1,6 +1,6 @@
 /* Box with sides along the axes: six faces, each a plane with its own (u,w). */
 #include "math/slab.h"
-#include "geometry/surface.h"
+#include "geometry/closed_form.h"
 
 #include <stdlib.h>
 
@@ -9,8 +9,8 @@ typedef struct box {
     real lo[3], hi[3];
 } box;
 
-/* Where the line r + s t enters and leaves the box, in <= out where it meets it. A line in the plane of a face gives
- * 0 * inf: it counts as inside or outside that slab, never as a hit at an undefined t. */
+/* Where the line r + s t enters and leaves the box: in <= out where it meets the box. A line in the plane of a face
+ * gives 0 * inf: it counts as inside or outside that slab, never as a hit at NaN. */
 static inline void box_crossing(const box *f, real rx, real ry, real rz, real sx, real sy, real sz, real *in, real *out)
 {
     real ix = 1 / sx, iy = 1 / sy, iz = 1 / sz;
@@ -21,11 +21,18 @@ static inline void box_crossing(const box *f, real rx, real ry, real rz, real sx
     *out = real_min(real_min(real_max(ax, bx), real_max(ay, by)), real_max(az, bz));
 }
 
-/* How far a ray from within goes until it passes the slab's other side; along the slab, beyond all measure. */
+/* t at which a ray from within a slab leaves it; REAL_FAR where it runs along the slab. */
 static inline real box_exit(real r, real s, real lo, real hi)
 {
     real t = ((s > 0 ? hi : lo) - r) / s;
     return s == 0 ? REAL_FAR : t;
+}
+
+/* The same for the box, from (x,y,z). */
+static inline real box_first_exit(const box *f, real x, real y, real z, real sx, real sy, real sz)
+{
+    real ex = box_exit(x, sx, f->lo[0], f->hi[0]), ey = box_exit(y, sy, f->lo[1], f->hi[1]);
+    return real_min(real_min(ex, ey), box_exit(z, sz, f->lo[2], f->hi[2]));
 }
 
 STAGE static void box_hit(const surface *base, int n, const rays *x, int32_t id, hits *h)
@@ -36,12 +43,12 @@ STAGE static void box_hit(const surface *base, int n, const rays *x, int32_t id,
         box_crossing(&f, x->r.x[i], x->r.y[i], x->r.z[i], x->s.x[i], x->s.y[i], x->s.z[i], &in, &out);
         real t = in > 0 ? in : out;
         int take = (in <= out) & (t > 0) & (t < h->t[i]);
-        h->t[i] = take ? t : h->t[i];
-        h->id[i] = take ? id : h->id[i];
+        hits_take(h, i, take, t, id);
     }
 }
 
-/* From a point of a face into the box, to where it is left through the first of the other five; out of it, nowhere. */
+/* A ray from a point of a face into the box leaves it through the first of the other five faces; a ray outward meets
+ * nothing. */
 STAGE static void box_hit_own(const surface *base, int n, const rays *x, const ray_origins *from, int32_t id, hits *h)
 {
     const box f = *(const box *)base;
@@ -49,14 +56,12 @@ STAGE static void box_hit_own(const surface *base, int n, const rays *x, const r
         real in, out, sx = x->s.x[i], sy = x->s.y[i], sz = x->s.z[i];
         box_crossing(&f, x->r.x[i], x->r.y[i], x->r.z[i], sx, sy, sz, &in, &out);
         real near = in > 0 ? in : out;
-        real ex = box_exit(from->at.x[i], sx, f.lo[0], f.hi[0]), ey = box_exit(from->at.y[i], sy, f.lo[1], f.hi[1]);
-        real ez = box_exit(from->at.z[i], sz, f.lo[2], f.hi[2]), far = real_min(real_min(ex, ey), ez);
+        real far = box_first_exit(&f, from->at.x[i], from->at.y[i], from->at.z[i], sx, sy, sz);
         int part = from->part[i], k = part >> 1, high = part & 1, own = from->id[i] == id;
         real along = k == 0 ? sx : k == 1 ? sy : sz, inward = high ? -along : along;
         real t = own ? far : near;
         int take = (own ? inward > 0 : in <= out) & (t > 0) & (t < h->t[i]);
-        h->t[i] = take ? t : h->t[i];
-        h->id[i] = take ? id : h->id[i];
+        hits_take(h, i, take, t, id);
     }
 }
 
@@ -72,7 +77,7 @@ STAGE static void box_locate(const surface *base, int n, const rays *x, const re
         real px = (x->r.x[i] + x->s.x[i] * t[i] - f.lo[0]) / dx;
         real py = (x->r.y[i] + x->s.y[i] * t[i] - f.lo[1]) / dy;
         real pz = (x->r.z[i] + x->s.z[i] * t[i] - f.lo[2]) / dz;
-        /* the face is the one that the hit is farthest out towards */
+        /* the face is the one across the axis along which the hit is farthest from the middle */
         real ox = real_abs(px - R(0.5)), oy = real_abs(py - R(0.5)), oz = real_abs(pz - R(0.5));
         int on_x = (ox >= oy) & (ox >= oz), on_y = (oy > ox) & (oy >= oz);
         real out = on_x ? px : on_y ? py : pz;
@@ -122,8 +127,7 @@ STAGE static void box_occlude(const surface *base, int n, const rays *x, real *l
     }
 }
 
-/* From a point of a face the box is entered here or not at all; entered, it is left through the first of the other
- * five faces. */
+/* As box_hit_own. */
 STAGE static void box_occlude_own(const surface *base, int n, const rays *x, const int32_t *restrict part,
                                   real *restrict lit)
 {
@@ -133,9 +137,7 @@ STAGE static void box_occlude_own(const surface *base, int n, const rays *x, con
         int k = part[i] >> 1, high = part[i] & 1;
         real along = k == 0 ? sx : k == 1 ? sy : sz;
         real away = high ? along : -along;
-        real out =
-            real_min(real_min(box_exit(x->r.x[i], sx, f.lo[0], f.hi[0]), box_exit(x->r.y[i], sy, f.lo[1], f.hi[1])),
-                     box_exit(x->r.z[i], sz, f.lo[2], f.hi[2]));
+        real out = box_first_exit(&f, x->r.x[i], x->r.y[i], x->r.z[i], sx, sy, sz);
         lit[i] = ((away < 0) & (out < 1)) ? 0 : lit[i];
     }
 }
@@ -158,9 +160,9 @@ static face box_face(const box *f, int part)
 }
 
 static const real *axis(const vec3s *v, int k) { return k == 0 ? v->x : k == 1 ? v->y : v->z; }
-static real *axis_of(vec3s *v, int k) { return k == 0 ? v->x : k == 1 ? v->y : v->z; }
+static real *component(vec3s *v, int k) { return k == 0 ? v->x : k == 1 ? v->y : v->z; }
 
-static void box_shell(const surface *base, int part, int n, const rays *x, const real *end, real Pmin, real Pmax,
+static void box_bound(const surface *base, int part, int n, const rays *x, const real *end, real Pmin, real Pmax,
                       real *t0, real *t1)
 {
     const box *f = (const box *)base;
@@ -177,7 +179,7 @@ static void box_shell(const surface *base, int part, int n, const rays *x, const
     }
 }
 
-static void box_foot(const surface *base, int part, int n, const rays *x, const real *t, closest_points *p)
+static void box_closest(const surface *base, int part, int n, const rays *x, const real *t, closest_points *p)
 {
     const box *f = (const box *)base;
     const face c = box_face(f, part);
@@ -191,13 +193,13 @@ static void box_foot(const surface *base, int part, int n, const rays *x, const 
         p->h[i] = c.side * (r[i] + s[i] * t[i] - c.at);
         p->u[i] = (ra[i] + sa[i] * t[i] - f->lo[c.a]) * iu;
         p->w[i] = (rb[i] + sb[i] * t[i] - f->lo[c.b]) * iw;
-        axis_of(&p->gu, c.a)[i] = iu;
-        axis_of(&p->gw, c.b)[i] = iw;
-        axis_of(&p->gh, c.k)[i] = c.side;
+        component(&p->gu, c.a)[i] = iu;
+        component(&p->gw, c.b)[i] = iw;
+        component(&p->gh, c.k)[i] = c.side;
     }
 }
 
-static void box_steep(const surface *base, int part, int n, const rays *x, const closest_points *p, real Pu_max,
+static void box_lipschitz(const surface *base, int part, int n, const rays *x, const closest_points *p, real Pu_max,
                       real Pw_max, real *rate, real *reach)
 {
     const box *f = (const box *)base;
@@ -239,18 +241,21 @@ static const surface_ops box_methods = {
     .extent = box_extent,
     .box = box_box,
     .parts = 6,
-    .shell = box_shell,
-    .foot = box_foot,
-    .steep = box_steep,
+    .bound = box_bound,
+    .closest = box_closest,
+    .lipschitz = box_lipschitz,
 };
+
+/* In the numbers that it is kept in. */
+static bool is_thick(vec3 from, vec3 to)
+{
+    return (real)from.x != (real)to.x && (real)from.y != (real)to.y && (real)from.z != (real)to.z;
+}
 
 surface *box_new(vec3 from, vec3 to)
 {
-    double a[3] = {from.x, from.y, from.z}, b[3] = {to.x, to.y, to.z};
-    for (int k = 0; k < 3; k++)
-        if (!((real)a[k] != (real)b[k]))
-            return NULL;
-    box *f = calloc(1, sizeof *f);
+    const double a[3] = {from.x, from.y, from.z}, b[3] = {to.x, to.y, to.z};
+    box *f = is_thick(from, to) ? calloc(1, sizeof *f) : NULL;
     if (!f)
         return NULL;
     f->base.ops = &box_methods;
@@ -260,3 +265,43 @@ surface *box_new(vec3 from, vec3 to)
     }
     return &f->base;
 }
+
+/* ---- as the scene file has it ---- */
+
+static const form_parameter box_parameters[] = {
+    {"from", FORM_PLACE, 0, "a corner [x, y, z]"},
+    {"to", FORM_PLACE, 1, "the opposite corner [x, y, z]"},
+    {0},
+};
+
+static surface *make_box(const shape_values *v, form_fault *fault)
+{
+    if (!is_thick(v->v[0], v->v[1]))
+        *fault = (form_fault){"to", "a box without thickness, expected 'to' apart from 'from' along x, y and z"};
+    return box_new(v->v[0], v->v[1]);
+}
+
+static double *coordinate(vec3 *v, int k) { return k == 0 ? &v->x : k == 1 ? &v->y : &v->z; }
+
+/* u and w go along the two next axes on the high side, swapped on the low one. */
+static bool flat_face(const shape_values *v, int part, flat_part *out)
+{
+    const int k = part >> 1, high = part & 1, a = (k + (high ? 1 : 2)) % 3, b = (k + (high ? 2 : 1)) % 3;
+    const vec3 p = v->v[0], q = v->v[1];
+    vec3 lo = {fmin(p.x, q.x), fmin(p.y, q.y), fmin(p.z, q.z)}, hi = {fmax(p.x, q.x), fmax(p.y, q.y), fmax(p.z, q.z)};
+    *out = (flat_part){.O = lo, .rim = -1};
+    if (high)
+        *coordinate(&out->O, k) = *coordinate(&hi, k);
+    *coordinate(&out->U, a) = *coordinate(&hi, a) - *coordinate(&lo, a);
+    *coordinate(&out->W, b) = *coordinate(&hi, b) - *coordinate(&lo, b);
+    return true;
+}
+
+const closed_form form_box = {
+    .name = "box",
+    .parameters = box_parameters,
+    .make = make_box,
+    .flat = flat_face,
+    .solid = true,
+    .povray = "box {\n  $from, $to\n",
+};

@@ -6,20 +6,22 @@
 #include "geometry/cone.h"
 
 #include "base/frame.h"
+#include "geometry/closed_form.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 
-/* Two stretches of a ray: in the solid within the endless side, and between the ends. Each is empty where its ends are
- * the wrong way round. */
+/* Two intervals of t: within the infinite cone, from `in` to `out`, and between the planes of the ends. An interval
+ * whose ends are in the wrong order is empty. */
 typedef struct spans {
     real in, out, from, to;
 } spans;
 
-/* For the cone whose radius is rho at the axis' lower end, and the ends at heights lo and hi.
- * The roots of a t^2 + 2 b t + c are taken from the ray's place nearest to the cone's middle, so that no digit is lost
- * to the way there; the discriminant b^2 - a c is a difference of two squares, which cancels only at a tangent. Below 0
- * its root is NaN, and so is what follows: every comparison with that is false. (Choices by more than one comparison
- * would keep gcc 12 from vectorising the loops.) */
+/* For the cone whose radius is rho at the lower end of the axis, with ends at the heights lo and hi.
+ * t is measured from the point of the ray that is closest to the middle of the cone, so that a distant origin costs no
+ * precision. The discriminant b^2 - a c of a t^2 + 2 b t + c is a difference of two squares, which cancels only at a
+ * tangent. Where it is below 0 its root is NaN, and so are the results, for which every comparison is false. (Choices
+ * by more than one comparison would keep gcc 12 from vectorising the loops.) */
 KM_INLINE spans cone_spans(const cone *f, real rho, real lo, real hi, cone_ray l)
 {
     real s2 = l.sx * l.sx + l.sy * l.sy + l.sz * l.sz;
@@ -51,7 +53,7 @@ KM_INLINE spans cone_spans(const cone *f, real rho, real lo, real hi, cone_ray l
 
 KM_INLINE spans spans_of(const cone *f, cone_ray l) { return cone_spans(f, f->from, 0, f->length, l); }
 
-/* The two places where the ray meets the surface, at t0 <= t1, as far as they are any. */
+/* The ray may meet the surface at t0 <= t1: whether it does at the first, and at the second. */
 typedef struct places {
     real t0, t1;
     int first, second;
@@ -77,40 +79,11 @@ KM_INLINE void hit(const surface *base, int capped, int n, const rays *x, int32_
         int first = p.first & (p.t0 > 0), second = p.second & (p.t1 > 0);
         real t = first ? p.t0 : p.t1;
         int take = (first | second) & (t < h->t[i]);
-        h->t[i] = take ? t : h->t[i];
-        h->id[i] = take ? id : h->id[i];
+        hits_take(h, i, take, t, id);
     }
 }
 
-STAGE static void cone_open_hit(const surface *base, int n, const rays *x, int32_t id, hits *h)
-{
-    hit(base, 0, n, x, id, h);
-}
-STAGE static void cone_capped_hit(const surface *base, int n, const rays *x, int32_t id, hits *h)
-{
-    hit(base, 1, n, x, id, h);
-}
-
-KM_INLINE void occlude(const surface *base, int capped, int n, const rays *x, real *lit)
-{
-    const cone f = *(const cone *)base;
-    for (int i = 0; i < n; i++) {
-        places p = cone_places(&f, capped, cone_local_of(&f, x, i));
-        int met = (p.first & (p.t0 > 0) & (p.t0 < 1)) | (p.second & (p.t1 > 0) & (p.t1 < 1));
-        lit[i] = met ? 0 : lit[i];
-    }
-}
-
-STAGE static void cone_open_occlude(const surface *base, int n, const rays *x, real *lit)
-{
-    occlude(base, 0, n, x, lit);
-}
-STAGE static void cone_capped_occlude(const surface *base, int n, const rays *x, real *lit)
-{
-    occlude(base, 1, n, x, lit);
-}
-
-/* From a place of the side one root is 0, the other -2 b/a; an open side is met there if that is between its ends. */
+/* For a ray from the side one root is 0, the other -2 b/a. An open side is met there if that is between its ends. */
 KM_INLINE real cone_open_far(const cone *f, cone_ray l, int *met)
 {
     real grow = f->rise * l.sy, r = f->from + f->rise * l.oy;
@@ -120,8 +93,8 @@ KM_INLINE real cone_open_far(const cone *f, cone_ray l, int *met)
     return t;
 }
 
-/* From a place of a capped one the solid is entered here or not at all; entered, it is left through the first of its
- * other parts, and of the side through that other root. */
+/* A ray from a capped cone enters the solid at its start or not at all. Inside, it leaves through the first of the
+ * other parts; from the side to the side through the other root. */
 KM_INLINE real cone_capped_far(const cone *f, cone_ray l, int part, int *met)
 {
     real grow = f->rise * l.sy, r = f->from + f->rise * l.oy;
@@ -146,22 +119,38 @@ KM_INLINE void hit_own(const surface *base, int capped, int n, const rays *x, co
         real far = capped ? cone_capped_far(&f, l, from->part[i], &again) : cone_open_far(&f, l, &again);
         real near = first ? p.t0 : p.t1, t = own ? far : near;
         int met = (own & again) | ((1 - own) & (first | second)), take = met & (t < h->t[i]);
-        h->t[i] = take ? t : h->t[i];
-        h->id[i] = take ? id : h->id[i];
+        hits_take(h, i, take, t, id);
     }
 }
 
-STAGE static void cone_open_hit_own(const surface *base, int n, const rays *x, const ray_origins *from, int32_t id,
-                                    hits *h)
+KM_INLINE void occlude(const surface *base, int capped, int n, const rays *x, real *lit)
 {
-    hit_own(base, 0, n, x, from, id, h);
+    const cone f = *(const cone *)base;
+    for (int i = 0; i < n; i++) {
+        places p = cone_places(&f, capped, cone_local_of(&f, x, i));
+        int met = (p.first & (p.t0 > 0) & (p.t0 < 1)) | (p.second & (p.t1 > 0) & (p.t1 < 1));
+        lit[i] = met ? 0 : lit[i];
+    }
 }
 
-STAGE static void cone_capped_hit_own(const surface *base, int n, const rays *x, const ray_origins *from, int32_t id,
-                                      hits *h)
-{
-    hit_own(base, 1, n, x, from, id, h);
-}
+/* The three stages of an open or a capped cone. */
+#define CONE_STAGES(form, capped)                                                                                      \
+    STAGE static void cone_##form##_hit(const surface *f, int n, const rays *x, int32_t id, hits *h)                   \
+    {                                                                                                                  \
+        hit(f, capped, n, x, id, h);                                                                                   \
+    }                                                                                                                  \
+    STAGE static void cone_##form##_hit_own(const surface *f, int n, const rays *x, const ray_origins *from,           \
+                                            int32_t id, hits *h)                                                       \
+    {                                                                                                                  \
+        hit_own(f, capped, n, x, from, id, h);                                                                         \
+    }                                                                                                                  \
+    STAGE static void cone_##form##_occlude(const surface *f, int n, const rays *x, real *lit)                         \
+    {                                                                                                                  \
+        occlude(f, capped, n, x, lit);                                                                                 \
+    }
+
+CONE_STAGES(open, 0)
+CONE_STAGES(capped, 1)
 
 STAGE static void cone_open_occlude_own(const surface *base, int n, const rays *x, const int32_t *part, real *lit)
 {
@@ -189,7 +178,7 @@ STAGE static void cone_capped_occlude_own(const surface *base, int n, const rays
 
 /* Q + P n/|n| on the side is on the cone whose radius is larger by P/cos a, from w = 0 to its side's end. Seen along
  * the axis that is from lo to hi. */
-STAGE static void cone_side_shell(const cone *restrict base, int n, const rays *restrict x, const real *restrict end,
+STAGE static void cone_side_bound(const cone *restrict base, int n, const rays *restrict x, const real *restrict end,
                                   real Pmin, real Pmax, real *restrict t0, real *restrict t1)
 {
     const cone f = *base;
@@ -209,18 +198,18 @@ STAGE static void cone_side_shell(const cone *restrict base, int n, const rays *
     }
 }
 
-static void cone_shell(const surface *base, int part, int n, const rays *x, const real *end, real Pmin, real Pmax,
+static void cone_bound(const surface *base, int part, int n, const rays *x, const real *end, real Pmin, real Pmax,
                        real *t0, real *t1)
 {
     if (part == 0)
-        cone_side_shell((const cone *)base, n, x, end, Pmin, Pmax, t0, t1);
+        cone_side_bound((const cone *)base, n, x, end, Pmin, Pmax, t0, t1);
     else {
         const surface *cap = &cone_cap(base, part)->base;
-        cap->ops->shell(cap, 0, n, x, end, Pmin, Pmax, t0, t1);
+        cap->ops->bound(cap, 0, n, x, end, Pmin, Pmax, t0, t1);
     }
 }
 
-STAGE static void cone_side_foot(const cone *restrict base, int n, const rays *restrict x, const real *restrict t,
+STAGE static void cone_side_closest(const cone *restrict base, int n, const rays *restrict x, const real *restrict t,
                                  closest_points *restrict p)
 {
     const cone f = *base;
@@ -238,19 +227,19 @@ STAGE static void cone_side_foot(const cone *restrict base, int n, const rays *r
     }
 }
 
-static void cone_foot(const surface *base, int part, int n, const rays *x, const real *t, closest_points *p)
+static void cone_closest(const surface *base, int part, int n, const rays *x, const real *t, closest_points *p)
 {
     if (part == 0)
-        cone_side_foot((const cone *)base, n, x, t, p);
+        cone_side_closest((const cone *)base, n, x, t, p);
     else {
         const surface *cap = &cone_cap(base, part)->base;
-        cap->ops->foot(cap, 0, n, x, t, p);
+        cap->ops->closest(cap, 0, n, x, t, p);
     }
 }
 
 /* The directions of h, of w and around the axis are at right angles, so that the ray's way is shared between them
  * (Cauchy and Schwarz); |grad u| is 1/(distance to the axis), within half of which it at most doubles. */
-STAGE static void cone_side_steep(int n, const rays *restrict x, const closest_points *restrict p, real Pu_max,
+STAGE static void cone_side_lipschitz(int n, const rays *restrict x, const closest_points *restrict p, real Pu_max,
                                   real Pw_max, real *restrict rate, real *restrict reach)
 {
     for (int i = 0; i < n; i++) {
@@ -261,24 +250,24 @@ STAGE static void cone_side_steep(int n, const rays *restrict x, const closest_p
     }
 }
 
-static void cone_steep(const surface *base, int part, int n, const rays *x, const closest_points *p, real Pu_max,
+static void cone_lipschitz(const surface *base, int part, int n, const rays *x, const closest_points *p, real Pu_max,
                        real Pw_max, real *rate, real *reach)
 {
     if (part == 0)
-        cone_side_steep(n, x, p, Pu_max, Pw_max, rate, reach);
+        cone_side_lipschitz(n, x, p, Pu_max, Pw_max, rate, reach);
     else {
         const surface *cap = &cone_cap(base, part)->base;
-        cap->ops->steep(cap, 0, n, x, p, Pu_max, Pw_max, rate, reach);
+        cap->ops->lipschitz(cap, 0, n, x, p, Pu_max, Pw_max, rate, reach);
     }
 }
 
-/* What a cone and a cylinder, open or with caps, have in common. A cylinder's stretches end with its side. */
+/* The methods of a cone or a cylinder, open or capped. */
 #define CONE_METHODS(name, is_cone, form, number)                                                                      \
     {                                                                                                                  \
         .kind = name, .hit = cone_##form##_hit, .hit_own = cone_##form##_hit_own, .locate = cone_locate,               \
         .eval = cone_eval, .occlude = cone_##form##_occlude, .occlude_own = cone_##form##_occlude_own,                 \
-        .extent = cone_extent, .box = cone_box, .parts = number, .shell = cone_shell, .foot = cone_foot,               \
-        .steep = cone_steep, .loose = is_cone                                                                          \
+        .extent = cone_extent, .box = cone_box, .parts = number, .bound = cone_bound, .closest = cone_closest,            \
+        .lipschitz = cone_lipschitz, .unclamped = is_cone                                                                  \
     }
 
 static const surface_ops cone_methods[2][2] = {
@@ -314,3 +303,95 @@ surface *cone_new(vec3 from, double from_radius, vec3 to, double to_radius, bool
     disc_set(&f->cap[1], from, a.x, a.z, from_radius);
     return &f->base;
 }
+
+/* ---- as the scene file has them ---- */
+
+#define FROM                                                                                                           \
+    {                                                                                                                  \
+        "from", FORM_PLACE, 0, "the middle of one end [x, y, z]"                                                       \
+    }
+#define TO                                                                                                             \
+    {                                                                                                                  \
+        "to", FORM_PLACE, 1, "the middle of the other end [x, y, z]"                                                   \
+    }
+#define OPEN                                                                                                           \
+    {                                                                                                                  \
+        "open", FORM_OPEN, 0, NULL                                                                                     \
+    }
+
+static const form_parameter cylinder_parameters[] = {FROM, TO, {"radius", FORM_POSITIVE, 0, NULL}, OPEN, {0}};
+
+static const form_parameter cone_parameters[] = {
+    FROM, {"from_radius", FORM_LENGTH, 0, NULL}, TO, {"to_radius", FORM_LENGTH, 1, NULL}, OPEN, {0},
+};
+
+static bool has_length(const shape_values *v) { return vec3_length(vec3_sub(v->v[1], v->v[0])) >= SHAPE_SMALL; }
+
+static surface *make_cylinder(const shape_values *v, form_fault *fault)
+{
+    if (has_length(v))
+        return cone_new(v->v[0], v->r[0], v->v[1], v->r[0], v->open);
+    *fault = (form_fault){"to", "a cylinder without length, expected 'to' apart from 'from'"};
+    return NULL;
+}
+
+static surface *make_cone(const shape_values *v, form_fault *fault)
+{
+    if (!has_length(v))
+        *fault = (form_fault){"to", "a cone without length, expected 'to' apart from 'from'"};
+    else if (v->r[0] < SHAPE_SMALL && v->r[1] < SHAPE_SMALL)
+        *fault = (form_fault){NULL, "a cone without thickness, expected a radius of 1e-6 or more at one end"};
+    else
+        return cone_new(v->v[0], v->r[0], v->v[1], v->r[1], v->open);
+    return NULL;
+}
+
+/* The side has no flat part; part 1 is the cap at `to`, where the axis is n. */
+static bool flat_cap(const shape_values *v, int part, double to_radius, flat_part *out)
+{
+    const frame a = frame_about(vec3_sub(v->v[1], v->v[0]));
+    if (part == 1)
+        *out = (flat_part){v->v[1], a.x, vec3_scale(a.z, -1), to_radius};
+    else
+        *out = (flat_part){v->v[0], a.x, a.z, v->r[0]};
+    return part > 0;
+}
+
+static bool cylinder_flat(const shape_values *v, int part, flat_part *out) { return flat_cap(v, part, v->r[0], out); }
+static bool cone_flat(const shape_values *v, int part, flat_part *out) { return flat_cap(v, part, v->r[1], out); }
+
+static bool side_formula(const shape_values *v, double to_radius, form_formula *out)
+{
+    const vec3 axis = vec3_sub(v->v[1], v->v[0]);
+    const double length = vec3_length(axis), slope = v->r[0] - to_radius, side = sqrt(length * length + slope * slope);
+    char rho[64], y[64];
+    snprintf(rho, sizeof rho, "%.17g + %.17g*w", to_radius, slope / side);
+    snprintf(y, sizeof y, "%.17g - %.17g*w", 0.5 * length, length / side);
+    out->w[0] = 0;
+    out->w[1] = side;
+    formula_revolve(out, frame_about(axis), rho, y);
+    return v->open;
+}
+
+static bool cylinder_formula(const shape_values *v, form_formula *out) { return side_formula(v, v->r[0], out); }
+static bool cone_formula(const shape_values *v, form_formula *out) { return side_formula(v, v->r[1], out); }
+
+const closed_form form_cylinder = {
+    .name = "cylinder",
+    .parameters = cylinder_parameters,
+    .make = make_cylinder,
+    .flat = cylinder_flat,
+    .formula = cylinder_formula,
+    .solid = true,
+    .povray = "cylinder {\n  $from, $to, $radius$open\n",
+};
+
+const closed_form form_cone = {
+    .name = "cone",
+    .parameters = cone_parameters,
+    .make = make_cone,
+    .flat = cone_flat,
+    .formula = cone_formula,
+    .solid = true,
+    .povray = "cone {\n  $from, $from_radius, $to, $to_radius$open\n",
+};

@@ -7,17 +7,17 @@
 
 typedef struct cone {
     surface base;
-    real F[3], X[3], Y[3], Z[3]; /* the middle of the lower end, and the frame */
+    real F[3], X[3], Y[3], Z[3]; /* the middle of the lower end, and the frame; Y is the axis */
     real from, to;               /* radii of the lower and of the upper end */
     real length;                 /* of the axis */
     real rise;                   /* how the radius changes along it */
     real side;                   /* length of the side */
-    real sin, cos;               /* of a */
-    int capped;
-    plane cap[2]; /* on top, at the bottom; a radius of 0 is no cap */
+    real sin, cos;               /* of the angle a between side and axis */
+    int capped;                  /* 0: open, 1: with caps */
+    plane cap[2];                /* on top, at the bottom; a radius of 0 is no cap */
 } cone;
 
-/* A ray in the frame. */
+/* A ray in the frame: the origin o and the direction s along X, Y and Z. */
 typedef struct cone_ray {
     real ox, oy, oz, sx, sy, sz;
 } cone_ray;
@@ -34,7 +34,7 @@ KM_INLINE cone_ray cone_local_from(const cone *f, const vec3s *r, const vec3s *s
 
 KM_INLINE cone_ray cone_local_of(const cone *f, const rays *x, int i) { return cone_local_from(f, &x->r, &x->s, i); }
 
-/* A vector of the frame: x and z along the radius and across it, y along the axis. */
+/* Set lane i to the vector x X + y Y + z Z. */
 static inline void cone_vector(const cone *f, vec3s *v, int i, real x, real y, real z)
 {
     v->x[i] = x * f->X[0] + y * f->Y[0] + z * f->Z[0];

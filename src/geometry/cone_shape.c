@@ -1,7 +1,7 @@
 /* The shape of cones and cylinders: (u,w) of a hit, Q and its partials, range and bounding box. */
 #include "geometry/cone.h"
 
-/* The part that a hit is on is the one that it is farthest out towards, as with a box. */
+/* The part of a hit is the one whose plane or side it is farthest beyond, or least within. */
 STAGE static void cone_part(const cone *restrict base, int n, const rays *restrict x, const real *restrict t,
                             int32_t *restrict part)
 {
@@ -41,7 +41,7 @@ STAGE static void cone_side_eval(const cone *restrict base, int n, const real *r
                                  int order, partials *restrict q)
 {
     const cone f = *base;
-    const real least = R(1e-12) * f.side; /* as at a sphere's pole: at an apex the direction of n is kept */
+    const real least = R(1e-12) * f.side; /* keeps the direction of n at an apex, as POLE does in sphere.c */
     for (int i = 0; i < n; i++) {
         real cu = (real)km_cos((double)u[i]), su = (real)km_sin((double)u[i]);
         real rho = f.to + w[i] * f.sin, y = f.length - w[i] * f.cos, rim = real_max(rho, least);
@@ -63,7 +63,7 @@ STAGE static void cone_side_eval(const cone *restrict base, int n, const real *r
     vec3s_fill(&q->Qww, n, 0, 0, 0);
 }
 
-/* Of lanes on caps: both are flat, and differ in their place and in the way of w. */
+/* The lanes on caps. The two caps differ in their height and in the direction of w. */
 STAGE static void cone_caps_eval(const cone *restrict base, int n, const int32_t *restrict part, const real *restrict u,
                                  const real *restrict w, partials *restrict q)
 {
@@ -82,8 +82,8 @@ STAGE static void cone_caps_eval(const cone *restrict base, int n, const int32_t
     }
 }
 
-/* What is 0 on a cap. */
-STAGE static void cone_caps_bend(int n, const int32_t *restrict part, vec3s *restrict v)
+/* Set a second partial to 0 on caps. */
+STAGE static void cone_caps_flatten(int n, const int32_t *restrict part, vec3s *restrict v)
 {
     for (int i = 0; i < n; i++) {
         v->x[i] = part[i] == 0 ? v->x[i] : 0;
@@ -100,8 +100,8 @@ void cone_eval(const surface *base, int n, const int32_t *part, const real *u, c
         return;
     cone_caps_eval(f, n, part, u, w, q);
     if (order == 2) {
-        cone_caps_bend(n, part, &q->Quu);
-        cone_caps_bend(n, part, &q->Quw);
+        cone_caps_flatten(n, part, &q->Quu);
+        cone_caps_flatten(n, part, &q->Quw);
     }
 }
 
@@ -119,7 +119,7 @@ void cone_extent(const surface *base, int part, double u[2], double w[2])
     }
 }
 
-/* That of the discs at the ends. */
+/* The box of the discs at the ends. */
 void cone_box(const surface *base, double lo[3], double hi[3])
 {
     const cone *f = (const cone *)base;

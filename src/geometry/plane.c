@@ -2,21 +2,22 @@
 #include "geometry/plane.h"
 
 #include "math/slab.h"
-#include "base/frame.h"
+#include "geometry/closed_form.h"
 
 #include <stdlib.h>
 
-/* Where the plane ends: a constant in each of the stages. */
+/* Where the plane ends: a constant in each stage, so that loops have no choice in them. */
 enum bounds { NOWHERE, AT_SIDES, AT_RIM };
 
-/* t of the crossing with the plane. A ray along the plane gives an infinite or undefined t, for which
- * every comparison below is false. */
+/* t of the crossing with the plane. A ray along the plane gives an infinite t or NaN, for which every comparison below
+ * is false. */
 static inline real plane_t(const plane *f, real rx, real ry, real rz, real sx, real sy, real sz)
 {
     real d = (f->O[0] - rx) * f->N[0] + (f->O[1] - ry) * f->N[1] + (f->O[2] - rz) * f->N[2];
     return d / (sx * f->N[0] + sy * f->N[1] + sz * f->N[2]);
 }
 
+/* A coordinate of the point p, by a vector of the dual basis. */
 static inline real plane_coord(const plane *f, const real *D, real px, real py, real pz)
 {
     return (px - f->O[0]) * D[0] + (py - f->O[1]) * D[1] + (pz - f->O[2]) * D[2];
@@ -30,7 +31,7 @@ static inline int plane_inside(const plane *f, const rays *x, int i, enum bounds
     return end == AT_RIM ? u * u + w * w <= f->R * f->R : (u >= 0) & (u <= 1) & (w >= 0) & (w <= 1);
 }
 
-/* t of the hit, by a ray with t in (0, last), and `last` without one. */
+/* t of the hit with t in (0, last), or `last` if there is none. */
 static inline real plane_cut(const plane *f, const rays *x, int i, enum bounds end, real last)
 {
     real t = plane_t(f, x->r.x[i], x->r.y[i], x->r.z[i], x->s.x[i], x->s.y[i], x->s.z[i]);
@@ -57,41 +58,36 @@ static inline void hit_own(const surface *base, enum bounds end, int n, const ra
         real t = plane_t(&f, x->r.x[i], x->r.y[i], x->r.z[i], x->s.x[i], x->s.y[i], x->s.z[i]);
         int in = end == NOWHERE ? 1 : plane_inside(&f, x, i, end, t),
             take = in & (from->id[i] != id) & (t > 0) & (t < h->t[i]);
-        h->t[i] = take ? t : h->t[i];
-        h->id[i] = take ? id : h->id[i];
+        hits_take(h, i, take, t, id);
     }
 }
 
-STAGE static void plane_hit(const surface *base, int n, const rays *x, int32_t id, hits *h)
+static inline void occlude(const surface *base, enum bounds end, int n, const rays *x, real *lit)
 {
-    hit(base, NOWHERE, n, x, id, h);
+    const plane f = *(const plane *)base;
+    for (int i = 0; i < n; i++)
+        lit[i] = plane_cut(&f, x, i, end, 1) < 1 ? 0 : lit[i];
 }
 
-STAGE static void rectangle_hit(const surface *base, int n, const rays *x, int32_t id, hits *h)
-{
-    hit(base, AT_SIDES, n, x, id, h);
-}
+/* The three stages of one kind of flat surface, with its bounds as a constant. */
+#define FLAT_STAGES(kind, bounds)                                                                                      \
+    STAGE static void kind##_hit(const surface *f, int n, const rays *x, int32_t id, hits *h)                          \
+    {                                                                                                                  \
+        hit(f, bounds, n, x, id, h);                                                                                   \
+    }                                                                                                                  \
+    STAGE static void kind##_hit_own(const surface *f, int n, const rays *x, const ray_origins *from, int32_t id,      \
+                                     hits *h)                                                                          \
+    {                                                                                                                  \
+        hit_own(f, bounds, n, x, from, id, h);                                                                         \
+    }                                                                                                                  \
+    STAGE static void kind##_occlude(const surface *f, int n, const rays *x, real *lit)                                \
+    {                                                                                                                  \
+        occlude(f, bounds, n, x, lit);                                                                                 \
+    }
 
-STAGE static void disc_hit(const surface *base, int n, const rays *x, int32_t id, hits *h)
-{
-    hit(base, AT_RIM, n, x, id, h);
-}
-
-STAGE static void plane_hit_own(const surface *base, int n, const rays *x, const ray_origins *from, int32_t id, hits *h)
-{
-    hit_own(base, NOWHERE, n, x, from, id, h);
-}
-
-STAGE static void rectangle_hit_own(const surface *base, int n, const rays *x, const ray_origins *from, int32_t id,
-                                    hits *h)
-{
-    hit_own(base, AT_SIDES, n, x, from, id, h);
-}
-
-STAGE static void disc_hit_own(const surface *base, int n, const rays *x, const ray_origins *from, int32_t id, hits *h)
-{
-    hit_own(base, AT_RIM, n, x, from, id, h);
-}
+FLAT_STAGES(plane, NOWHERE)
+FLAT_STAGES(rectangle, AT_SIDES)
+FLAT_STAGES(disc, AT_RIM)
 
 STAGE static void plane_locate(const surface *base, int n, const rays *x, const real *t, int32_t *part, real *u,
                                real *w)
@@ -122,28 +118,6 @@ STAGE static void plane_eval(const surface *base, int n, const int32_t *part, co
         vec3s_fill(&q->Quw, n, 0, 0, 0);
         vec3s_fill(&q->Qww, n, 0, 0, 0);
     }
-}
-
-static inline void occlude(const surface *base, enum bounds end, int n, const rays *x, real *lit)
-{
-    const plane f = *(const plane *)base;
-    for (int i = 0; i < n; i++)
-        lit[i] = plane_cut(&f, x, i, end, 1) < 1 ? 0 : lit[i];
-}
-
-STAGE static void plane_occlude(const surface *base, int n, const rays *x, real *lit)
-{
-    occlude(base, NOWHERE, n, x, lit);
-}
-
-STAGE static void rectangle_occlude(const surface *base, int n, const rays *x, real *lit)
-{
-    occlude(base, AT_SIDES, n, x, lit);
-}
-
-STAGE static void disc_occlude(const surface *base, int n, const rays *x, real *lit)
-{
-    occlude(base, AT_RIM, n, x, lit);
 }
 
 /* ---- for true displacement ---- */
@@ -185,21 +159,21 @@ static inline void shell(const surface *base, enum bounds bound, int n, const ra
     }
 }
 
-static void plane_shell(const surface *base, int part, int n, const rays *x, const real *end, real Pmin, real Pmax,
+static void plane_bound(const surface *base, int part, int n, const rays *x, const real *end, real Pmin, real Pmax,
                         real *t0, real *t1)
 {
     (void)part;
     shell(base, NOWHERE, n, x, end, Pmin, Pmax, t0, t1);
 }
 
-static void rectangle_shell(const surface *base, int part, int n, const rays *x, const real *end, real Pmin, real Pmax,
+static void rectangle_bound(const surface *base, int part, int n, const rays *x, const real *end, real Pmin, real Pmax,
                             real *t0, real *t1)
 {
     (void)part;
     shell(base, AT_SIDES, n, x, end, Pmin, Pmax, t0, t1);
 }
 
-static void disc_shell(const surface *base, int part, int n, const rays *x, const real *end, real Pmin, real Pmax,
+static void disc_bound(const surface *base, int part, int n, const rays *x, const real *end, real Pmin, real Pmax,
                        real *t0, real *t1)
 {
     (void)part;
@@ -207,7 +181,7 @@ static void disc_shell(const surface *base, int part, int n, const rays *x, cons
 }
 
 /* The dual basis is in the plane, so Du.(X - O) is u of the foot. */
-STAGE static void plane_foot(const surface *base, int part, int n, const rays *x, const real *restrict t,
+STAGE static void plane_closest(const surface *base, int part, int n, const rays *x, const real *restrict t,
                              closest_points *restrict p)
 {
     const plane f = *(const plane *)base;
@@ -224,7 +198,7 @@ STAGE static void plane_foot(const surface *base, int part, int n, const rays *x
 }
 
 /* u, w and the height are linear along a ray, so the rate holds for all of it. */
-STAGE static void plane_steep(const surface *base, int part, int n, const rays *x, const closest_points *p, real Pu_max,
+STAGE static void plane_lipschitz(const surface *base, int part, int n, const rays *x, const closest_points *p, real Pu_max,
                               real Pw_max, real *restrict rate, real *restrict reach)
 {
     const plane f = *(const plane *)base;
@@ -303,9 +277,9 @@ static const surface_ops plane_methods = {
     .extent = plane_extent,
     .box = plane_box,
     .parts = 1,
-    .shell = plane_shell,
-    .foot = plane_foot,
-    .steep = plane_steep,
+    .bound = plane_bound,
+    .closest = plane_closest,
+    .lipschitz = plane_lipschitz,
 };
 
 static const surface_ops rectangle_methods = {
@@ -318,9 +292,9 @@ static const surface_ops rectangle_methods = {
     .extent = rectangle_extent,
     .box = rectangle_box,
     .parts = 1,
-    .shell = rectangle_shell,
-    .foot = plane_foot,
-    .steep = plane_steep,
+    .bound = rectangle_bound,
+    .closest = plane_closest,
+    .lipschitz = plane_lipschitz,
 };
 
 static const surface_ops disc_methods = {
@@ -333,17 +307,20 @@ static const surface_ops disc_methods = {
     .extent = disc_extent,
     .box = disc_box,
     .parts = 1,
-    .shell = disc_shell,
-    .foot = plane_foot,
-    .steep = plane_steep,
+    .bound = disc_bound,
+    .closest = plane_closest,
+    .lipschitz = plane_lipschitz,
 };
+
+/* The squared sine of the angle between U and W below which float has no digits of N: an angle of 1e-6, float's
+ * rounding is 1e-7. */
+#define PARALLEL2 1e-12
 
 bool plane_place(plane *f, vec3 origin, vec3 U, vec3 W)
 {
     vec3 N = vec3_cross(U, W);
     double n2 = vec3_dot(N, N), e2 = vec3_dot(U, U) * vec3_dot(W, W);
-    /* sin^2 of the angle between them: below this, float has no digit of N left */
-    if (!(n2 > 1e-12 * e2) || !(e2 < HUGE_VAL))
+    if (!(n2 > PARALLEL2 * e2) || !(e2 < HUGE_VAL))
         return false;
     vec3_round(f->O, origin);
     vec3_round(f->U, U);
@@ -389,3 +366,76 @@ surface *disc_new(vec3 centre, vec3 normal, double radius)
     disc_set(f, centre, a.x, vec3_scale(a.z, -1), radius);
     return &f->base;
 }
+
+/* ---- as the scene file has them ---- */
+
+static const form_parameter edges[] = {
+    {"origin", FORM_PLACE, 0, "the place of u = w = 0, [x, y, z]"},
+    {"u", FORM_EDGE, 1, "the edge along u, [x, y, z]"},
+    {"w", FORM_EDGE, 2, "the edge along w, [x, y, z]"},
+    {0},
+};
+
+static surface *make_flat(const shape_values *v, bool bounded, form_fault *fault)
+{
+    plane trial;
+    if (!plane_place(&trial, v->v[0], v->v[1], v->v[2]))
+        *fault = (form_fault){NULL, "u and w are parallel, expected two directions"};
+    return plane_new(v->v[0], v->v[1], v->v[2], bounded);
+}
+
+static surface *make_plane(const shape_values *v, form_fault *fault) { return make_flat(v, false, fault); }
+static surface *make_rectangle(const shape_values *v, form_fault *fault) { return make_flat(v, true, fault); }
+
+static bool flat_edges(const shape_values *v, int part, flat_part *out)
+{
+    (void)part;
+    *out = (flat_part){v->v[0], v->v[1], v->v[2], -1};
+    return true;
+}
+
+const closed_form form_plane = {
+    .name = "plane",
+    .parameters = edges,
+    .make = make_plane,
+    .flat = flat_edges,
+    .solid = true,
+    .povray = "plane {\n  $plane\n",
+};
+
+const closed_form form_rectangle = {
+    .name = "rectangle",
+    .parameters = edges,
+    .make = make_rectangle,
+    .flat = flat_edges,
+    .povray = "$rectangle",
+};
+
+static const form_parameter disc_parameters[] = {
+    {"center", FORM_PLACE, 0, "a place [x, y, z]"},
+    {"normal", FORM_DIRECTION, 1, "the direction of n, [x, y, z]"},
+    {"radius", FORM_POSITIVE, 0, NULL},
+    {0},
+};
+
+static surface *make_disc(const shape_values *v, form_fault *fault)
+{
+    (void)fault;
+    return disc_new(v->v[0], v->v[1], v->r[0]);
+}
+
+static bool flat_disc(const shape_values *v, int part, flat_part *out)
+{
+    const frame a = frame_about(v->v[1]);
+    (void)part;
+    *out = (flat_part){v->v[0], a.x, vec3_scale(a.z, -1), v->r[0]};
+    return true;
+}
+
+const closed_form form_disc = {
+    .name = "disc",
+    .parameters = disc_parameters,
+    .make = make_disc,
+    .flat = flat_disc,
+    .povray = "disc {\n  $center, $normal, $radius\n",
+};

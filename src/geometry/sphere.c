@@ -1,15 +1,20 @@
 /* Sphere: Q(u,w) = C + R (sin w cos u, cos w, sin w sin u). */
 #include "math/kmath.h"
-#include "geometry/surface.h"
+#include "geometry/closed_form.h"
 
+#include <stdio.h>
 #include <stdlib.h>
+
+/* At a pole Qu is 0, and so would be n. Qu is taken as if the sine of w were this much, which keeps the direction of n;
+ * bs_regular still sees that there is no second direction. */
+#define POLE 1e-12
 
 typedef struct sphere {
     surface base;
     real C[3], R;
 } sphere;
 
-/* Both roots of |r + s t - C|^2 = R^2, t0 <= t1; 0 where there is none.
+/* Both roots t0 <= t1 of |r + s t - C|^2 = R^2. Returns 0 where there are none.
  * The discriminant is taken from the foot of the perpendicular from C to the ray, |s|^2 R^2 - |s|^2 |foot|^2, which
  * keeps the digits that b^2 - a c loses for a small sphere far away [Haines et al., Ray Tracing Gems, ch. 7]. */
 static inline int sphere_roots(const sphere *f, real rx, real ry, real rz, real sx, real sy, real sz, real *t0,
@@ -33,8 +38,7 @@ STAGE static void sphere_hit(const surface *base, int n, const rays *x, int32_t 
         int met = sphere_roots(&f, x->r.x[i], x->r.y[i], x->r.z[i], x->s.x[i], x->s.y[i], x->s.z[i], &t0, &t1);
         real t = t0 > 0 ? t0 : t1;
         int take = met & (t > 0) & (t < h->t[i]);
-        h->t[i] = take ? t : h->t[i];
-        h->id[i] = take ? id : h->id[i];
+        hits_take(h, i, take, t, id);
     }
 }
 
@@ -54,8 +58,7 @@ STAGE static void sphere_hit_own(const surface *base, int n, const rays *x, cons
         int met = sphere_roots(&f, x->r.x[i], x->r.y[i], x->r.z[i], sx, sy, sz, &t0, &t1), own = from->id[i] == id;
         real far = sphere_far(&f, ax, ay, az, sx, sy, sz), near = t0 > 0 ? t0 : t1, t = own ? far : near;
         int take = (met | own) & (t > 0) & (t < h->t[i]);
-        h->t[i] = take ? t : h->t[i];
-        h->id[i] = take ? id : h->id[i];
+        hits_take(h, i, take, t, id);
     }
 }
 
@@ -81,9 +84,7 @@ STAGE static void sphere_eval(const surface *base, int n, const int32_t *part, c
     for (int i = 0; i < n; i++) {
         real cu = (real)km_cos((double)u[i]), su = (real)km_sin((double)u[i]);
         real cw = (real)km_cos((double)w[i]), sw = (real)km_sin((double)w[i]);
-        /* At a pole Qu is 0 and with it n. Its direction is kept by a circle of latitude that does not quite close;
-         * bs_regular still sees that there is no second direction. */
-        real rim = f.R * real_max(sw, R(1e-12)), r = f.R * sw, y = f.R * cw;
+        real rim = f.R * real_max(sw, R(POLE)), r = f.R * sw, y = f.R * cw;
         q->Q.x[i] = f.C[0] + r * cu;
         q->Q.y[i] = f.C[1] + y;
         q->Q.z[i] = f.C[2] + r * su;
@@ -135,7 +136,7 @@ STAGE static void sphere_occlude_own(const surface *base, int n, const rays *x, 
 
 /* The outer sphere's stretch. From within the inner one it begins at that one's far side; all others go through it, as
  * a ray that is below the rough surface already meets it on the far side only. */
-STAGE static void sphere_shell(const surface *base, int part, int n, const rays *x, const real *restrict end, real Pmin,
+STAGE static void sphere_bound(const surface *base, int part, int n, const rays *x, const real *restrict end, real Pmin,
                                real Pmax, real *restrict t0, real *restrict t1)
 {
     sphere outer = *(const sphere *)base, inner = outer;
@@ -152,7 +153,7 @@ STAGE static void sphere_shell(const surface *base, int part, int n, const rays 
     }
 }
 
-STAGE static void sphere_foot(const surface *base, int part, int n, const rays *x, const real *restrict t,
+STAGE static void sphere_closest(const surface *base, int part, int n, const rays *x, const real *restrict t,
                               closest_points *restrict p)
 {
     const sphere f = *(const sphere *)base;
@@ -180,7 +181,7 @@ STAGE static void sphere_foot(const surface *base, int part, int n, const rays *
 
 /* |grad u| is 1/(distance to the axis), |grad w| 1/(distance to the centre): within half of either they at most double.
  */
-STAGE static void sphere_steep(const surface *base, int part, int n, const rays *x, const closest_points *p,
+STAGE static void sphere_lipschitz(const surface *base, int part, int n, const rays *x, const closest_points *p,
                                real Pu_max, real Pw_max, real *restrict rate, real *restrict reach)
 {
     (void)base;
@@ -225,9 +226,9 @@ static const surface_ops sphere_methods = {
     .extent = sphere_extent,
     .box = sphere_box,
     .parts = 1,
-    .shell = sphere_shell,
-    .foot = sphere_foot,
-    .steep = sphere_steep,
+    .bound = sphere_bound,
+    .closest = sphere_closest,
+    .lipschitz = sphere_lipschitz,
 };
 
 surface *sphere_new(vec3 centre, double radius)
@@ -240,3 +241,37 @@ surface *sphere_new(vec3 centre, double radius)
     f->R = (real)radius;
     return &f->base;
 }
+
+/* ---- as the scene file has it ---- */
+
+static const form_parameter sphere_parameters[] = {
+    {"center", FORM_PLACE, 0, "a place [x, y, z]"},
+    {"radius", FORM_POSITIVE, 0, NULL},
+    {0},
+};
+
+static surface *make_sphere(const shape_values *v, form_fault *fault)
+{
+    (void)fault;
+    return sphere_new(v->v[0], v->r[0]);
+}
+
+static bool sphere_formula(const shape_values *v, form_formula *out)
+{
+    const vec3 up = {0, 1, 0};
+    char rho[40], y[40];
+    snprintf(rho, sizeof rho, "%.17g*sin(w)", v->r[0]);
+    snprintf(y, sizeof y, "%.17g*cos(w)", v->r[0]);
+    sphere_extent(NULL, 0, out->u, out->w);
+    formula_revolve(out, frame_about(up), rho, y);
+    return true;
+}
+
+const closed_form form_sphere = {
+    .name = "sphere",
+    .parameters = sphere_parameters,
+    .make = make_sphere,
+    .formula = sphere_formula,
+    .solid = true,
+    .povray = "sphere {\n  $center, $radius\n",
+};

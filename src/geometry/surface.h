@@ -1,9 +1,10 @@
-/* Smooth parametric surfaces Q(u,w). A surface knows nothing of scenes, bumps, lights or shadows: it finds where
- * rays meet it, and tells its shape there.
+/* Smooth parametric surfaces Q(u,w): where rays meet them, and their shape there. A surface knows nothing of scenes,
+ * bumps or lights.
  *
- * A surface is a table of functions over a wave and the constants they need. Only those constructors below make one;
- * surface_free ends it. All lengths are in scene units, coordinates left-handed with y up; n = Qu x Qw points outward.
- * Seen from outside, u goes to the right where w goes down, like the pixels of an image.
+ * A surface is a table of functions over a wave, and the constants that they need. The constructors below make the
+ * analytic ones; patch/surface.h and mesh/mesh.h make others; surface_free ends all. A surface does not change once it
+ * is made, and any number of threads may use it. All lengths are in scene units, coordinates left-handed with y up;
+ * n = Qu x Qw points outward. Seen from outside, u goes to the right where w goes down, like the pixels of an image.
  */
 #ifndef KAGE_GEOMETRY_SURFACE_H
 #define KAGE_GEOMETRY_SURFACE_H
@@ -20,69 +21,70 @@ typedef struct surface surface;
 typedef struct surface_ops {
     const char *kind; /* as in the scene file */
 
-    /* The nearest hit with 0 < t < h->t: where there is one, set h->t, and h->id = id. */
+    /* The nearest hit with 0 < t < h->t: where there is one, set h->t, and h->id = id. A mesh sets h->part, too. */
     void (*hit)(const surface *f, int n, const rays *x, int32_t id, hits *h);
 
-    /* The same for rays that have left a surface. Those that have left this one, from->id[i] = id, begin at from->at on
-     * its from->part, and this start does not count. */
+    /* The same for rays that start on a surface. Those that start on this one, from->id[i] = id, begin at from->at on
+     * its from->part; the start itself is no hit. */
     void (*hit_own)(const surface *f, int n, const rays *x, const ray_origins *from, int32_t id, hits *h);
 
-    /* Where on the surface the hits r + s t are: the part (the face of a box, 0 elsewhere), u and w. part[i] holds what
-     * `hit` told: a mesh's triangle, which stays. */
+    /* Where on the surface the hits r + s t are: the part, u and w. A mesh leaves part[i] as `hit` has set it, the
+     * triangle. */
     void (*locate)(const surface *f, int n, const rays *x, const real *t, int32_t *part, real *u, real *w);
 
-    /* Q and its partials at (u,w): the first always, Quu, Quw and Qww where order is 2. */
+    /* Q, Qu and Qw at (u,w); order 2: also Quu, Quw and Qww. */
     void (*eval)(const surface *f, int n, const int32_t *part, const real *u, const real *w, int order, partials *q);
 
-    /* Put lit[i] = 0 where the surface lies across r + s t for a t in (0,1): a segment to a light. */
+    /* Set lit[i] = 0 where the surface is hit at a t in (0,1): r + s t is a segment to a light. */
     void (*occlude)(const surface *f, int n, const rays *x, real *lit);
 
-    /* The same for segments that start on the surface itself, on its part[i]: this start does not count. NULL: no ray
-     * that leaves the surface meets it again. */
+    /* The same for segments that start on the surface itself, on its part[i]; the start is no hit. NULL: no ray that
+     * starts on the surface meets it again. */
     void (*occlude_own)(const surface *f, int n, const rays *x, const int32_t *part, real *lit);
 
     /* The range of (u,w) on a part. Ends are infinite where the surface has none. */
     void (*extent)(const surface *f, int part, double u[2], double w[2]);
 
-    /* What all of the surface is in, but for roundings. Ends are infinite where it has none. */
+    /* The bounding box, up to rounding. Ends are infinite where the surface has none. */
     void (*box)(const surface *f, double lo[3], double hi[3]);
 
-    int parts; /* part is in 0..parts-1; 1 of a mesh, whose triangles differ in nothing that is asked by part alone */
+    int parts; /* how many there are; 1 of a mesh, whose triangles do not differ in anything that depends on part alone
+                */
 
-    /* For true displacement (displace.c), with a part of the surface taken as if it alone were there. All three are
-     * NULL where no foot is known (surface_transformed). */
+    /* For displaced surfaces (displaced.h), with a part of the surface as if it alone were there. All three are NULL
+     * where closest points have no closed form, as of a stretched sphere. */
 
     /* The stretch t0 <= t <= t1 of each ray, within 0..end[i], that may meet Q + P n/|n| for Pmin <= P <= Pmax: all
      * such places are in it. t0 > t1: there is none. */
-    void (*shell)(const surface *f, int part, int n, const rays *x, const real *end, real Pmin, real Pmax, real *t0,
+    void (*bound)(const surface *f, int part, int n, const rays *x, const real *end, real Pmin, real Pmax, real *t0,
                   real *t1);
 
-    /* The foot of the perpendicular from each r + s t to the surface: (u,w), the height over it, and how these change
-     * in space (gradients). (u,w) may lie outside the extent. */
-    void (*foot)(const surface *f, int part, int n, const rays *x, const real *t, closest_points *p);
+    /* The closest point of the surface to each r + s t: (u,w), the height over it, and the gradients of the three.
+     * (u,w) may lie outside the extent. */
+    void (*closest)(const surface *f, int part, int n, const rays *x, const real *t, closest_points *p);
 
-    /* Bounds along each ray from r + s t on, for a P that changes by at most Pu_max and Pw_max per u and w: how fast
-     * height - P can change with t, and how far in t that holds. */
-    void (*steep)(const surface *f, int part, int n, const rays *x, const closest_points *p, real Pu_max, real Pw_max,
-                  real *rate, real *reach);
+    /* Lipschitz bounds along each ray from r + s t on, for a P that changes by at most Pu_max and Pw_max per u and w:
+     * how fast height - P can change with t, and how far in t that holds. */
+    void (*lipschitz)(const surface *f, int part, int n, const rays *x, const closest_points *p, real Pu_max,
+                      real Pw_max, real *rate, real *reach);
 
-    /* Whether a stretch may also lead over places beyond the part's extent, so that hits there are none. */
-    bool loose;
+    /* Whether stretches may also lead over places beyond the part's extent, so that hits there do not count. */
+    bool unclamped;
 } surface_ops;
 
 struct surface {
     const surface_ops *ops;
     void (*free)(surface *f); /* NULL: it owns nothing but itself */
-    const struct displaced_ops
-        *rough; /* its own way to its rough surface (displace.h), in place of shell, foot and steep; NULL: none */
 };
 
+/* All constructors return NULL where the arguments are wrong in the way that is said, or out of memory. */
+
 /* Q = origin + u U + w W; over all (u,w), or over 0..1 where `bounded`. NULL where U and W are parallel, zero or not
- * finite (then only: or out of memory). */
+ * finite. */
 surface *plane_new(vec3 origin, vec3 U, vec3 W, bool bounded);
 
-/* The box with two opposite corners, sides along the axes. part is the face, 2 axis + (1 on the high side). On each
- * face (u,w) go over 0..1 along the two other axes, in the order that turns n outward. NULL where a side is 0. */
+/* The box with two opposite corners and sides along the axes. part is the face, 2 axis + (1 on the high side). On each
+ * face (u,w) go over 0..1 along the two other axes, in the order for which n points outward. NULL where a side is 0. */
 surface *box_new(vec3 from, vec3 to);
 
 /* Q = centre + radius (sin w cos u, cos w, sin w sin u); u the longitude in -pi..pi, w the angle from the upper pole in
@@ -104,11 +106,12 @@ surface *cone_new(vec3 from, double from_radius, vec3 to, double to_radius, bool
  * direction. */
 surface *torus_new(vec3 centre, vec3 axis, double major, double minor);
 
-/* The image of a surface by an affine map. `from` must outlive it, and is no such image itself. It has the (u,w) of
- * `from`; but where the map mirrors u runs the other way in its extent (on a plane: -u), so that n points outward
- * still. Where the map does not keep angles, images of round surfaces have no feet. NULL where the map leaves nothing
- * of a volume (then only: or out of memory). */
+/* The image of a surface by an affine map. `from` must outlive it, and is not such an image itself. It has the (u,w) of
+ * `from`. Where the map mirrors, u runs the other way in its extent (on a plane: -u), so that n still points outward.
+ * Where the map does not keep angles, images of round surfaces cannot be displaced. NULL where the map reduces volumes
+ * to 0. */
 surface *surface_transformed(const surface *from, const affine *m);
+/* NULL is allowed. */
 void surface_free(surface *f);
 
 #endif

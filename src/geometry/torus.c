@@ -2,7 +2,9 @@
 #include "geometry/torus.h"
 
 #include "base/frame.h"
+#include "geometry/closed_form.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 
 STAGE static void torus_locate(const surface *base, int n, const rays *x, const real *t, int32_t *part, real *u,
@@ -79,7 +81,7 @@ STAGE static void torus_enter(const torus *restrict base, double m, int n, const
 }
 
 /* What lies between two places of the shell, the hole or the tube's core, is left to the search. */
-static void torus_shell(const surface *base, int part, int n, const rays *x, const real *end, real Pmin, real Pmax,
+static void torus_bound(const surface *base, int part, int n, const rays *x, const real *end, real Pmin, real Pmax,
                         real *t0, real *t1)
 {
     const torus *f = (const torus *)base;
@@ -94,7 +96,7 @@ static void torus_shell(const surface *base, int part, int n, const rays *x, con
     }
 }
 
-STAGE static void torus_foot(const surface *base, int part, int n, const rays *x, const real *t, closest_points *q)
+STAGE static void torus_closest(const surface *base, int part, int n, const rays *x, const real *t, closest_points *q)
 {
     const torus f = *(const torus *)base;
     (void)part;
@@ -114,7 +116,7 @@ STAGE static void torus_foot(const surface *base, int part, int n, const rays *x
 /* The directions of h, u and w are at right angles, so that the ray's way is shared between them (Cauchy and Schwarz).
  * |grad u| is 1/(distance to the axis), |grad w| 1/(distance to the tube's middle): within half of either they at most
  * double. */
-STAGE static void torus_steep(const surface *base, int part, int n, const rays *x, const closest_points *p, real Pu_max,
+STAGE static void torus_lipschitz(const surface *base, int part, int n, const rays *x, const closest_points *p, real Pu_max,
                               real Pw_max, real *restrict rate, real *restrict reach)
 {
     (void)base;
@@ -159,9 +161,9 @@ static const surface_ops torus_methods = {
     .extent = torus_extent,
     .box = torus_box,
     .parts = 1,
-    .shell = torus_shell,
-    .foot = torus_foot,
-    .steep = torus_steep,
+    .bound = torus_bound,
+    .closest = torus_closest,
+    .lipschitz = torus_lipschitz,
 };
 
 static void store(double to[3], vec3 v)
@@ -188,3 +190,40 @@ surface *torus_new(vec3 centre, vec3 axis, double major, double minor)
     f->m = minor;
     return &f->base;
 }
+
+/* ---- as the scene file has it ---- */
+
+static const form_parameter torus_parameters[] = {
+    {"center", FORM_PLACE, 0, "a place [x, y, z]"},
+    {"axis", FORM_DIRECTION, 1, "the direction of the axis, [x, y, z]"},
+    {"major", FORM_POSITIVE, 0, NULL},
+    {"minor", FORM_POSITIVE, 1, NULL},
+    {0},
+};
+
+static surface *make_torus(const shape_values *v, form_fault *fault)
+{
+    if (v->r[1] < v->r[0])
+        return torus_new(v->v[0], v->v[1], v->r[0], v->r[1]);
+    *fault = (form_fault){"minor", "a tube that closes the hole, expected 'minor' below 'major'"};
+    return NULL;
+}
+
+static bool torus_formula(const shape_values *v, form_formula *out)
+{
+    char rho[64], y[40];
+    snprintf(rho, sizeof rho, "%.17g + %.17g*cos(w)", v->r[0], v->r[1]);
+    snprintf(y, sizeof y, "-%.17g*sin(w)", v->r[1]);
+    torus_extent(NULL, 0, out->u, out->w);
+    formula_revolve(out, frame_about(v->v[1]), rho, y);
+    return true;
+}
+
+const closed_form form_torus = {
+    .name = "torus",
+    .parameters = torus_parameters,
+    .make = make_torus,
+    .formula = torus_formula,
+    .solid = true,
+    .povray = "torus {\n  $major, $minor\n  sturm\n$axes",
+};

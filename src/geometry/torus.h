@@ -7,12 +7,19 @@
 
 typedef struct torus {
     surface base;
-    double C[3], X[3], Y[3], Z[3];
-    double M, m;
+    double C[3], X[3], Y[3], Z[3]; /* the middle, and the frame; Y is the axis */
+    double M, m;                   /* the radii of the circle and of the tube about it */
 } torus;
 
-/* A ray in the frame, from the place nearest to C on; its direction is a unit vector. r + s t is `way` = t speed -
- * start there. */
+/* A vector along X, Y and Z. */
+KM_INLINE vec3 torus_frame(const torus *f, double x, double y, double z)
+{
+    return (vec3){x * f->X[0] + y * f->X[1] + z * f->X[2], x * f->Y[0] + y * f->Y[1] + z * f->Y[2],
+                  x * f->Z[0] + y * f->Z[1] + z * f->Z[2]};
+}
+
+/* A ray in the frame. Its origin o is the point closest to C, its direction d a unit vector. At t it is at
+ * o + d (t speed - start). */
 typedef struct torus_ray {
     double ox, oy, oz, dx, dy, dz, speed, start;
 } torus_ray;
@@ -22,32 +29,30 @@ KM_INLINE torus_ray torus_ray_of(const torus *f, const rays *x, int i)
     double rx = (double)x->r.x[i] - f->C[0], ry = (double)x->r.y[i] - f->C[1], rz = (double)x->r.z[i] - f->C[2];
     double sx = (double)x->s.x[i], sy = (double)x->s.y[i], sz = (double)x->s.z[i];
     double speed = sqrt(sx * sx + sy * sy + sz * sz), k = 1 / speed;
-    double px = rx * f->X[0] + ry * f->X[1] + rz * f->X[2], py = rx * f->Y[0] + ry * f->Y[1] + rz * f->Y[2];
-    double pz = rx * f->Z[0] + ry * f->Z[1] + rz * f->Z[2];
-    double dx = k * (sx * f->X[0] + sy * f->X[1] + sz * f->X[2]), dy = k * (sx * f->Y[0] + sy * f->Y[1] + sz * f->Y[2]);
-    double dz = k * (sx * f->Z[0] + sy * f->Z[1] + sz * f->Z[2]);
-    double start = -(px * dx + py * dy + pz * dz);
-    torus_ray l = {px + start * dx, py + start * dy, pz + start * dz, dx, dy, dz, speed, start};
+    vec3 p = torus_frame(f, rx, ry, rz), s = torus_frame(f, sx, sy, sz);
+    double dx = k * s.x, dy = k * s.y, dz = k * s.z;
+    double start = -(p.x * dx + p.y * dy + p.z * dz);
+    torus_ray l = {p.x + start * dx, p.y + start * dy, p.z + start * dz, dx, dy, dz, speed, start};
     return l;
 }
 
-/* A place r + s t in the frame. */
+/* A point r + s t in the frame. */
 typedef struct torus_place {
-    double x, y, z, d; /* d: from the axis */
+    double x, y, z, d; /* d: the distance from the axis */
 } torus_place;
 
-KM_INLINE torus_place torus_place_of(const torus *f, const rays *v, int i, real t)
+KM_INLINE torus_place torus_place_of(const torus *f, const rays *x, int i, real t)
 {
-    double rx = (double)v->r.x[i] + (double)v->s.x[i] * (double)t - f->C[0];
-    double ry = (double)v->r.y[i] + (double)v->s.y[i] * (double)t - f->C[1];
-    double rz = (double)v->r.z[i] + (double)v->s.z[i] * (double)t - f->C[2];
-    torus_place p = {rx * f->X[0] + ry * f->X[1] + rz * f->X[2], rx * f->Y[0] + ry * f->Y[1] + rz * f->Y[2],
-                     rx * f->Z[0] + ry * f->Z[1] + rz * f->Z[2], 0};
+    double rx = (double)x->r.x[i] + (double)x->s.x[i] * (double)t - f->C[0];
+    double ry = (double)x->r.y[i] + (double)x->s.y[i] * (double)t - f->C[1];
+    double rz = (double)x->r.z[i] + (double)x->s.z[i] * (double)t - f->C[2];
+    vec3 v = torus_frame(f, rx, ry, rz);
+    torus_place p = {v.x, v.y, v.z, 0};
     p.d = sqrt(p.x * p.x + p.z * p.z);
     return p;
 }
 
-/* A vector of the frame: x and z along the radius and across it, y along the axis. */
+/* Set lane i to the vector x X + y Y + z Z. */
 static inline void torus_vector(const torus *f, vec3s *v, int i, double x, double y, double z)
 {
     v->x[i] = (real)(x * f->X[0] + y * f->Y[0] + z * f->Z[0]);
@@ -55,16 +60,16 @@ static inline void torus_vector(const torus *f, vec3s *v, int i, double x, doubl
     v->z[i] = (real)(x * f->X[2] + y * f->Y[2] + z * f->Z[2]);
 }
 
-/* First roots that are searched, side by side; `way` as in `local`. */
+/* The first roots of many rays, side by side, as way = t speed - start. */
 typedef struct torus_roots {
     double speed[LANES], start[LANES];
     double a[LANES], b[LANES]; /* the bracket; a > b: there is no root */
-    double side[LANES];        /* the function's sign at a */
+    double side[LANES];        /* the function's sign at a, 1 or -1 */
     double way[LANES];
     double open[LANES]; /* 1: not found yet */
 } torus_roots;
 
-/* Rays that are searched, side by side. */
+/* Rays, side by side, and their roots. */
 typedef struct torus_rays {
     double ox[LANES], oy[LANES], oz[LANES], dx[LANES], dy[LANES], dz[LANES];
     torus_roots root;

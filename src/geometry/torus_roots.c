@@ -1,24 +1,25 @@
 /* Rays against a torus.
  *
- * A ray meets it where a quartic is 0, which float does not bear, and whose closed form does not bear rays that graze.
- * So all is in double, and the roots are bracketed: between two places where the quartic's derivative is 0 there is one
- * root, or none. The place of the ray that is nearest to C is the origin, which leaves no cubic term, so that its
- * derivative t^3 + P t + Q has roots in closed form; rounding there can only lose a ray that misses a tangent by it.
- * The root within a bracket is that of
+ * A ray meets it at the roots of a quartic. Float has too few digits for it, and its closed form fails for rays that
+ * graze. So all is in double, and roots are bracketed: between two places where the quartic's derivative is 0 there is
+ * one root, or none. Ways along the ray are measured from its point closest to C, so that the quartic has no cubic
+ * term, and its derivative t^3 + P t + Q has roots in closed form. Rounding there can only lose a root of a ray that
+ * touches the torus within a rounding. The root within a bracket is found as that of
  *
  *     G = (distance to the axis - M)^2 + (height)^2 - m^2,
  *
- * which has the quartic's sign where m < M, and keeps the digits that its fourth powers lose.
+ * which has the quartic's sign where m < M, and keeps the digits that the quartic's fourth powers lose.
  */
 #include "geometry/torus.h"
 
+/* The last step of the iteration, as a share of M + m: below the rounding of t. */
 #ifdef KAGE_DOUBLE
-#define CLOSE 1e-15 /* the root is found, as a share of M + m */
+#define CONVERGED 1e-15
 #else
-#define CLOSE 1e-10
+#define CONVERGED 1e-10
 #endif
 
-enum { STEPS = 64 };
+enum { STEPS = 64 }; /* bisection alone reaches double's rounding by then */
 
 KM_INLINE void root_begin(torus_roots *k, int i, int some, double a, double b, int above)
 {
@@ -46,18 +47,20 @@ KM_INLINE void root_step(torus_roots *k, int i, double value, double slope, doub
     k->open[i] = fabs(next - way) > close ? 1 : 0;
 }
 
-/* G at a place of the ray. */
+/* G at a point of the ray. */
 KM_INLINE double tube(double M, double m, torus_ray l, double way)
 {
     double x = l.ox + way * l.dx, y = l.oy + way * l.dy, z = l.oz + way * l.dz, d = sqrt(x * x + z * z) - M;
     return d * d + y * y - m * m;
 }
 
-/* Where the quartic t^4 + p t^2 + q t + r is level, from the least on; three times the same where there is but one such
- * place. */
+/* The places where the quartic t^4 + p t^2 + q t + r has the derivative 0, in order; three times the same where there
+ * is only one. */
 typedef struct levels {
     double x[3];
 } levels;
+
+#define SQRT3 1.7320508075688772
 
 KM_INLINE levels level_places(double M, double m, torus_ray l)
 {
@@ -65,30 +68,29 @@ KM_INLINE levels level_places(double M, double m, torus_ray l)
     double P = oo + M * M - m * m - 2 * M * M * ee, Q = -2 * M * M * oe; /* p/2 and q/4 */
     double A = sqrt(greater(-P / 3, 0)), A3 = A * A * A, half = 0.5 * Q;
     double d = half * half + P * P * P / 27;
-    /* three: 2 A cos of a third of an angle, and of that a third of a turn on and back */
+    /* three: 2 A times the cosine of a third of an angle, and of that +- 120 degrees */
     double c = km_cos(km_acos(greater(-1, lesser(1, -half / greater(A3, 1e-300)))) / 3),
            s = sqrt(greater(1 - c * c, 0));
     /* one: Cardano's */
     double k = fabs(half) + sqrt(greater(d, 0)), S = k > 0 ? km_copysign(km_pow(k, 1. / 3), -half) : 1;
     double one = k > 0 ? S - P / (3 * S) : 0;
-    levels z = {{d > 0 ? one : -A * (c + 1.7320508075688772 * s), d > 0 ? one : -A * (c - 1.7320508075688772 * s),
-                 d > 0 ? one : 2 * A * c}};
+    levels z = {{d > 0 ? one : -A * (c + SQRT3 * s), d > 0 ? one : -A * (c - SQRT3 * s), d > 0 ? one : 2 * A * c}};
     return z;
 }
 
-/* The places between which each root of a ray is alone, from way `from` to `to`; all in a sphere about the torus, so
- * large that its surface is outside. */
-typedef struct stretches {
+/* The ends of the intervals that hold at most one root each, from `from` to `to`, and within a sphere about the torus,
+ * a little larger than it, so that the ends are outside. */
+typedef struct intervals {
     double e[5];
-} stretches;
+} intervals;
 
-KM_INLINE stretches stretches_of(double M, double m, torus_ray l, double from, double to)
+KM_INLINE intervals intervals_of(double M, double m, torus_ray l, double from, double to)
 {
     double B2 = 1.1 * (M + m) * (M + m) - (l.ox * l.ox + l.oy * l.oy + l.oz * l.oz), B = sqrt(greater(B2, 0));
     double lo = greater(from, -B), hi = lesser(to, B);
     hi = B2 >= 0 ? greater(hi, lo) : lo; /* nothing */
     levels z = level_places(M, m, l);
-    stretches e = {
+    intervals e = {
         {lo, lesser(greater(z.x[0], lo), hi), lesser(greater(z.x[1], lo), hi), lesser(greater(z.x[2], lo), hi), hi}};
     return e;
 }
@@ -100,7 +102,7 @@ STAGE static void torus_bracket(const torus *restrict base, double m, int n, con
     const torus f = *base;
     for (int i = 0; i < n; i++) {
         torus_ray l = torus_ray_of(&f, x, i);
-        stretches e = stretches_of(f.M, m, l, -l.start, (double)end[i] * l.speed - l.start);
+        intervals e = intervals_of(f.M, m, l, -l.start, (double)end[i] * l.speed - l.start);
         int in0 = tube(f.M, m, l, e.e[0]) > 0, in1 = tube(f.M, m, l, e.e[1]) > 0, in2 = tube(f.M, m, l, e.e[2]) > 0;
         int in3 = tube(f.M, m, l, e.e[3]) > 0, in4 = tube(f.M, m, l, e.e[4]) > 0;
         int first = in0 != in1, second = in1 != in2, third = in2 != in3, last = in3 != in4;
@@ -132,12 +134,11 @@ static int any(int n, const double *open)
     return 0;
 }
 
-/* Rays end where they have met something else: a tile that the torus is not in takes no step. */
 void torus_search(const torus *f, double m, int n, const rays *x, const real *end, torus_rays *k)
 {
     torus_bracket(f, m, n, x, end, k);
     for (int step = 0; step < STEPS && any(n, k->root.open); step++)
-        torus_step(f->M, m, CLOSE * (f->M + m), n, k);
+        torus_step(f->M, m, CONVERGED * (f->M + m), n, k);
 }
 
 STAGE static void torus_take(int n, const torus_roots *restrict k, int32_t id, hits *restrict h)
@@ -145,8 +146,7 @@ STAGE static void torus_take(int n, const torus_roots *restrict k, int32_t id, h
     for (int i = 0; i < n; i++) {
         real t = (real)((k->way[i] + k->start[i]) / k->speed[i]);
         int take = (k->a[i] <= k->b[i]) & (t > 0) & (t < h->t[i]);
-        h->t[i] = take ? t : h->t[i];
-        h->id[i] = take ? id : h->id[i];
+        hits_take(h, i, take, t, id);
     }
 }
 
@@ -158,13 +158,13 @@ void torus_hit(const surface *base, int n, const rays *x, int32_t id, hits *h)
     torus_take(n, &k.root, id, h);
 }
 
-/* Whether there is a root needs no root: only signs, where each could be. */
+/* Whether there is a root needs only the signs of G at the ends of the intervals. */
 STAGE static void occlude_by_quartic(const surface *base, int n, const rays *x, real *lit)
 {
     const torus f = *(const torus *)base;
     for (int i = 0; i < n; i++) {
         torus_ray l = torus_ray_of(&f, x, i);
-        stretches e = stretches_of(f.M, f.m, l, -l.start, l.speed - l.start);
+        intervals e = intervals_of(f.M, f.m, l, -l.start, l.speed - l.start);
         double g0 = tube(f.M, f.m, l, e.e[0]), g1 = tube(f.M, f.m, l, e.e[1]), g2 = tube(f.M, f.m, l, e.e[2]);
         double g3 = tube(f.M, f.m, l, e.e[3]), g4 = tube(f.M, f.m, l, e.e[4]);
         double low = lesser(lesser(lesser(g0, g1), lesser(g2, g3)), g4),
@@ -173,19 +173,19 @@ STAGE static void occlude_by_quartic(const surface *base, int n, const rays *x, 
     }
 }
 
-/* From a place of the torus one root is 0. What is left is the cubic t^3 + A t^2 + B t + C, C = 8 M m (distance to the
- * axis) n.s, with t a length of the ray; it is level at t0 <= t1, which a quadratic tells. */
+/* A ray from the torus: one root is 0. What is left is the cubic t^3 + A t^2 + B t + C in the length t along the ray,
+ * with C = 8 M m (distance to the axis) n.s. Its derivative, a quadratic, is 0 at t0 <= t1. */
 typedef struct cubic {
-    double A, B, C, t0, t1, T; /* T: of the whole s */
+    double A, B, C, t0, t1, T; /* T: the length of s */
 } cubic;
 
-/* The place is first moved onto the torus as double has it, so that the root is 0 and not nearly so. */
+/* The start is first moved onto the torus in double, so that its root is exactly 0. */
 KM_INLINE cubic cubic_of(const torus *f, const rays *v, int i)
 {
     double sx = (double)v->s.x[i], sy = (double)v->s.y[i], sz = (double)v->s.z[i];
     double T = sqrt(sx * sx + sy * sy + sz * sz), k = 1 / T;
-    double dx = k * (sx * f->X[0] + sy * f->X[1] + sz * f->X[2]), dy = k * (sx * f->Y[0] + sy * f->Y[1] + sz * f->Y[2]);
-    double dz = k * (sx * f->Z[0] + sy * f->Z[1] + sz * f->Z[2]);
+    vec3 s = torus_frame(f, sx, sy, sz);
+    double dx = k * s.x, dy = k * s.y, dz = k * s.z;
     torus_place p = torus_place_of(f, v, i, 0);
     double id = 1 / p.d, ex = p.x * id, ez = p.z * id, c = p.d - f->M, ic = 1 / sqrt(c * c + p.y * p.y);
     double nc = c * ic, ny = p.y * ic,
@@ -200,7 +200,7 @@ KM_INLINE cubic cubic_of(const torus *f, const rays *v, int i)
 
 KM_INLINE double cubic_at(double A, double B, double C, double t) { return ((t + A) * t + B) * t + C; }
 
-/* Its sign at 0, at the end and where it is level says whether it has a root between. */
+/* Whether there is a root shows in the signs at 0, at the end and between, at t0 and t1. */
 STAGE static void occlude_by_cubic(const surface *base, int n, const rays *v, const int32_t *part, real *lit)
 {
     const torus f = *(const torus *)base;
@@ -214,13 +214,13 @@ STAGE static void occlude_by_cubic(const surface *base, int n, const rays *v, co
     }
 }
 
-/* Cubics whose first root above 0 is searched, side by side. */
+/* Cubics, side by side, and their first roots above 0. */
 typedef struct cubics {
     double A[LANES], B[LANES], C[LANES];
     torus_roots root;
 } cubics;
 
-/* As far as the torus is wide, beyond which there is no root. */
+/* Bracket the first root with 0 < t < end[i]. No root is farther than the torus is wide. */
 STAGE static void torus_own_bracket(const torus *restrict base, int n, const rays *restrict v, const real *restrict end,
                                     cubics *restrict k)
 {
@@ -247,12 +247,12 @@ STAGE static void torus_own_step(double close, int n, cubics *restrict k)
     }
 }
 
-/* Those from elsewhere by the quartic, those from the torus itself by the cubic; each kind has no way to go in the
- * other's search. */
+/* Rays from elsewhere by the quartic, rays from the torus itself by the cubic. In the other search the range of each is
+ * empty. */
 void torus_hit_own(const surface *base, int n, const rays *x, const ray_origins *from, int32_t id, hits *h)
 {
     const torus *f = (const torus *)base;
-    const double close = CLOSE * (f->M + f->m);
+    const double close = CONVERGED * (f->M + f->m);
     rays own = {.r = from->at, .s = x->s};
     real other_end[LANES], own_end[LANES];
     torus_rays k;

@@ -1,13 +1,12 @@
-/* A surface under an affine map: rays are taken back into the space of the surface that is mapped, and what it tells is
- * brought from there. Directions are not made unit vectors, so that t is the same in both.
+/* A surface under an affine map: rays are taken back into the space of the original, and results are brought from
+ * there. Directions are not made unit vectors, so that t is the same in both spaces.
  *
- * A map that mirrors would turn n = Qu x Qw inward; so there u runs the other way, and as seen from outside u goes to
- * the right still where w goes down.
+ * A map that mirrors would make n = Qu x Qw point inward. So u then runs the other way, and seen from outside u still
+ * goes to the right where w goes down.
  *
- * Heights are in scene units along the normal of the image. The foot of a perpendicular stays one where angles stay
- * right. Where they do not it is another, but on flat surfaces: their images are flat, and have their own. So planes
- * become planes and have no need of all this, and for true displacement each face of a box becomes a rectangle.
- * Stretched round ones have no feet.
+ * For true displacement, heights are in scene units along the normal of the image. The closest point stays the closest
+ * where the map keeps angles. Where it does not, flat surfaces still have flat images with closest points of their own:
+ * planes become planes, and the faces of a box become rectangles. Stretched round surfaces cannot be displaced.
  */
 #include "base/affine.h"
 #include "wave/lane.h"
@@ -20,13 +19,13 @@ enum { FACES = 6 };
 
 typedef struct transformed {
     surface base;
-    surface_ops methods; /* of this one; the others of what is mapped */
-    const surface *from;
-    real to[3][3], back[3][3]; /* images of the axes; the rows of the way back */
+    surface_ops methods;       /* the original's, with those of this file in place of some */
+    const surface *from;       /* the original; not owned */
+    real to[3][3], back[3][3]; /* images of the axes; the rows of the inverse */
     real o[3];                 /* the image of the origin */
-    real scale, over;          /* of all lengths, where it is one, and 1/scale */
-    real turn, ends;           /* u here is ends + turn u there */
-    plane face[FACES];         /* a box's */
+    real scale, over;          /* of lengths, where the map keeps angles, and 1/scale; else 0 */
+    real mirror, u_ends_sum;   /* u here is u_ends_sum + mirror u there; mirror is -1 where the map mirrors, else 1 */
+    plane face[FACES];         /* the faces of a box */
 } transformed;
 
 static const transformed *of(const surface *f) { return (const transformed *)f; }
@@ -78,10 +77,10 @@ static const real nowhere[3] = {0, 0, 0};
 STAGE static void places_to(const transformed *f, int n, vec3s *v) { apply(n, f->to, 1, f->o, v); }
 STAGE static void vectors_to(const transformed *f, int n, real k, vec3s *v) { apply(n, f->to, k, nowhere, v); }
 
-/* Gradients go by the transpose of the way back. */
+/* Gradients go by the transpose of the inverse, */
 STAGE static void gradients_to(const transformed *f, int n, real k, vec3s *v) { apply(n, f->back, k, nowhere, v); }
 
-/* And back by that of the way there. */
+/* and back by the transpose of the map. */
 STAGE static void gradients_back(const transformed *restrict base, int n, real k, const vec3s *restrict v,
                                  vec3s *restrict to)
 {
@@ -94,12 +93,12 @@ STAGE static void gradients_back(const transformed *restrict base, int n, real k
     }
 }
 
-/* u there and u here are the same way apart in both directions. */
-STAGE static void turn_u(const transformed *f, int n, const real *u, real *to)
+/* From one u to the other, in either direction. */
+STAGE static void mirror_u(const transformed *f, int n, const real *u, real *to)
 {
-    const real turn = f->turn, ends = f->ends;
+    const real mirror = f->mirror, sum = f->u_ends_sum;
     for (int i = 0; i < n; i++)
-        to[i] = ends + turn * u[i];
+        to[i] = sum + mirror * u[i];
 }
 
 STAGE static void stretch(int n, real k, real *v)
@@ -137,7 +136,7 @@ static void transformed_locate(const surface *base, int n, const rays *x, const 
     rays y;
     rays_back(f, n, x, &y);
     f->from->ops->locate(f->from, n, &y, t, part, u, w);
-    turn_u(f, n, u, u);
+    mirror_u(f, n, u, u);
 }
 
 static void transformed_eval(const surface *base, int n, const int32_t *part, const real *u, const real *w, int order,
@@ -145,15 +144,15 @@ static void transformed_eval(const surface *base, int n, const int32_t *part, co
 {
     const transformed *f = of(base);
     real v[LANES];
-    turn_u(f, n, u, v);
+    mirror_u(f, n, u, v);
     f->from->ops->eval(f->from, n, part, v, w, order, q);
     places_to(f, n, &q->Q);
-    vectors_to(f, n, f->turn, &q->Qu);
+    vectors_to(f, n, f->mirror, &q->Qu);
     vectors_to(f, n, 1, &q->Qw);
     if (order < 2)
         return;
     vectors_to(f, n, 1, &q->Quu);
-    vectors_to(f, n, f->turn, &q->Quw);
+    vectors_to(f, n, f->mirror, &q->Quw);
     vectors_to(f, n, 1, &q->Qww);
 }
 
@@ -173,7 +172,7 @@ static void transformed_occlude_own(const surface *base, int n, const rays *x, c
     f->from->ops->occlude_own(f->from, n, &y, part, lit);
 }
 
-/* As u turns about the middle of its extent this stays the same. */
+/* The same: u is reflected about the middle of its extent. */
 static void transformed_extent(const surface *base, int part, double u[2], double w[2])
 {
     of(base)->from->ops->extent(of(base)->from, part, u, w);
@@ -181,69 +180,69 @@ static void transformed_extent(const surface *base, int part, double u[2], doubl
 
 /* ---- for true displacement, by maps that keep angles ---- */
 
-static void similar_shell(const surface *base, int part, int n, const rays *x, const real *end, real Pmin, real Pmax,
+static void similar_bound(const surface *base, int part, int n, const rays *x, const real *end, real Pmin, real Pmax,
                           real *t0, real *t1)
 {
     const transformed *f = of(base);
     rays y;
     rays_back(f, n, x, &y);
-    f->from->ops->shell(f->from, part, n, &y, end, Pmin * f->over, Pmax * f->over, t0, t1);
+    f->from->ops->bound(f->from, part, n, &y, end, Pmin * f->over, Pmax * f->over, t0, t1);
 }
 
-static void similar_foot(const surface *base, int part, int n, const rays *x, const real *t, closest_points *p)
+static void similar_closest(const surface *base, int part, int n, const rays *x, const real *t, closest_points *p)
 {
     const transformed *f = of(base);
     rays y;
     rays_back(f, n, x, &y);
-    f->from->ops->foot(f->from, part, n, &y, t, p);
-    turn_u(f, n, p->u, p->u);
+    f->from->ops->closest(f->from, part, n, &y, t, p);
+    mirror_u(f, n, p->u, p->u);
     stretch(n, f->scale, p->h);
-    gradients_to(f, n, f->turn, &p->gu);
+    gradients_to(f, n, f->mirror, &p->gu);
     gradients_to(f, n, 1, &p->gw);
     gradients_to(f, n, f->scale, &p->gh);
 }
 
-static void similar_steep(const surface *base, int part, int n, const rays *x, const closest_points *p, real Pu_max,
+static void similar_lipschitz(const surface *base, int part, int n, const rays *x, const closest_points *p, real Pu_max,
                           real Pw_max, real *rate, real *reach)
 {
     const transformed *f = of(base);
     rays y;
     closest_points q;
     rays_back(f, n, x, &y);
-    turn_u(f, n, p->u, q.u);
+    mirror_u(f, n, p->u, q.u);
     memcpy(q.w, p->w, (size_t)n * sizeof *q.w);
     memcpy(q.h, p->h, (size_t)n * sizeof *q.h);
     stretch(n, f->over, q.h);
-    gradients_back(f, n, f->turn, &p->gu, &q.gu);
+    gradients_back(f, n, f->mirror, &p->gu, &q.gu);
     gradients_back(f, n, 1, &p->gw, &q.gw);
     gradients_back(f, n, f->over, &p->gh, &q.gh);
-    f->from->ops->steep(f->from, part, n, &y, &q, Pu_max * f->over, Pw_max * f->over, rate, reach);
+    f->from->ops->lipschitz(f->from, part, n, &y, &q, Pu_max * f->over, Pw_max * f->over, rate, reach);
     stretch(n, f->scale, rate);
 }
 
 /* ---- the same on a box, by any map ---- */
 
-static void faces_shell(const surface *base, int part, int n, const rays *x, const real *end, real Pmin, real Pmax,
+static void faces_bound(const surface *base, int part, int n, const rays *x, const real *end, real Pmin, real Pmax,
                         real *t0, real *t1)
 {
     const surface *face = &of(base)->face[part].base;
-    face->ops->shell(face, 0, n, x, end, Pmin, Pmax, t0, t1);
+    face->ops->bound(face, 0, n, x, end, Pmin, Pmax, t0, t1);
 }
 
-static void faces_foot(const surface *base, int part, int n, const rays *x, const real *t, closest_points *p)
+static void faces_closest(const surface *base, int part, int n, const rays *x, const real *t, closest_points *p)
 {
     const surface *face = &of(base)->face[part].base;
-    face->ops->foot(face, 0, n, x, t, p);
+    face->ops->closest(face, 0, n, x, t, p);
 }
 
-static void faces_steep(const surface *base, int part, int n, const rays *x, const closest_points *p, real Pu_max,
+static void faces_lipschitz(const surface *base, int part, int n, const rays *x, const closest_points *p, real Pu_max,
                         real Pw_max, real *rate, real *reach)
 {
     const surface *face = &of(base)->face[part].base;
-    face->ops->steep(face, 0, n, x, p, Pu_max, Pw_max, rate, reach);
+    face->ops->lipschitz(face, 0, n, x, p, Pu_max, Pw_max, rate, reach);
 }
 
-/* The image of the box of what is mapped. */
+/* The box of the image of the original's box. */
 static void transformed_box(const surface *base, double lo[3], double hi[3])
 {
     const transformed *f = of(base);
@@ -263,25 +262,24 @@ static void transformed_box(const surface *base, double lo[3], double hi[3])
 
 static bool is(const surface *f, const char *kind) { return strcmp(f->ops->kind, kind) == 0; }
 
-static vec3 lane(const vec3s *v) { return (vec3){(double)v->x[0], (double)v->y[0], (double)v->z[0]}; }
-
-/* Put a plane, or a rectangle, where a flat part of a surface goes. */
-static bool flat_image(plane *to, const surface *f, int part, const affine *m, double turn, double ends)
+/* Place a plane or a rectangle at the image of a flat part of a surface. */
+static bool flat_image(plane *to, const surface *f, int part, const affine *m, double mirror, double sum)
 {
     const int32_t p = part;
-    const real u = (real)ends, w = 0;
+    const real u = (real)sum, w = 0;
     partials q;
     f->ops->eval(f, 1, &p, &u, &w, 1, &q);
-    return plane_place(to, affine_point(m, lane(&q.Q)), vec3_scale(affine_vector(m, lane(&q.Qu)), turn),
-                       affine_vector(m, lane(&q.Qw)));
+    return plane_place(to, affine_point(m, vec3s_get(&q.Q, 0)),
+                       vec3_scale(affine_vector(m, vec3s_get(&q.Qu, 0)), mirror),
+                       affine_vector(m, vec3s_get(&q.Qw, 0)));
 }
 
-static surface *plane_image(const surface *f, const affine *m, double turn, double ends)
+static surface *plane_image(const surface *f, const affine *m, double mirror, double sum)
 {
     plane *p = malloc(sizeof *p);
     if (p)
         *p = *(const plane *)f;
-    if (p && flat_image(p, f, 0, m, turn, ends))
+    if (p && flat_image(p, f, 0, m, mirror, sum))
         return &p->base;
     free(p);
     return NULL;
@@ -292,11 +290,11 @@ static bool box_image(transformed *f, const affine *m)
     bool good = true;
     for (int part = 0; part < FACES; part++) {
         rectangle_set(&f->face[part]);
-        good = flat_image(&f->face[part], f->from, part, m, (double)f->turn, (double)f->ends) && good;
+        good = flat_image(&f->face[part], f->from, part, m, (double)f->mirror, (double)f->u_ends_sum) && good;
     }
-    f->methods.shell = faces_shell;
-    f->methods.foot = faces_foot;
-    f->methods.steep = faces_steep;
+    f->methods.bound = faces_bound;
+    f->methods.closest = faces_closest;
+    f->methods.lipschitz = faces_lipschitz;
     return good;
 }
 
@@ -312,9 +310,10 @@ static void choose_methods(transformed *f, double scale)
     f->methods.occlude_own = f->from->ops->occlude_own ? transformed_occlude_own : NULL;
     f->methods.extent = transformed_extent;
     f->methods.box = transformed_box;
-    f->methods.shell = scale > 0 ? similar_shell : NULL;
-    f->methods.foot = scale > 0 ? similar_foot : NULL;
-    f->methods.steep = scale > 0 ? similar_steep : NULL;
+    const bool known = scale > 0 && f->from->ops->closest;
+    f->methods.bound = known ? similar_bound : NULL;
+    f->methods.closest = known ? similar_closest : NULL;
+    f->methods.lipschitz = known ? similar_lipschitz : NULL;
 }
 
 surface *surface_transformed(const surface *from, const affine *m)
@@ -324,15 +323,15 @@ surface *surface_transformed(const surface *from, const affine *m)
     if (!(fabs(volume) > 0) || !(fabs(volume) < HUGE_VAL))
         return NULL;
     from->ops->extent(from, 0, u, w);
-    const double turn = volume < 0 ? -1 : 1, ends = volume < 0 && u[1] < HUGE_VAL ? u[0] + u[1] : 0;
+    const double mirror = volume < 0 ? -1 : 1, sum = volume < 0 && u[1] < HUGE_VAL ? u[0] + u[1] : 0;
     if (is(from, "plane") || is(from, "rectangle") || is(from, "disc"))
-        return plane_image(from, m, turn, ends);
+        return plane_image(from, m, mirror, sum);
     transformed *f = calloc(1, sizeof *f);
     if (!f)
         return NULL;
     f->from = from;
-    f->turn = (real)turn;
-    f->ends = (real)ends;
+    f->mirror = (real)mirror;
+    f->u_ends_sum = (real)sum;
     const affine back = affine_back(m);
     vec3_round(f->to[0], m->x);
     vec3_round(f->to[1], m->y);

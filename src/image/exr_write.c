@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/file_writer.h"
+#include "base/threads.h"
 #include "image/buffer.h"
 
 /* The codes that the calls return say enough; a handler that asked the context for its data, as the reader's
@@ -35,7 +36,7 @@ static exr_result_t write_header(exr_context_t ctx, int width, int height, int c
         longest = strlen(channel[c].name) > longest ? strlen(channel[c].name) : longest;
     for (int i = 0; i < texts; i++)
         longest = strlen(text[i].key) > longest ? strlen(text[i].key) : longest;
-    /* A flag in the file that readers of old refuse: only where it is needed. */
+    /* A flag in the file that old readers refuse: set only where it is needed. */
     exr_result_t rv = exr_set_longname_support(ctx, longest > 31);
     if (!rv)
         rv = exr_add_part(ctx, NULL, EXR_STORAGE_SCANLINE, &part);
@@ -66,21 +67,22 @@ static exr_result_t compress_chunk(exr_context_t ctx, exr_encode_pipeline_t *pip
     }
     if (!rv && first)
         rv = exr_encoding_choose_default_routines(ctx, 0, pipe);
-    pipe->yield_until_ready_fn = NULL; /* write_chunks sees to the order */
+    pipe->yield_until_ready_fn = NULL; /* write_chunks writes in order */
     pipe->write_fn = NULL;
     return rv ? rv : exr_encoding_run(ctx, 0, pipe);
 }
 
 /* Compression is nearly all the time: the threads share it, and write in turn, so that the order of the file, and
  * with it every byte, is the same for any number of them. */
-static exr_result_t write_chunks(exr_context_t ctx, int width, int height, const image_channel *channel)
+static exr_result_t write_chunks(exr_context_t ctx, int threads, int width, int height, const image_channel *channel)
 {
     int32_t lines = 0;
     exr_result_t result = exr_get_scanlines_per_chunk(ctx, 0, &lines);
     if (result)
         return result;
     const int chunks = (height + lines - 1) / lines;
-#pragma omp parallel
+    (void)threads; /* without OpenMP */
+#pragma omp parallel num_threads(threads)
     {
         exr_encode_pipeline_t pipe = EXR_ENCODE_PIPELINE_INITIALIZER;
         exr_result_t rv = EXR_ERR_SUCCESS; /* of this thread, which stops at its first failure */
@@ -103,7 +105,7 @@ static exr_result_t write_chunks(exr_context_t ctx, int width, int height, const
     return result;
 }
 
-static exr_result_t encode(file_writer *file, int width, int height, int channels, const image_channel *channel,
+static exr_result_t encode(file_writer *file, int threads, int width, int height, int channels, const image_channel *channel,
                            int texts, const image_text *text)
 {
     exr_context_t ctx = NULL;
@@ -118,7 +120,7 @@ static exr_result_t encode(file_writer *file, int width, int height, int channel
         return rv;
     rv = write_header(ctx, width, height, channels, channel, texts, text);
     if (!rv)
-        rv = write_chunks(ctx, width, height, channel);
+        rv = write_chunks(ctx, threads_of(threads), width, height, channel);
     exr_result_t end = exr_finish(&ctx); /* writes the table of chunks */
     return rv ? rv : end;
 }
@@ -135,8 +137,8 @@ static const char *refuse(int width, int height, int channels, const image_chann
     return why;
 }
 
-bool image_write_exr(const char *path, int width, int height, int channels, const image_channel *channel, int texts,
-                     const image_text *text, errors *e)
+bool image_write_exr(const char *path, int threads, int width, int height, int channels, const image_channel *channel,
+                     int texts, const image_text *text, errors *e)
 {
     const size_t n = channels > 0 ? (size_t)channels : 0;
     image_channel *sorted = malloc((n + 1) * sizeof *sorted);
@@ -152,7 +154,7 @@ bool image_write_exr(const char *path, int width, int height, int channels, cons
     if (why)
         errors_add(e, "%s: cannot be written: %s", path, why);
     else if (file_writer_open(&file, path, e)) {
-        exr_result_t rv = encode(&file, width, height, channels, sorted, texts, text);
+        exr_result_t rv = encode(&file, threads, width, height, channels, sorted, texts, text);
         ok = file_writer_close(&file, rv ? exr_get_default_error_message(rv) : NULL, e);
     }
     free(sorted);

@@ -1,4 +1,4 @@
-/* No power is taken of a pixel. The function rises, so the code of x is the number of thresholds at or below
+/* No power of a pixel is computed. The function is monotonic, so the code of x is the number of thresholds at or below
  * x, where threshold k is the linear light halfway between codes k-1 and k: rounding to nearest, exactly. The
  * thresholds are computed with + - * / alone, which IEEE 754 defines to the last bit; pow and powf, whose
  * variants differ from one processor or libm to the next, would let the same picture have different bytes.

@@ -43,8 +43,8 @@ static interval wave(interval a, double phase, double lo, double hi)
         return (interval){-1, 1};
     double t0 = a.lo / turn - phase, t1 = a.hi / turn - phase;
     interval z = interval_between(lo, hi);
-    return (interval){has_integer(t0 - 0.5, t1 - 0.5) ? -1 : double_max(z.lo, -1),
-                      has_integer(t0, t1) ? 1 : double_min(z.hi, 1)};
+    return (interval){has_integer(t0 - 0.5, t1 - 0.5) ? -1 : greater(z.lo, -1),
+                      has_integer(t0, t1) ? 1 : lesser(z.hi, 1)};
 }
 
 interval interval_sin(interval a) { return wave(a, 0.25, km_sin(a.lo), km_sin(a.hi)); }
@@ -77,7 +77,7 @@ interval interval_atan2(interval y, interval x)
     if (x.lo <= 0 && interval_has(y, 0))
         return interval_widen((interval){-KM_PI, KM_PI}, INTERVAL_ONE_ROUNDING);
     double a = km_atan2(y.lo, x.lo), b = km_atan2(y.lo, x.hi), c = km_atan2(y.hi, x.lo), d = km_atan2(y.hi, x.hi);
-    return rising(double_min(double_min(a, b), double_min(c, d)), double_max(double_max(a, b), double_max(c, d)));
+    return rising(lesser(lesser(a, b), lesser(c, d)), greater(greater(a, b), greater(c, d)));
 }
 
 interval interval_sinh(interval a) { return rising(km_sinh(a.lo), km_sinh(a.hi)); }
@@ -91,7 +91,7 @@ interval interval_cosh(interval a)
 interval interval_tanh(interval a) { return rising(km_tanh(a.lo), km_tanh(a.hi)); }
 
 /* What underflows is above 0, and not above 0 alone. */
-static interval not_negative(interval z) { return (interval){double_max(z.lo, 0), double_max(z.hi, INTERVAL_TINY)}; }
+static interval not_negative(interval z) { return (interval){greater(z.lo, 0), greater(z.hi, INTERVAL_TINY)}; }
 
 interval interval_exp(interval a) { return not_negative(rising(km_exp(a.lo), km_exp(a.hi))); }
 
@@ -115,15 +115,15 @@ interval interval_mod(interval a, interval b)
     interval m = interval_abs(a), n = interval_abs(b);
     if (m.hi < n.lo)
         return a;
-    return (interval){a.lo < 0 ? double_max(a.lo, -n.hi) : 0, a.hi > 0 ? double_min(a.hi, n.hi) : 0};
+    return (interval){a.lo < 0 ? greater(a.lo, -n.hi) : 0, a.hi > 0 ? lesser(a.hi, n.hi) : 0};
 }
 
 /* a^b for a >= 0: it is monotonic in a and in b, so the extremes are at corners. */
 static interval positive_power(interval a, interval b)
 {
     interval p = {km_pow(a.lo, b.lo), km_pow(a.lo, b.hi)}, q = {km_pow(a.hi, b.lo), km_pow(a.hi, b.hi)};
-    return not_negative(rising(double_min(double_min(p.lo, p.hi), double_min(q.lo, q.hi)),
-                               double_max(double_max(p.lo, p.hi), double_max(q.lo, q.hi))));
+    return not_negative(
+        rising(lesser(lesser(p.lo, p.hi), lesser(q.lo, q.hi)), greater(greater(p.lo, p.hi), greater(q.lo, q.hi))));
 }
 
 static interval power(interval a, interval b)

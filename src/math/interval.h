@@ -22,7 +22,7 @@ static const interval interval_all = {-KM_INF, KM_INF}, interval_zero = {0, 0}, 
 static inline interval interval_at(double x) { return (interval){x, x}; }
 static inline interval interval_hull(interval a, interval b)
 {
-    return (interval){double_min(a.lo, b.lo), double_max(a.hi, b.hi)};
+    return (interval){lesser(a.lo, b.lo), greater(a.hi, b.hi)};
 }
 static inline interval interval_negate(interval a) { return (interval){-a.hi, -a.lo}; }
 static inline bool interval_has(interval a, double x) { return a.lo <= x && x <= a.hi; }
@@ -38,7 +38,7 @@ static inline interval interval_known(interval a)
 /* The part of a in lo..hi, a function's domain; all of lo..hi where there is none. */
 static inline interval interval_clip(interval a, double lo, double hi)
 {
-    interval c = {double_max(a.lo, lo), double_min(a.hi, hi)};
+    interval c = {greater(a.lo, lo), lesser(a.hi, hi)};
     return c.lo <= c.hi ? c : (interval){lo, hi};
 }
 
@@ -61,7 +61,7 @@ static inline interval interval_widen(interval a, double relative)
 static inline interval interval_abs(interval a)
 {
     double l = fabs(a.lo), h = fabs(a.hi);
-    return (interval){interval_has(a, 0) ? 0 : double_min(l, h), double_max(l, h)};
+    return (interval){interval_has(a, 0) ? 0 : lesser(l, h), greater(l, h)};
 }
 
 static inline interval interval_add(interval a, interval b)
@@ -78,7 +78,7 @@ static inline interval interval_scale(double k, interval a) { return interval_mu
 /* A monotonic function, from its values at the two ends, computed with at most 8 ulp of error. */
 static inline interval interval_between(double x, double y)
 {
-    return interval_widen((interval){double_min(x, y), double_max(x, y)}, INTERVAL_ROUNDINGS);
+    return interval_widen((interval){lesser(x, y), greater(x, y)}, INTERVAL_ROUNDINGS);
 }
 
 /* The elementary functions, of which kmath.h has the values. */

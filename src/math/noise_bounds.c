@@ -16,7 +16,7 @@
 static interval around(double f, double fu, double fv, double x, double y, double second, double limit)
 {
     const double off = fabs(fu) * x + fabs(fv) * y + 0.5 * second * (x + y) * (x + y) + 1e-12;
-    return (interval){double_max(f - off, -limit), double_min(f + off, limit)};
+    return (interval){greater(f - off, -limit), lesser(f + off, limit)};
 }
 
 noise_bounds noise_bounds_over(interval a, interval b)

@@ -1,97 +1,23 @@
-/* A model's file is read in a process of its own: whatever a broken file does to the importer, crash, go round for ever
- * or take all memory, ends there, and is an error here. The triangles come back through a pipe.
+/* A model's file is read by a program of its own, kage-import: whatever a broken file does to the importer, crash, loop
+ * for ever or take all memory, ends there, and is an error here. The triangles come back through a pipe.
  */
-#include "mesh/mesh_data.h"
+#define _GNU_SOURCE /* pipe2: no program that another thread starts meanwhile keeps the pipe open */
+
+#include "mesh/find_reader.h"
+#include "mesh/letter.h"
 
 #include <errno.h>
 #include <fcntl.h>
 #include <signal.h>
+#include <spawn.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#define MIB ((size_t)1 << 20)
-enum { MOST_MIB = 1024, SECONDS = 3, MIB_A_SECOND = 1, ROOM_MIB = 512, TIMES = 96 };
-
-/* What comes through the pipe: a file that is opened, a share of it that is read, the end with an error, or the end
- * with triangles, their corners and skins. */
-typedef struct letter {
-    enum { OPENED, READ, WRONG, DONE } is;
-    file_id opened;
-    double share;
-    mesh_data data; /* without its arrays */
-    char why[MESH_WHY];
-} letter;
-
-/* ---- the child ---- */
-
-static void send(int to, const void *from, size_t size)
-{
-    for (const char *at = from; size > 0;) {
-        const ssize_t n = write(to, at, size);
-        if (n < 0 && errno != EINTR)
-            _exit(1);
-        at += n > 0 ? n : 0;
-        size -= n > 0 ? (size_t)n : 0;
-    }
-}
-
-static void send_opened(void *user, file_id id)
-{
-    const letter l = {.is = OPENED, .opened = id};
-    send(*(const int *)user, &l, sizeof l);
-}
-
-static void send_share(void *user, double share)
-{
-    const letter l = {.is = READ, .share = share};
-    send(*(const int *)user, &l, sizeof l);
-}
-
-static void limit(int what, rlim_t most)
-{
-    struct rlimit l;
-    if (getrlimit(what, &l) == 0 && (l.rlim_cur == RLIM_INFINITY || l.rlim_cur > most)) {
-        l.rlim_cur = most;
-        setrlimit(what, &l);
-    }
-}
-
-/* No more time, memory or words than a whole file needs. */
-static void confine(size_t size)
-{
-    const int nowhere = open("/dev/null", O_RDWR);
-    for (int k = 0; k < 3 && nowhere >= 0; k++)
-        dup2(nowhere, k);
-    limit(RLIMIT_CORE, 0);
-    limit(RLIMIT_CPU, SECONDS + size / MIB / MIB_A_SECOND);
-#ifndef __SANITIZE_ADDRESS__ /* which has all addresses for itself */
-    limit(RLIMIT_AS, ROOM_MIB * MIB + TIMES * size);
-#endif
-}
-
-static void child(const char *path, size_t size, int to)
-{
-    letter l = {.is = WRONG};
-    confine(size);
-    if (mesh_import(path, &(mesh_listener){send_opened, send_share, &to}, &l.data, l.why))
-        l.is = DONE;
-    const mesh_data d = l.data;
-    l.data.at = NULL;
-    l.data.skin = NULL;
-    send(to, &l, sizeof l);
-    if (l.is == DONE) {
-        send(to, d.at, sizeof *d.at * (size_t)d.n);
-        send(to, d.skin, sizeof *d.skin * (size_t)d.n);
-    }
-    _exit(0);
-}
-
-/* ---- the parent ---- */
+enum { MOST_MIB = 1024 }; /* of a file: no model of MESH_MOST triangles is larger */
 
 static bool receive(int from, void *to, size_t size)
 {
@@ -105,37 +31,45 @@ static bool receive(int from, void *to, size_t size)
     return true;
 }
 
-/* The letter that is the last; READ where none came. */
+static bool receive_letter(int from, letter *l) { return receive(from, l, sizeof *l) && l->magic == LETTER_MAGIC; }
+
+static bool fails(letter *l, const char *why)
+{
+    l->is = LETTER_WRONG;
+    snprintf(l->why, sizeof l->why, "%s", why);
+    return false;
+}
+
+/* The last letter; LETTER_READ where none came. */
 static void receive_last(int from, const progress *w, files *opened, letter *l)
 {
-    bool come = receive(from, l, sizeof *l), room = true;
-    for (; come && room && (l->is == OPENED || l->is == READ); come = receive(from, l, sizeof *l))
-        if (l->is == OPENED)
-            room = files_add(opened, l->opened);
-        else
-            progress_show(w, l->share < 1 ? "reading" : "unpacking", l->share);
-    if (!room) {
-        l->is = WRONG;
-        snprintf(l->why, sizeof l->why, "out of memory");
-    } else if (!come)
-        l->is = READ;
+    bool come = receive_letter(from, l);
+    for (; come && (l->is == LETTER_OPENED || l->is == LETTER_READ); come = receive_letter(from, l))
+        if (l->is == LETTER_OPENED && !files_add(opened, l->opened)) {
+            fails(l, "out of memory");
+            return;
+        } else if (l->is == LETTER_READ && !progress_show(w, l->share < 1 ? "reading" : "unpacking", l->share)) {
+            fails(l, "cancelled");
+            return;
+        }
+    if (!come)
+        l->is = LETTER_READ;
 }
 
 static bool receive_all(int from, const progress *w, files *opened, letter *l, mesh_data *out)
 {
     receive_last(from, w, opened, l);
-    if (l->is != DONE)
+    if (l->is != LETTER_DONE)
         return false;
     *out = l->data;
     out->at = malloc(sizeof *out->at * (size_t)out->n);
     out->skin = malloc(sizeof *out->skin * (size_t)out->n);
-    if (out->at && out->skin && receive(from, out->at, sizeof *out->at * (size_t)out->n) &&
+    const bool room = out->at && out->skin;
+    if (room && receive(from, out->at, sizeof *out->at * (size_t)out->n) &&
         receive(from, out->skin, sizeof *out->skin * (size_t)out->n))
         return true;
-    snprintf(l->why, sizeof l->why, "%s", out->at && out->skin ? "its reader ended too soon" : "out of memory");
     mesh_data_free(out);
-    l->is = WRONG;
-    return false;
+    return fails(l, room ? "its reader ended too soon" : "out of memory");
 }
 
 /* Messages go to a terminal: without line ends or other controls. */
@@ -178,40 +112,83 @@ static bool can_open(const char *path, size_t *size, char why[MESH_WHY])
     return *size > 0;
 }
 
-bool mesh_file_read(const char *path, const progress *w, files *opened, mesh_data *out, char why[MESH_WHY])
+/* The program, with `to` as its descriptor LETTER_FD, nothing else to read from or write to, and the signals as any
+ * program finds them, whatever the caller's process does with its own. 0, or an errno. */
+static int start(const char *program, const char *path, int to, pid_t *pid)
 {
-    letter l = {.is = READ};
-    size_t size = 0;
-    int ends[2], status = 0;
-    if (!can_open(path, &size, why))
-        return false;
-    progress_show(w, "reading", 0);
-    if (pipe(ends) != 0) {
-        snprintf(why, MESH_WHY, "%s", strerror(errno));
-        return false;
+    char *argv[] = {(char *)(size_t)program, (char *)(size_t)path, NULL};
+    posix_spawn_file_actions_t ends;
+    posix_spawnattr_t how;
+    sigset_t none, usual;
+    sigemptyset(&none);
+    sigemptyset(&usual);
+    sigaddset(&usual, SIGPIPE);
+    sigaddset(&usual, SIGXCPU);
+    int error = posix_spawn_file_actions_init(&ends);
+    if (error)
+        return error;
+    error = posix_spawnattr_init(&how);
+    if (!error) {
+        error = posix_spawn_file_actions_adddup2(&ends, to, LETTER_FD);
+        for (int k = 0; k < 3 && !error; k++)
+            error = posix_spawn_file_actions_addopen(&ends, k, "/dev/null", O_RDWR, 0);
+        if (!error)
+            error = posix_spawnattr_setsigmask(&how, &none);
+        if (!error)
+            error = posix_spawnattr_setsigdefault(&how, &usual);
+        if (!error)
+            error = posix_spawnattr_setflags(&how, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
+        if (!error)
+            error = posix_spawn(pid, program, &ends, &how, argv, environ);
+        posix_spawnattr_destroy(&how);
     }
-    fflush(NULL);
-    const pid_t pid = fork();
-    if (pid == 0) {
-        close(ends[0]);
-        child(path, size, ends[1]);
-    }
-    close(ends[1]);
-    const bool good = pid > 0 && receive_all(ends[0], w, opened, &l, out);
-    close(ends[0]);
-    while (pid > 0 && waitpid(pid, &status, 0) < 0 && errno == EINTR)
-        ;
-    if (good)
-        return true;
-    if (pid < 0)
-        snprintf(why, MESH_WHY, "%s", strerror(errno));
-    else if (l.is == WRONG)
-        snprintf(why, MESH_WHY, "%s", l.why);
+    posix_spawn_file_actions_destroy(&ends);
+    return error;
+}
+
+/* Why the last letter is no LETTER_DONE. `status`: of the program, as waitpid gives it. */
+static void explain(const letter *l, int status, size_t size, char why[MESH_WHY])
+{
+    if (l->is == LETTER_WRONG)
+        snprintf(why, MESH_WHY, "%s", l->why);
     else if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU)
         snprintf(why, MESH_WHY, "reading it takes for ever, expected at most %d seconds",
-                 SECONDS + (int)(size / MIB / MIB_A_SECOND));
+                 LETTER_SECONDS + (int)(size / MIB / LETTER_MIB_A_SECOND));
     else
         snprintf(why, MESH_WHY, "its reader broke down over it, expected a sound file");
-    clean(why);
-    return false;
+}
+
+bool mesh_file_read(const char *path, const char *reader, const progress *w, files *opened, mesh_data *out,
+                    char why[MESH_WHY])
+{
+    letter l = {.is = LETTER_READ};
+    char program[READER_PATH];
+    size_t size = 0;
+    int ends[2], status = 0;
+    pid_t pid;
+    if (!can_open(path, &size, why) || !find_reader(reader, program, why, MESH_WHY))
+        return false;
+    if (!progress_show(w, "reading", 0)) {
+        snprintf(why, MESH_WHY, "cancelled");
+        return false;
+    }
+    if (pipe2(ends, O_CLOEXEC) != 0) {
+        snprintf(why, MESH_WHY, "%s", strerror(errno));
+        return false;
+    }
+    const int error = start(program, path, ends[1], &pid);
+    close(ends[1]);
+    const bool good = !error && receive_all(ends[0], w, opened, &l, out);
+    close(ends[0]);
+    if (!error && !good)
+        kill(pid, SIGKILL); /* where it still runs: nobody waits for what it does */
+    while (!error && waitpid(pid, &status, 0) < 0 && errno == EINTR)
+        ;
+    if (error)
+        snprintf(why, MESH_WHY, "%.100s can't be started: %s", program, strerror(error));
+    else if (!good)
+        explain(&l, status, size, why);
+    if (!good)
+        clean(why);
+    return good;
 }

@@ -115,7 +115,6 @@ static void mesh_free(surface *base)
 {
     mesh *f = (mesh *)base;
     bvh_free(f->tree);
-    bvh_free(f->rough);
     mesh_data_free(&f->d);
     free(f);
 }
@@ -133,12 +132,13 @@ static const surface_ops methods = {
     .parts = 1, /* `part` is the triangle; nothing that is asked by part alone differs between them */
 };
 
+bool mesh_is(const surface *f) { return f->ops == &methods; }
+
 /* All that follows from triangles and texture coordinates. */
 static surface *finish(mesh *f, const progress *w)
 {
     f->base.ops = &methods;
     f->base.free = mesh_free;
-    f->base.rough = &mesh_displaced;
     double lo[3], hi[3];
     mesh_box(&f->base, lo, hi);
     f->space = bvh_space_about(lo, hi);

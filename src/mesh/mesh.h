@@ -24,8 +24,6 @@ typedef struct mesh {
     double u[2], w[2]; /* the range of the texture coordinates; 0..1 where there are none */
     bvh_space space;   /* the sphere about all vertices */
     bvh *tree;         /* over the triangles, in `space` */
-    bvh *rough;        /* the same over what their rough surfaces may be in, with any P so far; NULL: not prepared */
-    double lowest, highest, height; /* of those P, 0 among them: least, greatest, and the larger magnitude */
 } mesh;
 
 /* Owns *d, also on failure. *d has been through mesh_clean. w: shows how far the hierarchy is; may be NULL. NULL: out
@@ -36,8 +34,8 @@ surface *mesh_new(mesh_data *d, const progress *w);
  * displacement). Where the map mirrors, u runs the other way in its range, as there. NULL: out of memory. */
 surface *mesh_moved(const surface *from, const affine *m);
 
-/* For true displacement. */
-extern const struct displaced_ops mesh_displaced;
+/* Whether a surface is one. */
+bool mesh_is(const surface *f);
 
 /* A triangle in double: its corners, their unit normals, and their (u,w). */
 typedef struct mesh_triangle {

@@ -15,7 +15,7 @@
 
 enum {
     MESH_MOST = 1 << 24, /* triangles; more are refused */
-    MESH_WHY = 200,      /* bytes of a message */
+    MESH_WHY = 400,      /* bytes of a message */
 };
 
 /* What shading needs of a triangle; intersection needs only its corners. */
@@ -55,18 +55,10 @@ void mesh_data_free(mesh_data *d);
 
 typedef enum mesh_normals { MESH_NORMALS_FILE, MESH_NORMALS_SMOOTH, MESH_NORMALS_FLAT } mesh_normals;
 
-/* Read a file of a model; it and those that it names are added to *opened. False, and why not in one line.
- * (mesh_file.c) */
-bool mesh_file_read(const char *path, const progress *w, files *opened, mesh_data *out, char why[MESH_WHY]);
-
-/* The importer itself, as it runs in a process of its own. What it tells: each file that it opens, and the share that
- * has been read. (mesh_import.c) */
-typedef struct mesh_listener {
-    void (*open)(void *user, file_id id);
-    void (*read)(void *user, double share);
-    void *user;
-} mesh_listener;
-bool mesh_import(const char *path, const mesh_listener *to, mesh_data *out, char why[MESH_WHY]);
+/* Read a file of a model; it and those that it names are added to *opened. The program `reader` does it, or where that
+ * is NULL the one that is found (mesh/load.c). False, and why not in one line. Reentrant. */
+bool mesh_file_read(const char *path, const char *reader, const progress *w, files *opened, mesh_data *out,
+                    char why[MESH_WHY]);
 
 /* Check the numbers, remove triangles without an area, and find a normal for every corner: the file's where it is
  * usable, otherwise the mean over the triangles about the vertex that are within `crease` degrees of this one. False,

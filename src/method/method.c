@@ -1,3 +1,4 @@
+/* The methods' names, as users write them, and what they need. */
 #include "method/method.h"
 
 #include <stdio.h>
@@ -74,10 +75,7 @@ void method_name(method m, char name[METHOD_NAME_SIZE])
 
 int method_order(method m) { return m.kind == METHOD_ORDER && m.n >= 2 ? 2 : 1; }
 
-bool method_bends(method m)
-{
-    return m.kind == METHOD_MARCH || m.kind == METHOD_ITER || (m.kind == METHOD_ORDER && m.n == 3);
-}
+bool method_bends(method m) { return m.kind == METHOD_MARCH || (m.kind == METHOD_ORDER && m.n == 3); }
 
 int method_code(method m)
 {

@@ -9,7 +9,7 @@ typedef enum method_kind {
     METHOD_ORDER, /* n = 0, 1, 2: the paper's; 3: 2+ */
     METHOD_ITER,  /* n times order 0 */
     METHOD_MARCH, /* n steps through the slab */
-    METHOD_EXACT, /* at the first hit of the displaced surface (displace.h) */
+    METHOD_EXACT, /* at the first hit of the displaced surface (displaced.h) */
 } method_kind;
 
 typedef struct method {
@@ -29,7 +29,7 @@ void method_name(method m, char name[METHOD_NAME_SIZE]);
 /* The derivatives of P that it needs: 1 the gradient (for n', always), 2 also the second ones. */
 int method_order(method m);
 
-/* Whether it looks at the smooth surface's curvature. */
+/* Whether it uses the smooth surface's curvature, so Quu, Quw and Qww. */
 bool method_bends(method m);
 
 /* How its order is written in the layer `order` and counted in the statistics, if it does not fall back:

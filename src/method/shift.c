@@ -16,7 +16,7 @@ STAGE static void normals_bump(hit_group *restrict g)
 {
     for (int i = 0; i < g->n; i++) {
         bs_vec3 Qu = lane_get(&g->q.Qu, i), Qw = lane_get(&g->q.Qw, i), n = bs_normal(Qu, Qw);
-        bs_vec3 np = bs_perturbed_normal(n, Qu, Qw, g->h.Pu[i], g->h.Pw[i]);
+        bs_vec3 np = bs_perturbed_normal(n, Qu, Qw, g->bump.Pu[i], g->bump.Pw[i]);
         int regular = bs_regular(n, Qu, Qw);
         np.x = regular ? np.x : n.x;
         np.y = regular ? np.y : n.y;
@@ -62,12 +62,12 @@ STAGE static void drop_irregular(hit_group *restrict g)
 static inline void by_order(hit_group *g, int i, int order, int guard, real Pmin, real Pmax)
 {
     bs_view v = view(g, i);
-    bs_bump p = {g->h.P[i],
-                 order >= 1 ? g->h.Pu[i] : 0,
-                 order >= 1 ? g->h.Pw[i] : 0,
-                 order >= 2 ? g->h.Puu[i] : 0,
-                 order == 3 ? g->h.Puw[i] : 0,
-                 order >= 2 ? g->h.Pww[i] : 0};
+    bs_bump p = {g->bump.P[i],
+                 order >= 1 ? g->bump.Pu[i] : 0,
+                 order >= 1 ? g->bump.Pw[i] : 0,
+                 order >= 2 ? g->bump.Puu[i] : 0,
+                 order == 3 ? g->bump.Puw[i] : 0,
+                 order >= 2 ? g->bump.Pww[i] : 0};
     bs_shift s = bs_shift_of(order, guard, v, order == 3 ? curvature(g, i, v) : 0, p, bs_slab_of(v, Pmin, Pmax));
     g->tau[i] = s.tau;
     g->order[i] = s.order;
@@ -94,7 +94,7 @@ static by_order_stage *const by_orders[2][4] = {
     {order_0, order_1, order_2, order_2_plus},
 };
 
-/* The places of the look-ups and the ray's way past the surface, for the methods that look P up again. */
+/* For the methods that evaluate P again along the ray: its way past the surface, and the places where it is now. */
 typedef struct walk {
     real sn[LANES], a[LANES], b[LANES], curvature[LANES];
     real tau[LANES], u[LANES], w[LANES];
@@ -108,6 +108,13 @@ STAGE static void walk_start(const hit_group *restrict g, walk *restrict k)
         k->sn[i] = v.sn;
         k->a[i] = v.a;
         k->b[i] = v.b;
+    }
+}
+
+STAGE static void walk_curvature(const hit_group *restrict g, walk *restrict k)
+{
+    for (int i = 0; i < g->n; i++) {
+        bs_view v = {k->sn[i], k->a[i], k->b[i]};
         k->curvature[i] = curvature(g, i, v);
     }
 }
@@ -121,7 +128,7 @@ STAGE static void walk_place(const hit_group *restrict g, walk *restrict k)
     }
 }
 
-static void walk_look_up(const hit_group *g, walk *k, const bump *P)
+static void walk_evaluate(const hit_group *g, walk *k, const bump *P)
 {
     walk_place(g, k);
     P->ops->eval(P, g->n, k->u, k->w, 0, &k->h);
@@ -139,9 +146,9 @@ static long iterate(hit_group *g, const bump *P, method m)
 {
     walk k;
     walk_start(g, &k);
-    iter_step(g->n, &k, g->h.P); /* the first look-up is the one that shading has made */
+    iter_step(g->n, &k, g->bump.P); /* P at the smooth hit is known */
     for (int step = 1; step < m.n; step++) {
-        walk_look_up(g, &k, P);
+        walk_evaluate(g, &k, P);
         iter_step(g->n, &k, k.h.P);
     }
     for (int i = 0; i < g->n; i++) {
@@ -192,15 +199,16 @@ static long march(hit_group *g, const bump *P, method m)
     walk k;
     march_lanes x;
     walk_start(g, &k);
+    walk_curvature(g, &k);
     march_start(g->n, &k, P->Pmin, P->Pmax, &x);
     for (int step = 0; step <= m.n; step++) {
         march_place(g->n, &k, P->Pmin, P->Pmax, step, m.n);
-        walk_look_up(g, &k, P);
+        walk_evaluate(g, &k, P);
         march_step(g->n, &k, &x);
     }
     for (int i = 0; i < g->n; i++) {
         bs_view v = {k.sn[i], 0, 0};
-        g->tau[i] = x.found[i] ? x.tau[i] : bs_tau0(v, g->h.P[i]);
+        g->tau[i] = x.found[i] ? x.tau[i] : bs_tau0(v, g->bump.P[i]);
         g->order[i] = x.found[i] ? method_code(m) : 0;
     }
     return (long)(m.n + 1) * g->n;
@@ -231,3 +239,11 @@ STAGE static void within(int n, const real *restrict t, real *restrict tau)
 }
 
 void shift_within(hit_group *g) { within(g->n, g->t, g->tau); }
+
+STAGE static void origins(int n, const real *restrict t, const real *restrict tau, real *restrict t0)
+{
+    for (int i = 0; i < n; i++)
+        t0[i] = t[i] + tau[i];
+}
+
+void shift_origins(hit_group *g) { origins(g->n, g->t, g->tau, g->t0); }

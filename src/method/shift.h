@@ -13,7 +13,10 @@ void shift_normals(hit_group *g, const bump *bump);
  * order is none. Returns the number of heights that were looked up on the way. */
 long shift_group(hit_group *g, const bump *bump, method m, bool guard);
 
-/* A secondary ray starts amid the scene; the shifted place is not before its start. */
+/* A secondary ray starts amid the scene; the shifted place is not before its start: tau >= -t. */
 void shift_within(hit_group *g);
+
+/* g->t0 = t_hit + tau, when tau is final. */
+void shift_origins(hit_group *g);
 
 #endif

@@ -219,6 +219,6 @@ patch *patch_bezier_new(int patches, const vec3 *point)
             q->axis[1][i][k] = p.y;
             q->axis[2][i][k] = p.z;
         }
-    q->base = (patch){&bezier_methods, "patches", patches, {0, 1}, {0, 1}};
+    q->base = (patch){&bezier_methods, "patches", patches, {0, 1}, {0, 1}, 0};
     return &q->base;
 }

@@ -50,6 +50,6 @@ patch *patch_function_new(const char *kind, expr *const xyz[3], const double u[2
     }
     if (!q)
         return NULL;
-    q->base = (patch){&function_methods, kind, 1, {u[0], u[1]}, {w[0], w[1]}};
+    q->base = (patch){&function_methods, kind, 1, {u[0], u[1]}, {w[0], w[1]}, 0};
     return &q->base;
 }

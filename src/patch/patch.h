@@ -59,6 +59,7 @@ struct patch {
     const char *kind; /* as in the scene file */
     int parts;
     double u[2], w[2]; /* the range, of every part */
+    int threads;       /* that share making it ready (piece.c); 0: all processors */
 };
 
 /* Q from three expressions over u[0]..u[1], w[0]..w[1]. Owns them, also on failure. `kind` must outlive it. NULL: out
@@ -68,11 +69,6 @@ patch *patch_function_new(const char *kind, expr *const xyz[3], const double u[2
 /* Bicubic Bezier patches, each a part over 0..1 in u and in w, from 16 control points each: point 4 j + i goes with the
  * i-th Bernstein polynomial in u and the j-th in w. Copies them. NULL: out of memory. */
 patch *patch_bezier_new(int patches, const vec3 *point);
-
-/* The offset surface Q + P n/|n| of a patch, n = Qu x Qw; both must outlive it. It is evaluated to order 1 only, and
- * has no Hessian bounds. NULL: out of memory. */
-struct bump;
-patch *patch_offset_new(const patch *q, const struct bump *P);
 
 /* The image of a patch by an affine map. `from` must outlive it. Where the map mirrors, u runs the other way, so that
  * Qu x Qw is the image of that of `from`. NULL: out of memory. */

@@ -1,6 +1,8 @@
 /* Pieces of a patch: their bounds, the subdivision of a whole patch, and a ray against a piece. */
 #include "patch/piece.h"
 
+#include "base/threads.h"
+
 #include <math.h>
 #include <stdlib.h>
 
@@ -104,7 +106,9 @@ static bool halve(const patch *q, double flat, pieces *l, bool *any)
     for (int i = 0; i < n; i++)
         if (needs_halving(l, flat, &more[i]))
             parent[halved++] = i;
-#pragma omp parallel for schedule(static) if (halved > FEWEST)
+    const int threads = threads_of(q->threads);
+    (void)threads; /* without OpenMP */
+#pragma omp parallel for num_threads(threads) schedule(static) if (halved > FEWEST)
     for (int k = 0; k < halved; k++) {
         const piece whole = more[parent[k]];
         more[parent[k]] = piece_half(q, &whole, 0);
@@ -124,7 +128,7 @@ static bool has_bounds(const pieces *l)
     return l->space.radius > POINT * vec3_length(l->space.centre) && l->space.radius < HUGE_VAL;
 }
 
-bool pieces_of(const patch *q, double flat, pieces *l)
+bool pieces_of(const patch *q, double flat, pieces *l, bool *bounded)
 {
     *l = (pieces){.piece = malloc(sizeof *l->piece * (size_t)q->parts)};
     bool good = l->piece, any = true;
@@ -136,8 +140,7 @@ bool pieces_of(const patch *q, double flat, pieces *l)
     }
     if (good) {
         measure(l);
-        l->n = has_bounds(l) ? l->n : 0;
-        good = l->n > 0;
+        good = *bounded = has_bounds(l);
     }
     return good;
 }

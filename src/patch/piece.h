@@ -42,8 +42,9 @@ typedef struct pieces {
 } pieces;
 
 /* Subdivide a patch, with several threads. flat: by how much, in radians or as a share, Qu and Qw may change within a
- * piece that is not very small. False: out of memory, or Q has no bounds, when n is 0. pieces_free in either case. */
-bool pieces_of(const patch *q, double flat, pieces *out);
+ * piece that is not very small. False: out of memory, or Q has no bounds or no extent: then *bounded is false, too.
+ * pieces_free in either case. */
+bool pieces_of(const patch *q, double flat, pieces *out, bool *bounded);
 void pieces_free(pieces *l);
 
 typedef enum piece_answer {

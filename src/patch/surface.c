@@ -203,12 +203,13 @@ static void patch_free(surface *base)
 {
     patch_surface *f = (patch_surface *)base;
     bvh_free(f->tree);
-    patch_surface_free_displaced(f->rough);
     pieces_free(&f->l);
     f->q->ops->free(f->q);
     free(f->methods);
     free(f);
 }
+
+bool patch_surface_is(const surface *f) { return f->free == patch_free; }
 
 /* A table for each surface: `kind` and `parts` are the patch's. */
 static surface_ops *methods_of(const patch *q)
@@ -230,7 +231,7 @@ static surface_ops *methods_of(const patch *q)
     return ops;
 }
 
-patch_surface *patch_surface_make(patch *q, double flat)
+static patch_surface *make(patch *q, double flat, bool *bounded)
 {
     patch_surface *f = calloc(1, sizeof *f);
     if (!f) {
@@ -239,9 +240,8 @@ patch_surface *patch_surface_make(patch *q, double flat)
     }
     f->q = q;
     f->base.free = patch_free;
-    f->base.rough = &patch_surface_displaced;
     f->base.ops = f->methods = methods_of(q);
-    if (f->base.ops && pieces_of(q, flat, &f->l))
+    if (f->base.ops && pieces_of(q, flat, &f->l, bounded))
         f->tree = tree_of(&f->l);
     if (!f->tree) {
         patch_free(&f->base);
@@ -250,10 +250,23 @@ patch_surface *patch_surface_make(patch *q, double flat)
     return f;
 }
 
+patch_surface *patch_surface_make(patch *q, double flat)
+{
+    bool bounded;
+    return make(q, flat, &bounded);
+}
+
 surface *patch_surface_new(patch *q)
 {
+    bool bounded;
+    return patch_surface_new_bounded(q, &bounded);
+}
+
+surface *patch_surface_new_bounded(patch *q, bool *bounded)
+{
+    *bounded = true;
     const double FLAT = 0.045; /* 2.6 degrees: few pieces stay undecided. Only speed depends on it. */
-    patch_surface *f = patch_surface_make(q, FLAT);
+    patch_surface *f = make(q, FLAT, bounded);
     return f ? &f->base : NULL;
 }
 

@@ -4,7 +4,7 @@
 
 #include "bvh/bvh.h"
 #include "patch/piece.h"
-#include "geometry/surface.h"
+#include "geometry/closed_form.h"
 
 typedef struct patch_surface {
     surface base;
@@ -13,34 +13,30 @@ typedef struct patch_surface {
     pieces l;
     bvh *tree;   /* over the pieces, in l.space */
     bool broken; /* Q or its normal may jump: nothing can be proved of pieces there, however small they are */
-    struct displaced_form *rough; /* its rough surfaces so far */
 } patch_surface;
 
-/* A rough surface of it, as a surface of its own. */
-typedef struct displaced_form displaced_form;
-struct displaced_form {
-    const struct bump *P;
-    surface *shape;
-    displaced_form *next;
-};
+/* Whether a surface is one. */
+bool patch_surface_is(const surface *f);
 
 /* Q(u,w) from its points alone (patch.h): three expressions, or Bezier patches, each a part. n = Qu x Qw is outward by
  * definition. Owns q, also on failure. NULL where Q has no bounds over its range, or is all in one place (then only: or
  * out of memory). */
 surface *patch_surface_new(patch *q);
 
+/* The same; *bounded is false where it is NULL because Q has no bounds, or no extent. */
+surface *patch_surface_new_bounded(patch *q, bool *bounded);
+
 /* The image of such a surface by an affine map, in pieces of its own: what surface_transformed makes of it has no true
  * displacement. `from` must outlive it; as there, where the map mirrors u runs the other way. NULL: as
  * patch_surface_new. */
 surface *patch_surface_affine(const surface *from, const affine *m);
 
+/* A closed form's formula as a patch surface (formula.c); kind: a constant. threads: as patch.threads. NULL: out of
+ * memory. */
+surface *patch_surface_formula(const char *kind, const form_formula *f, int threads);
+
 /* As patch_surface_new, with pieces as flat as that (pieces_of). */
 patch_surface *patch_surface_make(patch *q, double flat);
-
-void patch_surface_free_displaced(displaced_form *first);
-
-/* For true displacement. */
-extern const struct displaced_ops patch_surface_displaced;
 
 /* Counts of work: evaluations of the patch, and hits that are not proved to be the first. */
 typedef struct patch_counts {

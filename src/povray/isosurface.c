@@ -3,10 +3,10 @@
  * max_gradient is a bound, not a guess: from P's Lipschitz constants, on a sphere from interval arithmetic. POV-Ray
  * drops a stretch of a ray in which the function could not reach 0 by this bound, so too low a one makes holes.
  */
-#include "povray/parts.h"
-
 #include "povray/expr.h"
-#include "base/frame.h"
+#include "povray/flat.h"
+#include "povray/material.h"
+#include "povray/parts.h"
 
 #include <stdlib.h>
 
@@ -58,14 +58,14 @@ static double of_zone(const expr *e, double scale, double r, double w0, double w
  * own axis. */
 static double least_within(const object *o)
 {
-    const shape_spec f = pov_sized(o);
-    return f.radius[f.kind == SHAPE_TORUS] + (double)o->bump->Pmin;
+    const shape_values f = pov_sized(o);
+    return f.r[o->shape_spec.form == &form_torus] + (double)o->bump->Pmin;
 }
 
 static double least_hole(const object *o)
 {
-    const shape_spec f = pov_sized(o);
-    return f.radius[0] - f.radius[1] - (double)o->bump->Pmax;
+    const shape_values f = pov_sized(o);
+    return f.r[0] - f.r[1] - (double)o->bump->Pmax;
 }
 
 /* u turns about the poles ever faster, and the gradient is infinite there unless P does not depend on u. Zones that
@@ -110,12 +110,12 @@ static double of_part(const object *o, int part)
     const shape_spec *f = &o->shape_spec;
     if (pov_is_flat(f, part))
         return of_flat(o, part);
-    if (f->kind == SHAPE_SPHERE)
+    if (f->form == &form_sphere)
         return of_sphere(o);
-    if (f->kind == SHAPE_TORUS)
+    if (f->form == &form_torus)
         return of_torus(o);
-    return f->radius[0] == f->radius[1] ? of_cylinder(o)
-                                        : HUGE_VAL; /* a displaced cone ends on cones, which no container does */
+    /* a displaced cone ends on cones, which no container does */
+    return f->values.r[0] == pov_rim(f, 1) ? of_cylinder(o) : HUGE_VAL;
 }
 
 double pov_isosurface_gradient(const object *o, int part)
@@ -151,7 +151,7 @@ static void put_flat(pov_text *t, const scene *s, const object *o, int part, con
         u[0] = w[0] = -rim;
         u[1] = w[1] = rim;
     }
-    if (o->shape_spec.kind == SHAPE_PLANE) {
+    if (o->shape_spec.form == &form_plane) {
         pov_plane_region(s, o, u, w);
         pov_print(t, "// The plane has no end; here it is cut to what the camera sees and what can shade that.\n");
     }
@@ -182,21 +182,21 @@ static void put_motion(pov_text *t, const object *o)
 /* A round one's function begins, and ends. */
 static void begin_function(pov_text *t, const object *o)
 {
-    pov_print(t, "isosurface {\n  function {\n    %smax(", o->shape_spec.kind == SHAPE_TORUS ? "min(" : "");
+    pov_print(t, "isosurface {\n  function {\n    %smax(", o->shape_spec.form == &form_torus ? "min(" : "");
 }
 
 static void end_function(pov_text *t, const object *o)
 {
     pov_print(t, ", -%s)", pov_exact(LEVEL * least_within(o)).text);
-    if (o->shape_spec.kind == SHAPE_TORUS)
+    if (o->shape_spec.form == &form_torus)
         pov_print(t, ", %s)", pov_exact(LEVEL * least_hole(o)).text);
     pov_print(t, "\n  }\n");
 }
 
 static void put_sphere(pov_text *t, const scene *s, const object *o, const char *name)
 {
-    const shape_spec f = pov_sized(o);
-    double y[2], radius = f.radius[0];
+    const shape_values f = pov_sized(o);
+    double y[2], radius = f.r[0];
     pov_levels(o, y);
     begin_function(t, o);
     pov_print(t, "sqrt(x*x + y*y + z*z) - %s\n    - %s(%s, atan2(sqrt(x*x + z*z), y))", pov_exact(radius).text, name,
@@ -204,17 +204,17 @@ static void put_sphere(pov_text *t, const scene *s, const object *o, const char 
     end_function(t, o);
     pov_print(t, "  contained_by { sphere { 0, %g } }\n  accuracy %g\n", radius + y[1], accuracy(s, o));
     pov_print(t, "  max_gradient %g // a bound but for 0.001 radians around the poles\n  translate %v\n",
-              pov_isosurface_gradient(o, 0), f.a);
+              pov_isosurface_gradient(o, 0), f.v[0]);
     put_motion(t, o);
 }
 
 /* The side of a cylinder; y is its axis. */
 static void put_side(pov_text *t, const scene *s, const object *o, const char *name)
 {
-    const shape_spec f = pov_sized(o);
-    const vec3 axis = vec3_sub(f.u, f.a);
+    const shape_values f = pov_sized(o);
+    const vec3 axis = vec3_sub(f.v[1], f.v[0]);
     const frame a = frame_about(axis);
-    double y[2], radius = f.radius[0], length = vec3_length(axis);
+    double y[2], radius = f.r[0], length = vec3_length(axis);
     pov_levels(o, y);
     begin_function(t, o);
     pov_print(t, "sqrt(x*x + z*z) - %s\n    - %s(%s, ", pov_exact(radius).text, name, pov_around(o));
@@ -226,38 +226,38 @@ static void put_side(pov_text *t, const scene *s, const object *o, const char *n
               radius + y[1], length, radius + y[1]);
     pov_print(t, "  open\n  accuracy %g\n  max_gradient %g // a bound: none is steeper\n", accuracy(s, o),
               pov_isosurface_gradient(o, 0));
-    pov_matrix(t, a.x, a.y, a.z, f.a);
+    pov_matrix(t, a.x, a.y, a.z, f.v[0]);
     pov_print(t, " // y is the axis\n");
     put_motion(t, o);
 }
 
 static void put_torus(pov_text *t, const scene *s, const object *o, const char *name)
 {
-    const shape_spec f = pov_sized(o);
-    const frame a = frame_about(f.u);
+    const shape_values f = pov_sized(o);
+    const frame a = frame_about(f.v[1]);
     double y[2];
     pov_levels(o, y);
-    const double wide = f.radius[0] + f.radius[1] + y[1], high = f.radius[1] + y[1];
-    const pov_digits major = pov_exact(f.radius[0]);
+    const double wide = f.r[0] + f.r[1] + y[1], high = f.r[1] + y[1];
+    const pov_digits major = pov_exact(f.r[0]);
     begin_function(t, o);
-    pov_print(t, "sqrt(pow(sqrt(x*x + z*z) - %s, 2) + y*y) - %s\n", major.text, pov_exact(f.radius[1]).text);
+    pov_print(t, "sqrt(pow(sqrt(x*x + z*z) - %s, 2) + y*y) - %s\n", major.text, pov_exact(f.r[1]).text);
     pov_print(t, "    - %s(%s, atan2(-y, sqrt(x*x + z*z) - %s))", name, pov_around(o), major.text);
     end_function(t, o);
     pov_print(t, "  contained_by { box { <%g, %g, %g>, <%g, %g, %g> } }\n", -wide, -high, -wide, wide, high, wide);
     pov_print(t, "  accuracy %g\n  max_gradient %g // a bound: none is steeper\n", accuracy(s, o),
               pov_isosurface_gradient(o, 0));
-    pov_matrix(t, a.x, a.y, a.z, f.a);
+    pov_matrix(t, a.x, a.y, a.z, f.v[0]);
     pov_print(t, " // y is the axis\n");
     put_motion(t, o);
 }
 
 static void put_part(pov_text *t, const scene *s, const object *o, int part, const char *name)
 {
-    const shape_kind kind = o->shape_spec.kind;
+    const closed_form *form = o->shape_spec.form;
     if (pov_is_flat(&o->shape_spec, part))
         put_flat(t, s, o, part, name);
     else
-        (kind == SHAPE_SPHERE ? put_sphere : kind == SHAPE_TORUS ? put_torus : put_side)(t, s, o, name);
+        (form == &form_sphere ? put_sphere : form == &form_torus ? put_torus : put_side)(t, s, o, name);
 }
 
 void pov_isosurface(pov_text *t, const scene *s, const object *o, const char *name)

@@ -2,9 +2,11 @@
  * flat surface in its frame, on a round one by a warp of POV-Ray's, about y, whose x is u/2pi in 0..1, and on a mesh
  * that says them by its vertices' (u,w).
  */
-#include "povray/parts.h"
+#include "povray/material.h"
 
-#include "base/frame.h"
+#include "patch/surface.h"
+#include "povray/flat.h"
+#include "povray/povray.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -97,27 +99,29 @@ typedef struct winding {
     frame axes;
 } winding;
 
+/* Of a sphere, a torus, or the side of a cylinder or cone. */
 static winding winding_of(const object *o)
 {
-    const shape_spec *f = &o->shape_spec;
+    const closed_form *form = o->shape_spec.form;
+    const shape_values *v = &o->shape_spec.values;
     const vec3 up = {0, 1, 0};
     winding a;
-    if (f->kind == SHAPE_SPHERE) {
+    if (form == &form_sphere) {
         snprintf(a.w, sizeof a.w, "atan2(sqrt(x*x + z*z), y)");
         snprintf(a.warp, sizeof a.warp, "spherical");
         a.low = 1;
         a.rate = -1 / PI;
         a.axes = frame_about(up);
-    } else if (f->kind == SHAPE_TORUS) {
-        const pov_digits major = pov_exact(f->radius[0]);
+    } else if (form == &form_torus) {
+        const pov_digits major = pov_exact(v->r[0]);
         snprintf(a.w, sizeof a.w, "atan2(-y, sqrt(x*x + z*z) - %s)", major.text);
         snprintf(a.warp, sizeof a.warp, "toroidal major_radius %s", major.text);
         a.low = 0.5;
         a.rate = -0.5 / PI;
-        a.axes = frame_about(f->u);
-    } else { /* the side of a cylinder or cone: w is the way down it */
-        const vec3 axis = vec3_sub(f->u, f->a);
-        const double high = vec3_length(axis), slant = hypot(high, f->radius[1] - f->radius[0]) / high;
+        a.axes = frame_about(v->v[1]);
+    } else { /* w is the way down the side */
+        const vec3 axis = vec3_sub(v->v[1], v->v[0]);
+        const double high = vec3_length(axis), slant = hypot(high, pov_rim(&o->shape_spec, 1) - v->r[0]) / high;
         if (slant > 1)
             snprintf(a.w, sizeof a.w, "%s*(%s - y)", pov_exact(slant).text, pov_exact(high).text);
         else
@@ -216,11 +220,11 @@ static void put_round_pigment(pov_text *t, const object *o, const material *m)
     else
         put_round_image(t, o, m, &a);
     pov_print(t, "  ");
-    pov_matrix(t, a.axes.x, a.axes.y, a.axes.z, o->shape_spec.a);
+    pov_matrix(t, a.axes.x, a.axes.y, a.axes.z, o->shape_spec.values.v[0]);
     pov_print(t, " // y is the axis\n");
     if (o->moved) {
         pov_print(t, "  ");
-        pov_matrix(t, o->placed.x, o->placed.y, o->placed.z, o->placed.o);
+        pov_affine(t, &o->placed);
         pov_print(t, "\n");
     }
 }
@@ -243,11 +247,27 @@ void pov_texture(pov_text *t, const scene *s, const object *o, int part)
     pov_print(t, "    }\n    finish { %s }\n  }\n", pov_identify("Finish", m->name, o->material).text);
 }
 
+/* Whether POV-Ray has a way to lay a pattern on the shape: on each flat part as it is, on a round one by a warp. */
+static bool has_warp(const shape_spec *f)
+{
+    const closed_form *form = f->form;
+    return form->flat || form == &form_sphere || form == &form_torus;
+}
+
+bool pov_is_patch(const scene *s, const object *o)
+{
+    const shape_spec *f = &o->shape_spec;
+    if (f->kind == SHAPE_MESH)
+        return false;
+    return f->kind == SHAPE_PATCH || !f->form->povray || (s->displaced && patch_surface_is(o->shape)) ||
+           (s->material[o->material].pattern && !has_warp(f));
+}
+
 bool pov_by_uv(const scene *s, const object *o)
 {
-    const bool cone =
-        o->shape_spec.kind == SHAPE_CONE && s->displaced && o->bump; /* by no warp: its w is that of the foot */
-    return s->material[o->material].pattern && (cone || pov_is_sheet(s, o) || o->shape_spec.kind == SHAPE_MESH);
+    /* no warp serves a displaced cone: its w is that of the foot */
+    const bool cone = o->shape_spec.form == &form_cone && s->displaced && o->bump;
+    return s->material[o->material].pattern && (cone || pov_is_patch(s, o) || o->shape_spec.kind == SHAPE_MESH);
 }
 
 bool pov_by_parts(const scene *s, const object *o)

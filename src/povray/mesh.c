@@ -2,6 +2,7 @@
  * once. Displaced, each triangle becomes k x k, with the normals of the rough surface at their corners; k is the same
  * for all, so that there are no gaps.
  */
+#include "povray/material.h"
 #include "povray/parts.h"
 
 #include "mesh/mesh.h"
@@ -16,7 +17,7 @@ enum { MOST_TRIANGLES = 1500000, FINEST = 800 };
 
 typedef struct pile {
     pov_vertex *v;
-    int32_t *face; /* three each */
+    int32_t (*face)[3];
     int vertices, faces;
     int32_t *table; /* of vertices, -1: free; its size is a power of two */
     uint32_t size;
@@ -50,7 +51,7 @@ static bool begin(pile *p, int faces)
     for (p->size = 16; p->size < 6 * (uint32_t)faces; p->size *= 2)
         ;
     p->v = malloc(sizeof *p->v * 3 * (size_t)faces);
-    p->face = malloc(sizeof *p->face * 3 * (size_t)faces);
+    p->face = malloc(sizeof *p->face * (size_t)faces);
     p->table = malloc(sizeof *p->table * p->size);
     if (p->table)
         memset(p->table, 0xff, sizeof *p->table * p->size);
@@ -80,7 +81,7 @@ static void add_smooth(pile *p, const mesh *f)
             memcpy(v.at, f->d.at[k][i], sizeof v.at);
             memcpy(v.normal, f->d.skin[k].normal[i], sizeof v.normal);
             put_texture(f, (double)f->d.skin[k].uv[i][0], (double)f->d.skin[k].uv[i][1], v.uv);
-            p->face[3 * k + i] = index_of(p, &v);
+            p->face[k][i] = index_of(p, &v);
         }
     p->faces = f->d.n;
 }
@@ -163,7 +164,7 @@ static void add_face(pile *p, const pov_vertex *a, const pov_vertex *b, const po
 {
     const pov_vertex *const corner[3] = {a, b, c};
     for (int i = 0; i < 3; i++)
-        p->face[3 * p->faces + i] = index_of(p, corner[i]);
+        p->face[p->faces][i] = index_of(p, corner[i]);
     p->faces++;
 }
 
@@ -184,17 +185,6 @@ static bool add_rough(pile *p, const object *o, const mesh *f, int n)
     return v;
 }
 
-/* ---- writing ---- */
-
-static void put_mesh(pov_text *t, const pile *p, bool uv)
-{
-    pov_begin_mesh(t, p->v, p->vertices, uv);
-    pov_print(t, "  face_indices { %d", p->faces);
-    for (int k = 0; k < p->faces; k++)
-        pov_print(t, k % 8 ? ",<%d,%d,%d>" : ",\n<%d,%d,%d>", p->face[3 * k], p->face[3 * k + 1], p->face[3 * k + 2]);
-    pov_print(t, " }\n");
-}
-
 bool pov_triangle_mesh(pov_text *t, const scene *s, const object *o)
 {
     const bool rough = s->displaced && o->bump;
@@ -211,11 +201,11 @@ bool pov_triangle_mesh(pov_text *t, const scene *s, const object *o)
         if (rough)
             pov_print(t, ", each in %d x %d for %d x %d pixels", n, n, s->width, s->height);
         pov_print(t, "\n");
-        put_mesh(t, &p, pov_by_uv(s, o));
+        pov_mesh2(t, p.v, p.vertices, pov_by_uv(s, o), p.faces, (const int32_t(*)[3])p.face);
     }
     end(&p);
     if (good && o->moved && !rough) {
-        pov_matrix(t, o->placed.x, o->placed.y, o->placed.z, o->placed.o);
+        pov_affine(t, &o->placed);
         pov_print(t, " // its transform\n");
     }
     return good;

@@ -2,6 +2,7 @@
  * (u,w), the same on every part, so that parts that join have the same vertices there. Its normals are the surface's
  * own.
  */
+#include "povray/material.h"
 #include "povray/parts.h"
 
 #include "displaced/offset.h"
@@ -142,36 +143,24 @@ static void fit_map(grid *g)
 
 static bool same(const pov_vertex *a, const pov_vertex *b) { return memcmp(a->at, b->at, sizeof a->at) == 0; }
 
-/* The two triangles of each cell, but for those without an area; counted, or written. */
-static int faces(pov_text *t, const grid *g, const pov_vertex *v)
+/* The two triangles of each cell, except those without an area. Returns how many. */
+static int make_faces(const grid *g, const pov_vertex *v, int32_t (*face)[3])
 {
     const int row = g->n[0] + 1, all = (g->n[1] + 1) * row;
     int n = 0;
     for (int part = 0; part < g->o->shape->ops->parts; part++)
         for (int j = 0; j < g->n[1]; j++)
             for (int i = 0; i < g->n[0]; i++) {
-                const int a = part * all + j * row + i,
-                          corner[2][3] = {{a, a + 1, a + row + 1}, {a, a + row + 1, a + row}};
+                const int a = part * all + j * row + i;
+                const int corner[2][3] = {{a, a + 1, a + row + 1}, {a, a + row + 1, a + row}};
                 for (int k = 0; k < 2; k++) {
                     const int *c = corner[k];
                     if (same(&v[c[0]], &v[c[1]]) || same(&v[c[1]], &v[c[2]]) || same(&v[c[2]], &v[c[0]]))
                         continue;
-                    if (t)
-                        pov_print(t, n % 8 ? ",<%d,%d,%d>" : n ? ",\n<%d,%d,%d>" : "\n<%d,%d,%d>", c[0], c[1], c[2]);
-                    n++;
+                    memcpy(face[n++], c, sizeof *face);
                 }
             }
     return n;
-}
-
-static void put_mesh(pov_text *t, const grid *g, const pov_vertex *v, int n)
-{
-    pov_print(t, "// a mesh made for %d x %d pixels: %d x %d cells%s\n", g->s->width, g->s->height, g->n[0], g->n[1],
-              g->o->shape->ops->parts > 1 ? " a part" : "");
-    pov_begin_mesh(t, v, n, pov_by_uv(g->s, g->o));
-    pov_print(t, "  face_indices { %d,", faces(NULL, g, v));
-    faces(t, g, v);
-    pov_print(t, " }\n");
 }
 
 bool pov_patch(pov_text *t, const scene *s, const object *o)
@@ -183,11 +172,18 @@ bool pov_patch(pov_text *t, const scene *s, const object *o)
         fit_map(&g);
     const int row = g.n[0] + 1, all = (g.n[1] + 1) * row, parts = o->shape->ops->parts;
     pov_vertex *v = malloc(sizeof *v * (size_t)all * (size_t)parts);
-    for (int part = 0; v && part < parts; part++)
+    int32_t(*face)[3] = malloc(sizeof *face * 2 * (size_t)g.n[0] * (size_t)g.n[1] * (size_t)parts);
+    const bool good = v && face;
+    for (int part = 0; good && part < parts; part++)
         for (int j = 0; j <= g.n[1]; j++)
             evaluate(&g, part, j, v + part * all + j * row);
-    if (v)
-        put_mesh(t, &g, v, all * parts);
+    if (good) {
+        const int n = make_faces(&g, v, face);
+        pov_print(t, "// a mesh made for %d x %d pixels: %d x %d cells%s\n", s->width, s->height, g.n[0], g.n[1],
+                  parts > 1 ? " a part" : "");
+        pov_mesh2(t, v, all * parts, pov_by_uv(s, o), n, (const int32_t(*)[3])face);
+    }
+    free(face);
     free(v);
-    return v;
+    return good;
 }

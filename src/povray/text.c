@@ -25,7 +25,7 @@ bool pov_end(pov_text *t, const char *why, errors *e)
     return file_writer_close(&t->file, why, e);
 }
 
-static void put(pov_text *t, const char *from, size_t n)
+void pov_put(pov_text *t, const char *from, size_t n)
 {
     while (n > 0) {
         size_t room = sizeof t->buffer - t->used, m = n < room ? n : room;
@@ -69,7 +69,7 @@ pov_digits pov_exact(double x)
 static void put_number(pov_text *t, double x)
 {
     pov_digits d = pov_number(x, 9);
-    put(t, d.text, strlen(d.text));
+    pov_put(t, d.text, strlen(d.text));
 }
 
 void pov_print(pov_text *t, const char *fmt, ...)
@@ -78,29 +78,49 @@ void pov_print(pov_text *t, const char *fmt, ...)
     va_start(args, fmt);
     for (const char *c = fmt; *c;) {
         size_t plain = strcspn(c, "%");
-        put(t, c, plain);
+        pov_put(t, c, plain);
         c += plain;
         if (!*c)
             break;
         if (c[1] == 's') {
             const char *s = va_arg(args, const char *);
-            put(t, s, strlen(s));
+            pov_put(t, s, strlen(s));
         } else if (c[1] == 'd') {
             char text[16];
-            put(t, text, (size_t)snprintf(text, sizeof text, "%d", va_arg(args, int)));
+            pov_put(t, text, (size_t)snprintf(text, sizeof text, "%d", va_arg(args, int)));
         } else if (c[1] == 'g')
             put_number(t, va_arg(args, double));
         else {
             vec3 v = va_arg(args, vec3);
-            put(t, "<", 1);
+            pov_put(t, "<", 1);
             put_number(t, v.x);
-            put(t, ", ", 2);
+            pov_put(t, ", ", 2);
             put_number(t, v.y);
-            put(t, ", ", 2);
+            pov_put(t, ", ", 2);
             put_number(t, v.z);
-            put(t, ">", 1);
+            pov_put(t, ">", 1);
         }
         c += 2;
     }
     va_end(args);
+}
+
+void pov_matrix(pov_text *t, vec3 x, vec3 y, vec3 z, vec3 origin)
+{
+    pov_print(t, "  matrix <%g, %g, %g,  %g, %g, %g,  %g, %g, %g,  %g, %g, %g>", x.x, x.y, x.z, y.x, y.y, y.z, z.x, z.y,
+              z.z, origin.x, origin.y, origin.z);
+}
+
+void pov_affine(pov_text *t, const affine *m) { pov_matrix(t, m->x, m->y, m->z, m->o); }
+
+pov_identifier pov_identify(const char *kind, const char *name, int index)
+{
+    pov_identifier d;
+    if (strchr(name, '-'))
+        snprintf(d.text, sizeof d.text, "%s%d_%s", kind, index, name);
+    else
+        snprintf(d.text, sizeof d.text, "%s_%s", kind, name);
+    for (char *c = d.text; *c; c++)
+        *c = *c == '-' ? '_' : *c;
+    return d;
 }

@@ -2,8 +2,8 @@
 #ifndef KAGE_POVRAY_TEXT_H
 #define KAGE_POVRAY_TEXT_H
 
+#include "base/affine.h"
 #include "base/file_writer.h"
-#include "base/vec3.h"
 
 typedef struct pov_text {
     file_writer file;
@@ -18,6 +18,9 @@ bool pov_begin(pov_text *t, const char *path, errors *e);
 /* With `why` NULL the file takes its place, otherwise it is dropped; errors as from file_writer_close. */
 bool pov_end(pov_text *t, const char *why, errors *e);
 
+/* Add n bytes. */
+void pov_put(pov_text *t, const char *from, size_t n);
+
 /* Add a text in which %s is a string, %d an int, %g a double, %v a vec3, all with a point in numbers. */
 void pov_print(pov_text *t, const char *fmt, ...);
 
@@ -27,5 +30,16 @@ typedef struct pov_digits {
 
 pov_digits pov_number(double x, int digits); /* significant digits */
 pov_digits pov_exact(double x);              /* as many as give x again */
+
+/* A transformation that puts x, y, z and 0 where these are, or as an affine map does; without a new line. */
+void pov_matrix(pov_text *t, vec3 x, vec3 y, vec3 z, vec3 origin);
+void pov_affine(pov_text *t, const affine *m);
+
+/* The name of a thing of the scene as an identifier of POV-Ray, which has no '-'; `index` keeps a-b and a_b apart. */
+typedef struct pov_identifier {
+    char text[96];
+} pov_identifier;
+
+pov_identifier pov_identify(const char *kind, const char *name, int index);
 
 #endif

@@ -18,13 +18,17 @@ static void put_list(pov_text *t, const char *kind, const float *v, int n, int e
     pov_print(t, " }\n");
 }
 
-void pov_begin_mesh(pov_text *t, const pov_vertex *v, int n, bool uv)
+void pov_mesh2(pov_text *t, const pov_vertex *v, int n, bool uv, int faces, const int32_t (*face)[3])
 {
     pov_print(t, "mesh2 {\n");
     put_list(t, "vertex_vectors", v->at, n, 3);
     put_list(t, "normal_vectors", v->normal, n, 3);
     if (uv)
         put_list(t, "uv_vectors", v->uv, n, 2);
+    pov_print(t, "  face_indices { %d", faces);
+    for (int k = 0; k < faces; k++)
+        pov_print(t, k % 8 ? ",<%d,%d,%d>" : ",\n<%d,%d,%d>", (int)face[k][0], (int)face[k][1], (int)face[k][2]);
+    pov_print(t, " }\n");
 }
 
 static double line(const pov_lattice *l, int axis, int64_t i)
@@ -59,7 +63,7 @@ static void evaluate(pov_vertices *v, int n, const real *u, const real *w, pov_v
         lane_set(&x.r, i, X);
         lane_set(&x.s, i, up);
     }
-    v->f->ops->foot(v->f, v->lattice.part, n, &x, t, &p);
+    v->f->ops->closest(v->f, v->lattice.part, n, &x, t, &p);
     for (int i = 0; i < n; i++) {
         bs_vec3 Qu = lane_get(&q.Qu, i), Qw = lane_get(&q.Qw, i), X = lane_get(&x.r, i), m = lane_get(&x.s, i);
         bs_vec3 gu = lane_get(&p.gu, i), gw = lane_get(&p.gw, i), gh = lane_get(&p.gh, i);

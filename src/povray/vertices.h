@@ -25,8 +25,8 @@ typedef struct pov_vertex {
     float at[3], normal[3], uv[2];
 } pov_vertex;
 
-/* A mesh2 begins with its vertices; where `uv`, with their (u,w). */
-void pov_begin_mesh(pov_text *t, const pov_vertex *v, int n, bool uv);
+/* A mesh2 of n vertices, where `uv` with their (u,w), and of triangles between them; its brace stays open. */
+void pov_mesh2(pov_text *t, const pov_vertex *v, int n, bool uv, int faces, const int32_t (*face)[3]);
 
 typedef struct pov_vertices {
     const surface *f;

@@ -1,23 +1,9 @@
-/* The POV-Ray file as a whole: camera, lights, materials, objects. Displaced objects are in pov_isosurface.c and
- * pov_mesh.c. */
+/* The POV-Ray file as a whole: camera, lights, materials, and each object by the part that can write it. */
+#include "povray/material.h"
 #include "povray/parts.h"
-
-#include "base/frame.h"
 
 #include <stdio.h>
 #include <string.h>
-
-pov_identifier pov_identify(const char *kind, const char *name, int index)
-{
-    pov_identifier d;
-    if (strchr(name, '-'))
-        snprintf(d.text, sizeof d.text, "%s%d_%s", kind, index, name);
-    else
-        snprintf(d.text, sizeof d.text, "%s_%s", kind, name);
-    for (char *c = d.text; *c; c++)
-        *c = *c == '-' ? '_' : *c;
-    return d;
-}
 
 /* The base name: a file says nothing of the machine that made it. */
 static void put_head(pov_text *t, const scene *s, const pov_options *o)
@@ -86,13 +72,7 @@ static void put_lights(pov_text *t, const scene *s)
     pov_print(t, "\n");
 }
 
-void pov_matrix(pov_text *t, vec3 x, vec3 y, vec3 z, vec3 origin)
-{
-    pov_print(t, "  matrix <%g, %g, %g,  %g, %g, %g,  %g, %g, %g,  %g, %g, %g>", x.x, x.y, x.z, y.x, y.y, y.z, z.x, z.y,
-              z.z, origin.x, origin.y, origin.z);
-}
-
-void pov_object_end(pov_text *t, const scene *s, const pov_options *how, const object *o)
+static void put_object_end(pov_text *t, const scene *s, const pov_options *how, const object *o)
 {
     const material *m = &s->material[o->material];
     if (!pov_by_parts(s, o))
@@ -102,106 +82,6 @@ void pov_object_end(pov_text *t, const scene *s, const pov_options *how, const o
     if ((o->bump && !s->self_shadow) || (!o->bump && how->no_cast))
         pov_print(t, "  no_shadow\n");
     pov_print(t, "}\n\n");
-}
-
-/* A parallelogram; the brace stays open. */
-static void put_rectangle(pov_text *t, vec3 O, vec3 U, vec3 W)
-{
-    vec3 n = vec3_unit(vec3_cross(U, W));
-    pov_print(t, "polygon {\n  5, <0, 0>, <1, 0>, <1, 1>, <0, 1>, <0, 0>\n");
-    pov_matrix(t, U, W, n, O);
-    pov_print(t, " // u, w, n, origin\n");
-}
-
-/* A disc, of which a transform may have made an ellipse; the brace stays open. */
-static void put_cap(pov_text *t, const pov_flat *p, double radius)
-{
-    pov_print(t, "disc {\n  0, z, %g\n", radius);
-    pov_matrix(t, p->U, p->W, p->y, p->O);
-    pov_print(t, " // u, w, n, origin\n");
-}
-
-/* The side of a cylinder or cone, with its caps or without; the brace stays open. */
-static void put_side(pov_text *t, const shape_spec *f, bool open)
-{
-    if (f->kind == SHAPE_CYLINDER)
-        pov_print(t, "cylinder {\n  %v, %v, %g%s\n", f->a, f->u, f->radius[0], open ? " open" : "");
-    else
-        pov_print(t, "cone {\n  %v, %g, %v, %g%s\n", f->a, f->radius[0], f->u, f->radius[1], open ? " open" : "");
-}
-
-static void put_transform(pov_text *t, const object *o)
-{
-    if (o->moved) {
-        pov_matrix(t, o->placed.x, o->placed.y, o->placed.z, o->placed.o);
-        pov_print(t, " // its transform\n");
-    }
-}
-
-/* A shape whose faces, or side and caps, have colours of their own, each where it is in the scene. */
-static void put_parts(pov_text *t, const scene *s, const object *o)
-{
-    pov_print(t, "union {\n");
-    for (int part = 0; part < o->shape->ops->parts; part++) {
-        const double rim = pov_rim(&o->shape_spec, part);
-        if (rim == 0)
-            continue;
-        if (!pov_is_flat(&o->shape_spec, part)) {
-            put_side(t, &o->shape_spec, true);
-            put_transform(t, o);
-        } else {
-            const pov_flat p = pov_flat_of(o, part);
-            if (rim < 0)
-                put_rectangle(t, p.O, p.U, p.W);
-            else
-                put_cap(t, &p, rim);
-        }
-        pov_texture(t, s, o, part);
-        pov_print(t, "}\n");
-    }
-}
-
-static void put_smooth(pov_text *t, const scene *s, const object *o)
-{
-    const shape_spec *f = &o->shape_spec;
-    if (pov_by_parts(s, o)) {
-        put_parts(t, s, o);
-        return;
-    }
-    switch (f->kind) {
-    case SHAPE_PLANE: {
-        vec3 n = vec3_unit(vec3_cross(f->u, f->w));
-        pov_print(t, "plane {\n  %v, %g\n", n, vec3_dot(n, f->a));
-        break;
-    }
-    case SHAPE_RECTANGLE:
-        put_rectangle(t, f->a, f->u, f->w);
-        break;
-    case SHAPE_DISC:
-        pov_print(t, "disc {\n  %v, %v, %g\n", f->a, f->u, f->radius[0]);
-        break;
-    case SHAPE_BOX:
-        pov_print(t, "box {\n  %v, %v\n", f->a, f->u);
-        break;
-    case SHAPE_SPHERE:
-        pov_print(t, "sphere {\n  %v, %g\n", f->a, f->radius[0]);
-        break;
-    case SHAPE_CYLINDER:
-    case SHAPE_CONE:
-        put_side(t, f, f->open);
-        break;
-    case SHAPE_TORUS: {
-        const frame a = frame_about(f->u);
-        pov_print(t, "torus {\n  %g, %g\n  sturm\n", f->radius[0], f->radius[1]);
-        pov_matrix(t, a.x, a.y, a.z, f->a);
-        pov_print(t, " // y is the axis\n");
-        break;
-    }
-    case SHAPE_PATCH: /* pov_patch.c */
-    case SHAPE_MESH:  /* pov_triangle_mesh.c */
-        break;
-    }
-    put_transform(t, o);
 }
 
 static bool put_displaced(pov_text *t, const scene *s, int k, pov_report *report)
@@ -233,15 +113,15 @@ bool pov_write(const scene *s, const pov_options *how, const char *path, pov_rep
         const object *o = &s->object[k];
         pov_print(&t, "// object %s: %s%s%s\n", o->name, o->shape->ops->kind, o->bump ? ", bump by " : "",
                   o->bump ? o->bump->ops->kind : "");
-        if (pov_is_sheet(s, o))
+        if (pov_is_patch(s, o))
             good = pov_patch(&t, s, o);
         else if (o->shape_spec.kind == SHAPE_MESH)
             good = pov_triangle_mesh(&t, s, o);
         else if (s->displaced && o->bump)
             good = put_displaced(&t, s, k, report);
         else
-            put_smooth(&t, s, o);
-        pov_object_end(&t, s, how, o);
+            pov_smooth(&t, s, o);
+        put_object_end(&t, s, how, o);
     }
     return pov_end(&t, good ? NULL : "out of memory", e);
 }

@@ -1,5 +1,5 @@
 /* The scene reader's lights. */
-#include "read/reader.h"
+#include "read/parts.h"
 
 /* Where a spot or a parallel light points. */
 static void read_aim(reader *r, node *at, const char *what, light *l)
@@ -49,8 +49,7 @@ static void read_area(reader *r, node *at, light *l)
     double n[2] = {1, 1};
     if (!yaml_map(r->y, at, "area", "u w samples"))
         return;
-    bool good =
-        yaml_need(r->y, at, "u", "area") && yaml_need(r->y, at, "w", "area") && yaml_need(r->y, at, "samples", "area");
+    bool good = reader_need_all(r, at, "u w samples", "area");
     good = reader_vector(r, at, "u", "one side of the area, [x, y, z]", &l->u) && good;
     good = reader_vector(r, at, "w", "the other side of the area, [x, y, z]", &l->w) && good;
     node *k = yaml_get(at, "samples");
@@ -90,7 +89,7 @@ static void read_light(reader *r, node *v, light *l)
 void reader_lights(reader *r)
 {
     scene *s = r->s;
-    node *at = reader_named(r, "lights", "lights", true, sizeof *s->light, &s->light, &s->lights), *key;
+    node *at = reader_named(r, "lights", sizeof *s->light, &s->light, &s->lights), *key;
     for (int i = 0; at && i < s->lights; i++) {
         node *v = yaml_pair(at, i, &key);
         light *l = &s->light[i];

@@ -1,5 +1,5 @@
 /* The scene reader's materials, and what is known of their colours on an object. */
-#include "read/reader.h"
+#include "read/parts.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -109,7 +109,7 @@ void reader_materials(reader *r)
 {
     node *k;
     scene *s = r->s;
-    node *at = reader_named(r, "materials", "materials", true, sizeof *s->material, &s->material, &s->materials), *key;
+    node *at = reader_named(r, "materials", sizeof *s->material, &s->material, &s->materials), *key;
     for (int i = 0; at && i < s->materials; i++) {
         node *v = yaml_pair(at, i, &key);
         material *m = &s->material[i];
@@ -162,5 +162,5 @@ void reader_color_texture(reader *r, node *at, object *o)
         return;
     if (!o->color)
         errors_add(r->e, "out of memory");
-    o->color = reader_fold_color(r, o, o->color);
+    o->color = reader_mirror_color(r, o, o->color);
 }

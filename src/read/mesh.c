@@ -1,7 +1,6 @@
 /* The scene reader's meshes. */
-#include "read/reader.h"
+#include "read/parts.h"
 
-#include "texture/mirrored_uv.h"
 #include "mesh/mesh.h"
 
 #include <stdlib.h>
@@ -27,7 +26,7 @@ static bool is_large(const mesh_data *d)
     return size >= SMALL;
 }
 
-surface *reader_mesh(reader *r, node *at, shape_spec *said)
+surface *reader_mesh(reader *r, node *at, shape_spec *spec)
 {
     mesh_data d = {0};
     mesh_normals normals;
@@ -40,9 +39,9 @@ surface *reader_mesh(reader *r, node *at, shape_spec *said)
     if (!read_normals(r, at, &normals, &crease) || !name)
         return NULL;
     char *path = reader_beside(r, name);
-    bool good = path && mesh_file_read(path, r->progress, &r->s->made_from, &d, why);
+    bool good = path && mesh_file_read(path, r->from->model_reader, r->from->progress, &r->s->made_from, &d, why);
     if (good)
-        progress_show(r->progress, "checking", 1);
+        progress_show(r->from->progress, "checking", 1);
     good = good && mesh_clean(&d, normals, crease, BIG, why);
     if (path && !good)
         yaml_error(r->y, file, "'%s' can't be used: %s", name, why);
@@ -53,59 +52,12 @@ surface *reader_mesh(reader *r, node *at, shape_spec *said)
         mesh_data_free(&d);
         return NULL;
     }
-    surface *f = mesh_new(&d, r->progress);
+    surface *f = mesh_new(&d, r->from->progress);
     if (!f) {
         errors_add(r->e, "out of memory");
         return NULL;
     }
-    *said = (shape_spec){
+    *spec = (shape_spec){
         .kind = SHAPE_MESH, .file = reader_copy(r, name), .triangles = ((mesh *)f)->d.n, .found = ((mesh *)f)->d.notes};
     return f;
-}
-
-bool reader_textured(reader *r, node *at, const object *o)
-{
-    const shape_spec *f = &o->shape_spec;
-    if (f->kind != SHAPE_MESH || f->found.bare == 0)
-        return true;
-    return yaml_error(
-        r->y, at, "%d of the %d triangles of '%s' have no texture coordinates, expected them for what lies on (u,w)",
-        f->found.bare, f->triangles, f->file);
-}
-
-/* The folds are one range beyond the ends: on both sides, as a transform that mirrors exchanges them. */
-static bool find_folds(const object *o, double *lo, double *hi)
-{
-    double u[2], w[2];
-    if (o->shape_spec.kind != SHAPE_MESH || o->shape_spec.found.folded == 0)
-        return false;
-    o->own->ops->extent(o->own, 0, u, w);
-    *lo = u[0] - (u[1] - u[0]);
-    *hi = u[1] + (u[1] - u[0]);
-    return true;
-}
-
-bump *reader_fold_bump(reader *r, const object *o, bump *p)
-{
-    double lo, hi;
-    if (p && find_folds(o, &lo, &hi) && !(p = bump_mirrored_uv(p, lo, hi)))
-        errors_add(r->e, "out of memory");
-    return p;
-}
-
-color_texture *reader_fold_color(reader *r, const object *o, color_texture *c)
-{
-    double lo, hi;
-    if (c && find_folds(o, &lo, &hi) && !(c = color_mirrored_uv(c, lo, hi)))
-        errors_add(r->e, "out of memory");
-    return c;
-}
-
-void reader_extent(const surface *f, const shape_spec *said, double u[2], double w[2])
-{
-    f->ops->extent(f, 0, u, w);
-    if (said->kind == SHAPE_MESH) {
-        u[0] = w[0] = 0;
-        u[1] = w[1] = 1;
-    }
 }

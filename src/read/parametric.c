@@ -1,5 +1,5 @@
 /* The scene reader's surfaces without closed forms: three functions of u and w, Bezier patches. */
-#include "read/reader.h"
+#include "read/parts.h"
 
 #include "read/patch_file.h"
 #include "patch/surface.h"
@@ -9,24 +9,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* An expression; NULL with an error. */
-static expr *read_expr(reader *r, node *at, const char *what)
-{
-    expr_error wrong;
-    const char *text = yaml_text(r->y, at, what);
-    expr *e = text ? expr_parse(text, &wrong) : NULL;
-    if (text && !e)
-        yaml_error_in(r->y, at, wrong.offset, "%s", wrong.message);
-    return e;
-}
-
 /* An end of a range: a number, or an expression without u and w, such as 2*pi, so that what closes does so to the last
  * digit. */
 static bool read_end(reader *r, node *at, double *x)
 {
     const double u[2] = {0.3, 0.7}, w[2] = {0.6, 0.2};
     expr_jets z;
-    expr *e = read_expr(r, at, "an end of the range, a number or such as 2*pi");
+    expr *e = reader_expr(r, at, "an end of the range, a number or such as 2*pi");
     if (!e)
         return false;
     expr_eval(e, 2, u, w, 0, &z);
@@ -56,15 +45,18 @@ static bool read_range(reader *r, node *at, const char *key, double x[2])
 /* The tree of leaves, or why there is none. */
 static surface *search(reader *r, node *at, patch *q, const char *what)
 {
-    surface *f = q ? patch_surface_new(q) : NULL;
-    if (!q)
-        errors_add(r->e, "out of memory");
-    else if (!f)
+    if (q)
+        q->threads = r->from->threads;
+    bool bounded = true;
+    surface *f = q ? patch_surface_new_bounded(q, &bounded) : NULL;
+    if (!bounded)
         yaml_error(r->y, at, "%s", what);
+    else if (!f)
+        errors_add(r->e, "out of memory");
     return f;
 }
 
-surface *reader_parametric(reader *r, node *at, shape_spec *said)
+surface *reader_parametric(reader *r, node *at, shape_spec *spec)
 {
     static const char *const keys[] = {"x", "y", "z"};
     expr *e[3] = {NULL, NULL, NULL};
@@ -74,12 +66,12 @@ surface *reader_parametric(reader *r, node *at, shape_spec *said)
     bool good = true;
     for (int k = 0; k < 3; k++) {
         node *v = yaml_need(r->y, at, keys[k], "parametric");
-        e[k] = v ? read_expr(r, v, "a function of u and w") : NULL;
+        e[k] = v ? reader_expr(r, v, "a function of u and w") : NULL;
         good = e[k] && good;
     }
     good = read_range(r, at, "u", u) && good;
     good = read_range(r, at, "w", w) && good;
-    *said = (shape_spec){.kind = SHAPE_PATCH};
+    *spec = (shape_spec){.kind = SHAPE_PATCH};
     if (!good) {
         for (int k = 0; k < 3; k++)
             expr_free(e[k]);
@@ -146,7 +138,7 @@ static vec3 *read_file(reader *r, node *at, int *patches)
     return point;
 }
 
-surface *reader_patches(reader *r, node *at, shape_spec *said)
+surface *reader_patches(reader *r, node *at, shape_spec *spec)
 {
     if (!yaml_map(r->y, at, "patches", "file points"))
         return NULL;
@@ -157,7 +149,7 @@ surface *reader_patches(reader *r, node *at, shape_spec *said)
                    file ? "both file and points" : "neither file nor points");
         return NULL;
     }
-    *said = (shape_spec){.kind = SHAPE_PATCH};
+    *spec = (shape_spec){.kind = SHAPE_PATCH};
     vec3 *point = file ? read_file(r, file, &n) : read_points(r, points, &n);
     if (!point)
         return NULL;

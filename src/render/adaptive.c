@@ -1,14 +1,12 @@
+/* Neighbours are compared as they are displayed, row by row. */
 #include "render/adaptive.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/real.h"
+#include "base/threads.h"
 #include "image/srgb.h"
-
-#if defined(_OPENMP)
-#include <omp.h>
-#endif
 
 /* The displayed picture, a plane for each colour. */
 typedef struct display {
@@ -58,10 +56,8 @@ unsigned char *adaptive_find(const film *f, window part, double threshold, int t
     srgb *curve = srgb_create(16);
     uint16_t *code = malloc(3 * pixels * sizeof *code);
     bool good = found && curve && code;
-    (void)threads;
-#if defined(_OPENMP)
-    threads = threads ? threads : omp_get_num_procs();
-#endif
+    threads = threads_of(threads);
+    (void)threads; /* without OpenMP */
     if (good) {
         for (int k = 0; k < 3; k++)
             d.code[k] = code + (size_t)k * pixels;

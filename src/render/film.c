@@ -1,3 +1,4 @@
+/* A film is planes of float, one for each colour and layer. */
 #include "render/film.h"
 
 #include <stdio.h>

@@ -1,78 +1,51 @@
-/* Lights, as POV-Ray 3.7 has them. */
-#include "scene/light.h"
+/* Light on its way to a group, as POV-Ray 3.7 has it: the segments of shadow rays, and how spots and distance dim it.
+ */
+#include "render/lighting.h"
 
 #include "math/kmath.h"
 #include "wave/lane.h"
 
-/* ---- shadow rays ---- */
+#define SHORT 1e-6 /* scene units */
 
-/* No offset is added to the start: it would shorten each shadow by offset/tan(elevation), and P is small, too. */
-STAGE static void aim_at_place(hit_group *restrict g, const light *l, int shifted)
+STAGE static void aim_at_place(hit_group *restrict g, const light *l, const real *restrict t)
 {
     const real lx = (real)l->at.x, ly = (real)l->at.y, lz = (real)l->at.z;
     for (int i = 0; i < g->n; i++) {
-        bs_vec3 o = lane_at(&g->x, i, shifted ? g->t[i] + g->tau[i] : g->t[i]), d = {lx - o.x, ly - o.y, lz - o.z};
+        bs_vec3 o = lane_at(&g->x, i, t[i]), d = {lx - o.x, ly - o.y, lz - o.z};
         lane_set(&g->to_light.r, i, o);
         lane_set(&g->to_light.s, i, d);
     }
 }
 
-/* Up to the light's plane. Beyond it there is light and no shadow, as in POV-Ray: a segment too short to meet a thing,
- * which still has its direction. */
-STAGE static void aim_along(hit_group *restrict g, const light *l, int shifted)
+/* Up to the light's plane. Beyond it there is light and no shadow, as in POV-Ray: the segment is too SHORT to meet
+ * anything there, and still has its direction. */
+STAGE static void aim_along(hit_group *restrict g, const light *l, const real *restrict t)
 {
     const real lx = (real)l->at.x, ly = (real)l->at.y, lz = (real)l->at.z;
     const real ax = (real)l->axis.x, ay = (real)l->axis.y, az = (real)l->axis.z;
     for (int i = 0; i < g->n; i++) {
-        bs_vec3 o = lane_at(&g->x, i, shifted ? g->t[i] + g->tau[i] : g->t[i]);
-        real depth = real_max((o.x - lx) * ax + (o.y - ly) * ay + (o.z - lz) * az, R(1e-6));
+        bs_vec3 o = lane_at(&g->x, i, t[i]);
+        real depth = real_max((o.x - lx) * ax + (o.y - ly) * ay + (o.z - lz) * az, R(SHORT));
         bs_vec3 d = {-depth * ax, -depth * ay, -depth * az};
         lane_set(&g->to_light.r, i, o);
         lane_set(&g->to_light.s, i, d);
     }
 }
 
-void light_aim(const light *l, hit_group *g, bool shifted)
+void lighting_aim(const light *l, const real *t, hit_group *g)
 {
-    (l->kind == LIGHT_PARALLEL ? aim_along : aim_at_place)(g, l, shifted);
+    (l->kind == LIGHT_PARALLEL ? aim_along : aim_at_place)(g, l, t);
 }
 
-/* ---- areas ---- */
-
-/* The share of sample i of those from `first` to `last`, as POV-Ray halves a row of them again and again, where a
- * sample in the middle belongs to both halves. 2, 4, 8 ... samples are equal. */
-static double share_of(int i, int first, int last)
-{
-    if (i < first || i > last)
-        return 0;
-    if (first == last)
-        return 1;
-    int below = (first + last) / 2, above = (first + last + 1) / 2;
-    return (share_of(i, first, below) + share_of(i, above, last)) / 2;
-}
-
-/* Where sample i of n is along a side, from -1/2 to 1/2: the first and the last are on the edge. */
-static double along_side(int i, int n) { return n > 1 ? (double)i / (n - 1) - 0.5 : 0; }
-
-light light_sample(const light *l, int k, real *share)
-{
-    const int i = k % l->samples[0], j = k / l->samples[0];
-    light one = *l;
-    one.at = vec3_add(one.at, vec3_add(vec3_scale(l->u, along_side(i, l->samples[0])),
-                                       vec3_scale(l->w, along_side(j, l->samples[1]))));
-    *share = (real)(share_of(i, 0, l->samples[0] - 1) * share_of(j, 0, l->samples[1] - 1));
-    return one;
-}
-
-STAGE static void gather(const hit_group *restrict g, real share, real *restrict sum)
+STAGE static void add(const hit_group *restrict g, real share, real *restrict sum)
 {
     for (int i = 0; i < g->n; i++)
         sum[i] += share * g->lit[i];
 }
 
-void light_gather(const hit_group *g, real share, real *sum) { gather(g, share, sum); }
+void lighting_add(const hit_group *g, real share, real *sum) { add(g, share, sum); }
 
-STAGE static void gather_tint(const hit_group *restrict g, real share, vec3s *restrict sum)
+STAGE static void add_tint(const hit_group *restrict g, real share, vec3s *restrict sum)
 {
     for (int i = 0; i < g->n; i++) {
         real x = share * g->lit[i];
@@ -82,20 +55,7 @@ STAGE static void gather_tint(const hit_group *restrict g, real share, vec3s *re
     }
 }
 
-void light_gather_tint(const hit_group *g, real share, vec3s *sum) { gather_tint(g, share, sum); }
-
-int light_corners(const light *l) { return l->samples[0] * l->samples[1] > 1 ? 4 : 1; }
-
-vec3 light_corner(const light *l, int k, vec3 p)
-{
-    if (l->kind == LIGHT_PARALLEL)
-        return vec3_sub(p, vec3_scale(l->axis, 1e6));
-    if (light_corners(l) == 1)
-        return l->at;
-    return vec3_add(l->at, vec3_add(vec3_scale(l->u, (k & 1) - 0.5), vec3_scale(l->w, (k >> 1) - 0.5)));
-}
-
-/* ---- what arrives ---- */
+void lighting_add_tint(const hit_group *g, real share, vec3s *sum) { add_tint(g, share, sum); }
 
 /* How far p1 is from the light, or from its plane, and the cosine between the way there and its axis. */
 STAGE static void place(const hit_group *restrict g, const light *l, double *restrict distance, double *restrict cosine)
@@ -141,7 +101,7 @@ STAGE static void dim(hit_group *restrict g, const double *restrict share)
         g->lit[i] = (real)((double)g->lit[i] * share[i]);
 }
 
-void light_fade(const light *l, hit_group *g)
+void lighting_fade(const light *l, hit_group *g)
 {
     double distance[LANES], cosine[LANES], share[LANES];
     const double degree = 3.14159265358979323846 / 180;

@@ -1,113 +1,27 @@
+/* The picture in tiles of 16 x 8 pixels, which the threads take as they come. */
 #include "render/render.h"
 
+#include "base/threads.h"
 #include "render/adaptive.h"
-#include "scene/object_bvh.h"
-#include "wave/lane.h"
+#include "render/trace.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-#if defined(_OPENMP)
-#include <omp.h>
-#endif
-
 enum { TILE = 16, TILE_ROWS = LANES / TILE, TIMED_TILES = 8 };
-
-/* A workspace, and `deeper` others for the waves that may follow. */
-static workspace *workspace_chain(int lights, int deeper)
-{
-    workspace *v = calloc(1, sizeof *v);
-    if (!v)
-        return NULL;
-    v->visibility = malloc((size_t)(lights ? lights : 1) * sizeof *v->visibility);
-    v->deeper = v->visibility && deeper ? workspace_chain(0, deeper - 1) : NULL;
-    if (!v->visibility || (deeper && !v->deeper)) {
-        workspace_free(v);
-        return NULL;
-    }
-    return v;
-}
-
-/* One more than rays follow: what goes straight on from a camera's wave has one of its own. */
-workspace *workspace_new(const scene *s)
-{
-    workspace *v = workspace_chain(s->lights, s->sends && s->depth > 1 ? s->depth : 0);
-    candidates *m = v && s->object_bvh ? candidates_new(s->object_bvh) : NULL;
-    if (v && s->object_bvh && !m) {
-        workspace_free(v);
-        return NULL;
-    }
-    if (v)
-        v->left = s->depth - 1;
-    for (workspace *w = v; w; w = w->deeper)
-        w->candidates = m;
-    return v;
-}
-
-void workspace_free(workspace *v)
-{
-    if (v)
-        candidates_free(v->candidates);
-    while (v) {
-        workspace *next = v->deeper;
-        free(v->visibility);
-        free(v);
-        v = next;
-    }
-}
 
 /* A tile of the picture. */
 typedef struct tile {
     int x0, y0, width, height;
 } tile;
 
-/* base + x right + y up, x and y in -1..1 from the left and from the bottom. */
-STAGE static void over_image(const camera *c, vec3 base, int n, const real *restrict x, const real *restrict y,
-                             vec3s *restrict v)
-{
-    const real fx = (real)base.x, fy = (real)base.y, fz = (real)base.z;
-    const real rx = (real)c->right.x, ry = (real)c->right.y, rz = (real)c->right.z;
-    const real ux = (real)c->up.x, uy = (real)c->up.y, uz = (real)c->up.z;
-    for (int i = 0; i < n; i++) {
-        v->x[i] = fx + x[i] * rx + y[i] * ux;
-        v->y[i] = fy + x[i] * ry + y[i] * uy;
-        v->z[i] = fz + x[i] * rz + y[i] * uz;
-    }
-}
-
-/* What all rays have in common: a pinhole's r, an orthographic camera's s. */
-static void camera_begin(const camera *c, int n, rays *x)
-{
-    const vec3 v = c->orthographic ? c->forward : c->from;
-    vec3s_fill(c->orthographic ? &x->s : &x->r, n, (real)v.x, (real)v.y, (real)v.z);
-}
-
-/* And what they have not. */
-static void camera_rays(const camera *c, int n, const real *x, const real *y, rays *to)
-{
-    over_image(c, c->orthographic ? c->from : c->forward, n, x, y, c->orthographic ? &to->r : &to->s);
-}
-
-/* The pixel's coordinate p (0..size, fractions within a pixel) on the picture from -1 to 1. */
-static real screen(double p, int size) { return (real)(2 * p / size - 1); }
-
-void render_ray(const camera *c, int width, int height, double x, double y, workspace *v, int lane)
-{
-    rays one;
-    real sx = screen(x, width), sy = -screen(y, height);
-    camera_begin(c, 1, &one);
-    camera_rays(c, 1, &sx, &sy, &one);
-    lane_set(&v->x.r, lane, lane_get(&one.r, 0));
-    lane_set(&v->x.s, lane, lane_get(&one.s, 0));
-}
-
 static void tile_rays(const scene *s, const tile *b, int aa, int i, int j, workspace *v)
 {
     real x[LANES], y[LANES], column[TILE];
     for (int c = 0; c < b->width; c++)
-        column[c] = screen(b->x0 + c + (i + 0.5) / aa, s->width);
+        column[c] = camera_screen(b->x0 + c + (i + 0.5) / aa, s->width);
     for (int k = 0; k < b->height; k++) {
-        real row = -screen(b->y0 + k + (j + 0.5) / aa, s->height);
+        real row = -camera_screen(b->y0 + k + (j + 0.5) / aa, s->height);
         for (int c = 0; c < b->width; c++) {
             x[k * b->width + c] = column[c];
             y[k * b->width + c] = row;
@@ -178,26 +92,26 @@ static void fetch(const film *f, const tile *b)
 #endif
 }
 
-static void render_tile(const tracer *k, int aa, const tile *b, film *f, workspace *v)
+static void render_tile(const tracer *tr, int aa, const tile *b, film *f, workspace *v)
 {
     const float weight = 1.0f / (float)(aa * aa);
     fetch(f, b);
     for (int j = 0; j < aa; j++)
         for (int i = 0; i < aa; i++) {
             const bool add = i + j > 0;
-            tile_rays(k->scene, b, aa, i, j, v);
-            stats_stage(&v->stats, STAGE_CAMERA);
-            trace(k, b->width * b->height, v);
+            tile_rays(tr->scene, b, aa, i, j, v);
+            stats_stage(v->stats, STAGE_CAMERA);
+            trace(tr, b->width * b->height, v);
             lay(f, FILM_R, b, v->out.rgb.x, weight, add);
             lay(f, FILM_G, b, v->out.rgb.y, weight, add);
             lay(f, FILM_B, b, v->out.rgb.z, weight, add);
-            if (k->layers) {
-                for (int l = 0; l < k->scene->lights; l++)
+            if (tr->layers) {
+                for (int l = 0; l < tr->scene->lights; l++)
                     lay(f, FILM_LIGHTS + l, b, v->visibility[l], weight, add);
                 if (i == aa / 2 && j == aa / 2)
                     lay_layers(f, b, v);
             }
-            stats_stage(&v->stats, STAGE_FILM);
+            stats_stage(v->stats, STAGE_FILM);
         }
 }
 
@@ -233,9 +147,9 @@ static void add_samples(film *f, const selection *p, int each, int first, int n,
 
 /* The marked pixels anew with aa x aa samples each: side by side in waves, pixel by pixel, so that each sums up its
  * samples in the same order as in render_tile, to the same bytes. */
-static void refine_tile(const tracer *k, int aa, const tile *b, const unsigned char *marked, film *f, workspace *v)
+static void refine_tile(const tracer *tr, int aa, const tile *b, const unsigned char *marked, film *f, workspace *v)
 {
-    const scene *s = k->scene;
+    const scene *s = tr->scene;
     const int each = aa * aa;
     selection p;
     select_marked(b, f, marked, &p);
@@ -244,18 +158,18 @@ static void refine_tile(const tracer *k, int aa, const tile *b, const unsigned c
         real x[LANES], y[LANES];
         for (int i = 0; i < n; i++) {
             const int pixel = (first + i) / each, sample = (first + i) % each;
-            x[i] = screen(p.x[pixel] + (sample % aa + 0.5) / aa, s->width);
-            y[i] = -screen(p.y[pixel] + (sample / aa + 0.5) / aa, s->height);
+            x[i] = camera_screen(p.x[pixel] + (sample % aa + 0.5) / aa, s->width);
+            y[i] = -camera_screen(p.y[pixel] + (sample / aa + 0.5) / aa, s->height);
         }
         camera_rays(&s->camera, n, x, y, &v->x);
-        stats_stage(&v->stats, STAGE_CAMERA);
-        trace(k, n, v);
+        stats_stage(v->stats, STAGE_CAMERA);
+        trace(tr, n, v);
         add_samples(f, &p, each, first, n, FILM_R, v->out.rgb.x);
         add_samples(f, &p, each, first, n, FILM_G, v->out.rgb.y);
         add_samples(f, &p, each, first, n, FILM_B, v->out.rgb.z);
-        for (int l = 0; k->layers && l < s->lights; l++)
+        for (int l = 0; tr->layers && l < s->lights; l++)
             add_samples(f, &p, each, first, n, FILM_LIGHTS + l, v->visibility[l]);
-        stats_stage(&v->stats, STAGE_FILM);
+        stats_stage(v->stats, STAGE_FILM);
     }
 }
 
@@ -264,6 +178,7 @@ typedef struct pass {
     int aa;
     const unsigned char *marked; /* NULL: all */
     long done, all;              /* tiles, of this pass and of those before and after it */
+    bool stop;                   /* the caller wants no more */
 } pass;
 
 static long tiles(window w)
@@ -271,78 +186,89 @@ static long tiles(window w)
     return (long)((w.x1 - w.x0 + TILE - 1) / TILE) * ((w.y1 - w.y0 + TILE_ROWS - 1) / TILE_ROWS);
 }
 
-static bool run(const tracer *k, const render_options *o, pass *p, film *f, stats *sum, errors *e)
+/* One more tile is done. Only the caller's own thread shows it, so that a callback needs no lock. */
+static void note_tile(const render_options *o, pass *p)
+{
+    long done;
+#pragma omp atomic capture
+    done = ++p->done;
+    if (is_callers_thread() && !progress_show(o->progress, "rendering", (double)done / (double)p->all)) {
+#pragma omp atomic write
+        p->stop = true;
+    }
+}
+
+static bool run(const tracer *tr, const render_options *o, pass *p, film *f, stats *sum, errors *e)
 {
     const window part = f->part;
     const int columns = (part.x1 - part.x0 + TILE - 1) / TILE;
     const long count = tiles(part);
     bool good = true;
-#if defined(_OPENMP)
-    const int threads = o->threads ? o->threads : omp_get_num_procs();
-#endif
+    const int threads = threads_of(o->threads);
+    (void)threads; /* without OpenMP */
 #pragma omp parallel num_threads(threads)
     {
-        workspace *v = workspace_new(k->scene);
+        workspace *v = workspace_new(tr);
         if (v)
-            camera_begin(&k->scene->camera, LANES, &v->x); /* no stage writes there, so once is enough */
+            camera_common(&tr->scene->camera, LANES, &v->x); /* no stage writes there, so once is enough */
         else {
-#pragma omp critical(kage_render)
+#pragma omp atomic write
             good = false;
         }
 #pragma omp for schedule(dynamic, 4)
         for (long n = 0; n < count; n++) {
-            if (!v)
+            bool stop;
+#pragma omp atomic read
+            stop = p->stop;
+            if (!v || stop)
                 continue;
             tile b = {part.x0 + (int)(n % columns) * TILE, part.y0 + (int)(n / columns) * TILE_ROWS, TILE, TILE_ROWS};
             b.width = b.x0 + TILE > part.x1 ? part.x1 - b.x0 : TILE;
             b.height = b.y0 + TILE_ROWS > part.y1 ? part.y1 - b.y0 : TILE_ROWS;
-            v->stats.timing = o->timing && n % TIMED_TILES == 0;
-            if (v->stats.timing)
-                v->stats.clock = stats_clock();
+            v->stats->timing = o->timing && n % TIMED_TILES == 0;
+            if (v->stats->timing)
+                v->stats->clock = stats_clock();
             if (p->marked)
-                refine_tile(k, p->aa, &b, p->marked, f, v);
+                refine_tile(tr, p->aa, &b, p->marked, f, v);
             else
-                render_tile(k, p->aa, &b, f, v);
-            if (o->progress && n % 16 == 15) {
-#pragma omp critical(kage_render)
-                {
-                    p->done += 16;
-                    o->progress(o->user, p->done, p->all);
-                }
-            }
+                render_tile(tr, p->aa, &b, f, v);
+            note_tile(o, p);
         }
         if (v) {
-#pragma omp critical(kage_render)
-            stats_add(sum, &v->stats);
+#pragma omp critical /* without a name, which would be a global variable */
+            stats_add(sum, v->stats);
         }
         workspace_free(v);
     }
-    return good || errors_add(e, "out of memory for the threads' waves");
+    if (!good)
+        return errors_add(e, "out of memory for the threads' waves");
+    return !p->stop || errors_add(e, "cancelled");
 }
 
 /* One sample a pixel, then more where neighbours differ. Those of the pixels at a crop's edge are beyond it, so the
  * first pass goes a pixel farther: what is in a picture does not depend on the crop. */
-static bool render_adaptive(const tracer *k, const render_options *o, film *f, stats *sum, errors *e)
+static bool render_adaptive(const tracer *tr, const render_options *o, film *f, stats *sum, errors *e)
 {
-    const window part = f->part, wide = {part.x0 - (part.x0 > 0), part.y0 - (part.y0 > 0),
-                                         part.x1 + (part.x1 < k->scene->width), part.y1 + (part.y1 < k->scene->height)};
-    pass first = {1, NULL, 0, tiles(wide) + tiles(part)}, second = {o->aa, NULL, tiles(wide), first.all};
-    film *margin = memcmp(&wide, &part, sizeof wide) ? film_new(k->scene, wide, k->layers, e) : f;
-    bool good = margin && run(k, o, &first, margin, sum, e);
+    const window part = f->part,
+                 wide = {part.x0 - (part.x0 > 0), part.y0 - (part.y0 > 0), part.x1 + (part.x1 < tr->scene->width),
+                         part.y1 + (part.y1 < tr->scene->height)};
+    pass first = {1, NULL, 0, tiles(wide) + tiles(part), false}, second = {o->aa, NULL, tiles(wide), first.all, false};
+    film *margin = memcmp(&wide, &part, sizeof wide) ? film_new(tr->scene, wide, tr->layers, e) : f;
+    bool good = margin && run(tr, o, &first, margin, sum, e);
     if (good && margin != f)
         film_copy(f, margin);
     unsigned char *marked = good ? adaptive_find(margin, part, o->threshold, o->threads, e) : NULL;
     second.marked = marked;
-    good = marked && run(k, o, &second, f, sum, e);
+    good = marked && run(tr, o, &second, f, sum, e);
     free(marked);
     if (margin != f)
         film_free(margin);
     return good;
 }
 
-bool render(const tracer *k, const render_options *o, film *f, stats *sum, errors *e)
+bool render(const tracer *tr, const render_options *o, film *f, stats *sum, errors *e)
 {
-    pass all = {o->aa, NULL, 0, tiles(f->part)};
+    pass all = {o->aa, NULL, 0, tiles(f->part), false};
     *sum = (stats){0};
-    return o->aa > 1 && o->threshold >= 0 ? render_adaptive(k, o, f, sum, e) : run(k, o, &all, f, sum, e);
+    return o->aa > 1 && o->threshold >= 0 ? render_adaptive(tr, o, f, sum, e) : run(tr, o, &all, f, sum, e);
 }

@@ -1,9 +1,10 @@
+/* Directions, media and weights of the rays that go on from a group, as POV-Ray has them. */
 #include "render/secondary.h"
 
 #include <string.h>
 
 #include "wave/lane.h"
-#include "render/trace.h"
+#include "render/workspace.h"
 
 void secondary_begin(workspace *v) { v->reflected.n = v->refracted.n = v->straight.n = 0; }
 
@@ -17,21 +18,21 @@ typedef struct ways {
     vec3s through;
 } ways;
 
-/* d turned over, so that it is on the other side of the surface across n. */
-static inline bs_vec3 turned_over(bs_vec3 d, bs_vec3 n)
+/* d reflected at the plane across n. */
+static inline bs_vec3 reflected(bs_vec3 d, bs_vec3 n)
 {
     real k = 2 * bs_dot(d, n) / bs_dot(n, n);
     bs_vec3 x = {d.x - k * n.x, d.y - k * n.y, d.z - k * n.z};
     return x;
 }
 
-/* s mirrored at n'. What goes below the smooth surface then is turned over at it; where n' itself is turned away from
+/* s mirrored at n'. What goes below the smooth surface then is reflected at it; where n' itself is turned away from
  * the viewer, s is mirrored at the smooth surface. Both as in POV-Ray. */
 static inline bs_vec3 mirrored(bs_vec3 s, bs_vec3 smooth, bs_vec3 bumped)
 {
-    bs_vec3 d = turned_over(s, bumped), again, plain = turned_over(s, smooth);
+    bs_vec3 d = reflected(s, bumped), again, plain = reflected(s, smooth);
     real side = bs_dot(s, smooth), below = side * bs_dot(d, smooth), away = side * bs_dot(s, bumped);
-    again = turned_over(d, smooth);
+    again = reflected(d, smooth);
     again.x = away < 0 ? plain.x : again.x;
     again.y = away < 0 ? plain.y : again.y;
     again.z = away < 0 ? plain.z : again.z;
@@ -48,7 +49,7 @@ STAGE static void mirror(const hit_group *restrict g, ways *restrict y)
 }
 
 /* Snell's law with n' on the viewer's side, whichever that is. What stays on the viewer's side of the smooth surface is
- * turned over. */
+ * reflected. */
 STAGE static void bend(const hit_group *restrict g, ways *restrict y)
 {
     for (int i = 0; i < g->n; i++) {
@@ -57,7 +58,7 @@ STAGE static void bend(const hit_group *restrict g, ways *restrict y)
              root = real_sqrt(real_max(k, 0));
         real by = ratio * c - (c < 0 ? -root : root);
         bs_vec3 d = {ratio * s.x + by * n.x, ratio * s.y + by * n.y, ratio * s.z + by * n.z},
-                over = turned_over(d, smooth);
+                over = reflected(d, smooth);
         int back = bs_dot(s, smooth) * bs_dot(d, smooth) < 0;
         y->bent.x[i] = back ? over.x : d.x;
         y->bent.y[i] = back ? over.y : d.y;
@@ -155,9 +156,8 @@ STAGE static void through_pattern(const hit_group *restrict g, real filter, real
     }
 }
 
-static void send_clear(const tracer *k, int id, workspace *v, ways *y)
+static void send_clear(const scene *sc, int32_t id, workspace *v, ways *y)
 {
-    const scene *sc = k->scene;
     const material *m = &sc->material[sc->object[id].material];
     const hit_group *g = &v->g;
     const bs_vec3 mirror_weight = weight_of(m->reflection), one = {1, 1, 1};
@@ -180,90 +180,57 @@ static void send_clear(const tracer *k, int id, workspace *v, ways *y)
         bs_vec3 through = lane_get(&y->through, i);
         const bool total = y->ratio[i] != 1 && y->total[i] && !is_zero(through);
         if (total)
-            send(g, i, id, g->t[i] + g->tau[i], lane_get(&y->mirrored, i), one, before, hit_group_place(g, i),
-                 &v->refracted);
+            send(g, i, id, g->t0[i], lane_get(&y->mirrored, i), one, before, hit_group_place(g, i), &v->refracted);
         else if (is_zero(through))
             ;
         else if (y->ratio[i] == 1) /* the same ray: what is before the surface it has passed already */
             send(g, i, id, g->t[i], lane_get(&g->x.s, i), through, &in, i, &v->straight);
         else
-            send(g, i, id, g->t[i] + g->tau[i], lane_get(&y->bent, i), through, &in, i, &v->refracted);
+            send(g, i, id, g->t0[i], lane_get(&y->bent, i), through, &in, i, &v->refracted);
         if (!total && !is_zero(mirror_weight))
-            send(g, i, id, g->t[i] + g->tau[i], lane_get(&y->mirrored, i), mirror_weight, before, hit_group_place(g, i),
+            send(g, i, id, g->t0[i], lane_get(&y->mirrored, i), mirror_weight, before, hit_group_place(g, i),
                  &v->reflected);
     }
 }
 
-void secondary_send(const tracer *k, int id, workspace *v)
+void secondary_send(const scene *s, int32_t id, workspace *v)
 {
-    const material *m = &k->scene->material[k->scene->object[id].material];
+    const material *m = &s->material[s->object[id].material];
     const hit_group *g = &v->g;
     ways y;
     if (v->left == 0 || !material_sends(m))
         return;
     mirror(g, &y);
     if (material_clear(m)) {
-        send_clear(k, id, v, &y);
+        send_clear(s, id, v, &y);
         return;
     }
     for (int i = 0; i < g->n; i++)
-        send(g, i, id, g->t[i] + g->tau[i], lane_get(&y.mirrored, i), weight_of(m->reflection),
-             v->of ? &v->of->in : NULL, hit_group_place(g, i), &v->reflected);
+        send(g, i, id, g->t0[i], lane_get(&y.mirrored, i), weight_of(m->reflection), v->of ? &v->of->in : NULL,
+             hit_group_place(g, i), &v->reflected);
 }
 
-/* ---- following ---- */
-
-static void add_light(const ray_queue *b, const vec3s *from, vec3s *to)
+void secondary_add(const ray_queue *q, const vec3s *from, vec3s *to)
 {
-    for (int i = 0; i < b->n; i++) {
-        const int at = b->lane[i];
-        to->x[at] += b->weight.x[i] * from->x[i];
-        to->y[at] += b->weight.y[i] * from->y[i];
-        to->z[at] += b->weight.z[i] * from->z[i];
+    for (int i = 0; i < q->n; i++) {
+        const int at = q->lane[i];
+        to->x[at] += q->weight.x[i] * from->x[i];
+        to->y[at] += q->weight.y[i] * from->y[i];
+        to->z[at] += q->weight.z[i] * from->z[i];
     }
 }
 
-/* What goes straight on of b becomes b. */
-static void go_on(const ray_queue *on, ray_queue *b)
+void secondary_go_on(const ray_queue *on, ray_queue *q)
 {
     int32_t lane[LANES];
     vec3s weight;
     for (int i = 0; i < on->n; i++) {
-        bs_vec3 w = lane_get(&on->weight, i), before = lane_get(&b->weight, on->lane[i]);
+        bs_vec3 w = lane_get(&on->weight, i), before = lane_get(&q->weight, on->lane[i]);
         bs_vec3 both = {w.x * before.x, w.y * before.y, w.z * before.z};
-        lane[i] = b->lane[on->lane[i]];
+        lane[i] = q->lane[on->lane[i]];
         lane_set(&weight, i, both);
     }
-    *b = *on;
-    memcpy(b->lane, lane, (size_t)on->n * sizeof *lane);
-    memcpy(&b->weight, &weight, sizeof weight);
-}
-
-/* Trace a wave that `left` more may follow. A ray that goes straight on through a surface is none more, as in POV-Ray;
- * so it is traced in the same workspace, in a loop. */
-static void follow(const tracer *k, ray_queue *b, int left, workspace *v)
-{
-    workspace *d = v->deeper;
-    tracer inner = *k;
-    inner.layers = false;
-    for (int times = 0; b->n > 0 && times < STRAIGHTS; times++) {
-        d->of = b;
-        d->left = left;
-        d->x = b->x;
-        d->stats = v->stats; /* the counts go along */
-        trace(&inner, b->n, d);
-        v->stats = d->stats;
-        add_light(b, &d->out.rgb, &v->out.rgb);
-        go_on(&d->straight, b);
-    }
-}
-
-void secondary_follow(const tracer *k, workspace *v)
-{
-    if (v->left == 0)
-        return;
-    follow(k, &v->reflected, v->left - 1, v);
-    follow(k, &v->refracted, v->left - 1, v);
-    if (!v->of)
-        follow(k, &v->straight, v->left, v);
+    *q = *on;
+    memcpy(q->lane, lane, (size_t)on->n * sizeof *lane);
+    memcpy(&q->weight, &weight, sizeof weight);
 }

@@ -1,7 +1,6 @@
-/* Secondary rays: mirrored, refracted, and straight on through what does not refract. Those of a wave's lanes are
- * gathered, side by side, in waves of their own, that are traced as the camera's are, in the next workspace; so waves
- * are full where their parents' groups are not. How far this goes is bounded, and so is the memory, which each thread
- * has from the start.
+/* Secondary rays: mirrored, refracted, and straight on through what does not refract. Those of all of a wave's groups
+ * are queued in waves of their own, which trace.c traces as it does the camera's; so waves stay full where groups are
+ * small. Depth and memory are bounded.
  */
 #ifndef KAGE_RENDER_SECONDARY_H
 #define KAGE_RENDER_SECONDARY_H
@@ -9,11 +8,11 @@
 #include "wave/wave.h"
 
 enum {
-    MEDIA = 8,      /* things within one another, of which a ray knows */
-    STRAIGHTS = 256 /* surfaces in a row that a ray passes straight on */
+    MEDIA = 8,      /* nested things that a ray keeps count of */
+    STRAIGHTS = 256 /* unrefracted crossings in a row; light from beyond is not seen */
 };
 
-/* What each ray is in: the objects that it has entered and not left, the innermost last. */
+/* The objects that each ray has entered and not left, the innermost last. */
 typedef struct media {
     int32_t n[LANES], id[MEDIA][LANES];
 } media;
@@ -21,23 +20,26 @@ typedef struct media {
 /* A wave of secondary rays. */
 typedef struct ray_queue {
     int n;
-    int32_t lane[LANES]; /* in the wave to whose light they add, */
-    vec3s weight;        /* with this weight */
-    rays x;              /* from the shifted place r + s t0 */
+    int32_t lane[LANES]; /* of the wave they come from, to whose light they add */
+    vec3s weight;
+    rays x; /* from the shifted place r + s t0 */
     ray_origins from;
     media in;
 } ray_queue;
 
-struct tracer;
+struct scene;
 struct workspace;
 
-/* None yet. */
+/* No rays yet in the workspace's queues. */
 void secondary_begin(struct workspace *v);
 
-/* The rays that go on from the group v->g, which has met object `id`. */
-void secondary_send(const struct tracer *k, int id, struct workspace *v);
+/* Queue the rays that go on from the group v->g, which has met object `id`. */
+void secondary_send(const struct scene *s, int32_t id, struct workspace *v);
 
-/* Trace all that were sent, and add their light to v->out.rgb. */
-void secondary_follow(const struct tracer *k, struct workspace *v);
+/* to += what a queue's rays have found, by their weights. */
+void secondary_add(const ray_queue *q, const vec3s *from, vec3s *to);
+
+/* Replace q by its unrefracted continuations; weights multiply. */
+void secondary_go_on(const ray_queue *on, ray_queue *q);
 
 #endif

@@ -1,3 +1,4 @@
+/* POV-Ray's finish by n'. A loop for each kind of light and highlight, so that each is vectorised. */
 #include "render/shade.h"
 
 #include "math/kmath.h"

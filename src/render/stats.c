@@ -1,3 +1,4 @@
+/* Counts, and the clock of --stats. */
 #include "render/stats.h"
 
 #include <time.h>

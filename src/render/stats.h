@@ -2,7 +2,7 @@
 #ifndef KAGE_RENDER_STATS_H
 #define KAGE_RENDER_STATS_H
 
-#include "displaced/march.h"
+#include "displaced/displaced.h"
 #include "method/method.h"
 
 #include <stdbool.h>

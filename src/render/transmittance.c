@@ -1,7 +1,9 @@
+/* Light through transparent objects: each segment is followed from crossing to crossing of one object's surface. */
 #include "render/transmittance.h"
 
 #include <string.h>
 
+#include "render/intersect.h"
 #include "wave/lane.h"
 
 enum { CROSSINGS = 64 }; /* of a rough surface; what crosses it more often is dark */
@@ -20,7 +22,7 @@ typedef struct segments {
 
 void transmittance_begin(hit_group *g) { vec3s_fill(&g->tint, g->n, 1, 1, 1); }
 
-static void begin(const hit_group *g, int id, bool own, segments *a)
+static void begin(const hit_group *g, int32_t id, bool own, segments *a)
 {
     a->n = 0;
     for (int i = 0; i < g->n; i++) {
@@ -37,7 +39,7 @@ static void begin(const hit_group *g, int id, bool own, segments *a)
 }
 
 /* Those that cross the surface go on behind it; the others have arrived. */
-static void cross(int id, bool rough, segments *a)
+static void cross(int32_t id, segments *a)
 {
     int n = 0;
     for (int i = 0; i < a->n; i++) {
@@ -51,7 +53,7 @@ static void cross(int id, bool rough, segments *a)
         lane_set(&a->x.s, n, rest);
         lane_set(&a->from.at, n, at);
         a->from.id[n] = id;
-        a->from.part[n] = rough ? a->h.part[i] : a->part[i];
+        a->from.part[n] = a->part[i];
         n++;
     }
     a->n = n;
@@ -72,26 +74,30 @@ static void tint(const material *m, const segments *a, hit_group *g)
     }
 }
 
-void transmittance_light(const tracer *k, int id, bool own, hit_group *g, stats *st)
+static void follow(const scene *s, int32_t id, bool own, workspace *v)
 {
-    const object *o = &k->scene->object[id];
-    const material *m = &k->scene->material[o->material];
+    const object *o = &s->object[id];
+    const material *m = &s->material[o->material];
+    const surface *f = v->surface[id];
     segments a;
-    begin(g, id, own, &a);
+    begin(&v->g, id, own, &a);
     for (int crossing = 0; crossing < CROSSINGS && a.n; crossing++) {
         for (int i = 0; i < a.n; i++) {
             a.h.t[i] = 1;
             a.h.id[i] = -1;
             a.h.part[i] = 0;
         }
-        trace_hit(k, id, a.n, &a.x, &a.from, &a.h, st);
+        intersect_surface(f, a.n, &a.x, &a.from, id, &a.h);
         memcpy(a.part, a.h.part, sizeof a.part);
-        o->shape->ops->locate(o->shape, a.n, &a.x, a.h.t, a.part, a.u, a.w);
+        f->ops->locate(f, a.n, &a.x, a.h.t, a.part, a.u, a.w);
         if (o->color)
             o->color->ops->eval(o->color, a.n, a.u, a.w, &a.color);
-        tint(m, &a, g);
-        cross(id, k->displaced && o->bump, &a);
+        tint(m, &a, &v->g);
+        cross(id, &a);
     }
     for (int i = 0; i < a.n; i++)
-        g->lit[a.lane[i]] = 0;
+        v->g.lit[a.lane[i]] = 0;
 }
+
+void transmittance_own(const scene *s, int32_t id, workspace *v) { follow(s, id, true, v); }
+void transmittance_other(const scene *s, int32_t id, workspace *v) { follow(s, id, false, v); }

@@ -1,15 +1,15 @@
-/* Lights: where their shadow rays go, and how much of their colour arrives. */
+/* Lights, as POV-Ray 3.7 has them. */
 #ifndef KAGE_SCENE_LIGHT_H
 #define KAGE_SCENE_LIGHT_H
 
-#include "wave/hit_group.h"
+#include "base/real.h"
 #include "base/vec3.h"
 
 enum { LIGHT_MAX_SIDE = 64 }; /* samples along a side */
 
 typedef enum light_kind { LIGHT_POINT, LIGHT_SPOT, LIGHT_PARALLEL } light_kind;
 
-/* As POV-Ray has them. A parallel light shines along `axis` from the plane across it at `at`. */
+/* A parallel light shines along `axis` from the plane across it at `at`. */
 typedef struct light {
     char *name;
     light_kind kind;
@@ -26,17 +26,6 @@ typedef struct light {
 
 /* The light as its sample k < samples[0] samples[1] has it, at a place of its own, and the share of the sample. */
 light light_sample(const light *l, int k, real *share);
-
-/* sum += what of a sample is lit. */
-void light_gather(const hit_group *g, real share, real *sum);
-void light_gather_tint(const hit_group *g, real share, vec3s *sum); /* in its tint */
-
-/* The segments r + s t, 0 < t < 1, from the lanes' smooth hits (or from the shifted ones, r + s (t_hit + tau)) to the
- * light. */
-void light_aim(const light *l, hit_group *g, bool shifted);
-
-/* g->lit = the share of the light's colour that gets to p1, by direction and distance, of what was lit. */
-void light_fade(const light *l, hit_group *g);
 
 /* For exports: the ends of a light's area as seen from p; how many there are. */
 int light_corners(const light *l);

@@ -1,3 +1,4 @@
+/* The hierarchy proposes objects; their boxes in double decide. */
 #include "scene/object_bvh.h"
 
 #include "bvh/bvh.h"
@@ -7,8 +8,9 @@
 #include <string.h>
 
 enum {
-    FEW = 12, /* objects with an end: no more than these are all tried with all, which is the faster (docs/design.md) */
+    FEW = 12, /* objects with an end: up to so many trying all is faster (docs/design.md) */
     BITS = 64,
+    ROUNDINGS = 16,
     WORDS = LANES / BITS,
 };
 
@@ -32,15 +34,12 @@ struct candidates {
 
 /* ---- the objects ---- */
 
-static box box_of(const scene *s, const object *o)
+/* The displaced surface's box holds the smooth one too. */
+static box box_of(const object *o)
 {
+    const surface *f = o->displaced ? o->displaced : o->shape;
     box b;
-    o->shape->ops->box(o->shape, b.lo, b.hi);
-    const double high = s->displaced && o->bump ? fmax(fabs((double)o->bump->Pmin), fabs((double)o->bump->Pmax)) : 0;
-    for (int k = 0; k < 3; k++) {
-        b.lo[k] -= high;
-        b.hi[k] += high;
-    }
+    f->ops->box(f, b.lo, b.hi);
     return b;
 }
 
@@ -79,7 +78,7 @@ object_bvh *object_bvh_new(const scene *s, bool *good)
     object_bvh *c = calloc(1, sizeof *c);
     *good = c && (c->object = malloc(sizeof *c->object * n)) && (c->box = malloc(sizeof *c->box * n));
     for (int i = 0, endless = 0; *good && i < s->objects; i++) {
-        const box b = box_of(s, &s->object[i]);
+        const box b = box_of(&s->object[i]);
         if (has_end(&b)) {
             c->box[c->bounded] = b;
             c->object[c->bounded++] = i;
@@ -155,12 +154,13 @@ typedef struct passage {
     double r[3], s[3], end, size; /* size: of r's coordinates */
 } passage;
 
-/* Whether it passes the box, or comes so near that float might see a hit there. */
+/* Whether it passes the box, or comes so near that float might see a hit there: a hit's place is some sums and products
+ * of coordinates of that size, together fewer than ROUNDINGS roundings. */
 static bool passes(const passage *p, const box *b)
 {
     double t0 = 0, t1 = p->end;
     for (int k = 0; k < 3; k++) {
-        const double air = 16 * REAL_ROUNDING * (p->size + fabs(b->lo[k]) + fabs(b->hi[k]));
+        const double air = ROUNDINGS * REAL_ROUNDING * (p->size + fabs(b->lo[k]) + fabs(b->hi[k]));
         const double lo = b->lo[k] - air - p->r[k], hi = b->hi[k] + air - p->r[k];
         if (p->s[k] == 0) {
             t1 = lo <= 0 && hi >= 0 ? t1 : -1;
@@ -170,7 +170,7 @@ static bool passes(const passage *p, const box *b)
         t0 = fmax(t0, fmin(x, y));
         t1 = fmin(t1, fmax(x, y));
     }
-    return t0 <= t1 * (1 + 16 * REAL_ROUNDING);
+    return t0 <= t1 * (1 + ROUNDINGS * REAL_ROUNDING);
 }
 
 static void visit(void *user, int32_t index)

@@ -1,6 +1,5 @@
-/* Which of a scene's many objects each ray of a wave may meet, so that not all are tried with all. The objects' boxes
- * are in a hierarchy (bvh.h); what it tells is told again, the same on every processor, by their boxes in double.
- * Objects without an end, as planes, are always told.
+/* Top-level hierarchy: which of a scene's many objects each ray of a wave may meet. Candidates are tested again in
+ * double, so results do not depend on the processor. Objects without an end, as planes, are candidates of every ray.
  */
 #ifndef KAGE_SCENE_OBJECT_BVH_H
 #define KAGE_SCENE_OBJECT_BVH_H
@@ -12,18 +11,18 @@
 struct scene;
 typedef struct object_bvh object_bvh;
 
-/* The boxes of the scene's objects, with their heights where they are displaced. NULL with *good: so few that trying
- * all is faster. NULL without: out of memory. */
+/* Over the boxes of the scene's objects, displaced where they have a displaced surface. NULL with *good: there are so
+ * few that trying all is faster. NULL without: out of memory. */
 object_bvh *object_bvh_new(const struct scene *s, bool *good);
 void object_bvh_free(object_bvh *c);
 
-/* For each object the rays of a wave that may meet it. One for each thread. */
+/* For each object the rays of a wave that may meet it. Each thread has its own. */
 typedef struct candidates candidates;
 candidates *candidates_new(const object_bvh *c); /* NULL: out of memory */
 void candidates_free(candidates *m);
 
-/* Find them, for n rays r + s t, 0 < t < end[i]. own: the object that each ray has left, which is told whatever its
- * box; NULL: none. */
+/* Find them, for n rays r + s t, 0 < t < end[i]. own: the object that each ray has left, always a candidate; NULL:
+ * none. */
 void object_bvh_find(const object_bvh *c, int n, const rays *x, const real *end, const int32_t *own, candidates *m);
 
 /* The next object after `after` (-1: the first) that some ray may meet; -1: there is none. */

@@ -1,21 +1,18 @@
+/* Lanes are copied one by one where a group is not the whole wave, and as blocks where it is. */
 #include "wave/gather.h"
 
 #include <string.h>
 
-STAGE static void fill(int n, real *v, real x)
+STAGE static void begin(int n, hits *h)
 {
-    for (int i = 0; i < n; i++)
-        v[i] = x;
-}
-
-void gather_begin(int n, hits *h)
-{
-    fill(n, h->t, REAL_FAR);
     for (int i = 0; i < n; i++) {
+        h->t[i] = REAL_FAR;
         h->id[i] = -1;
         h->part[i] = 0;
     }
 }
+
+void gather_begin(int n, hits *h) { begin(n, h); }
 
 STAGE static void start_own(int n, const ray_origins *restrict from, const int32_t *restrict id, vec3s *restrict r)
 {
@@ -29,25 +26,6 @@ STAGE static void start_own(int n, const ray_origins *restrict from, const int32
 }
 
 void gather_move_origins(int n, const ray_origins *from, const hits *h, rays *x) { start_own(n, from, h->id, &x->r); }
-
-void gather_background(int n, vec3 color, bool layers, int lights, workspace *v)
-{
-    samples *o = &v->out;
-    vec3s_fill(&o->rgb, n, (real)color.x, (real)color.y, (real)color.z);
-    if (!layers)
-        return;
-    fill(n, o->depth, (real)HUGE_VAL);
-    vec3s_fill(&o->position, n, 0, 0, 0);
-    vec3s_fill(&o->normal, n, 0, 0, 0);
-    fill(n, o->u, 0);
-    fill(n, o->w, 0);
-    fill(n, o->height, 0);
-    fill(n, o->tau, 0);
-    for (int i = 0; i < n; i++)
-        o->order[i] = -1;
-    for (int l = 0; l < lights; l++)
-        fill(n, v->visibility[l], 0);
-}
 
 STAGE static void pick(const hit_group *restrict g, const real *restrict from, real *restrict to)
 {
@@ -124,7 +102,7 @@ int32_t gather_next_group(int n, const rays *x, hits *h, hit_group *g)
     return id;
 }
 
-static void put(const hit_group *restrict g, const real *restrict from, real *restrict to)
+void scatter(const hit_group *restrict g, const real *restrict from, real *restrict to)
 {
     if (g->whole) {
         memcpy(to, from, (size_t)g->n * sizeof *to);
@@ -134,40 +112,9 @@ static void put(const hit_group *restrict g, const real *restrict from, real *re
         to[g->lane[i]] = from[i];
 }
 
-static void put3(const hit_group *g, const vec3s *from, vec3s *to)
+void scatter_vec3s(const hit_group *g, const vec3s *from, vec3s *to)
 {
-    put(g, from->x, to->x);
-    put(g, from->y, to->y);
-    put(g, from->z, to->z);
-}
-
-STAGE static void brightness(const hit_group *restrict g, real *restrict v)
-{
-    for (int i = 0; i < g->n; i++)
-        v[i] = g->lit[i] * ((g->tint.x[i] + g->tint.y[i] + g->tint.z[i]) / 3);
-}
-
-void scatter_visibility(const hit_group *g, bool tinted, real *visibility)
-{
-    real v[LANES];
-    if (tinted)
-        brightness(g, v);
-    put(g, tinted ? v : g->lit, visibility);
-}
-
-void scatter_samples(const hit_group *g, bool layers, bool bumped, samples *o)
-{
-    put3(g, &g->rgb, &o->rgb);
-    if (!layers)
-        return;
-    put(g, g->t, o->depth);
-    put3(g, &g->q.Q, &o->position);
-    put3(g, &g->n_bump, &o->normal);
-    put(g, g->u, o->u);
-    put(g, g->w, o->w);
-    if (bumped)
-        put(g, g->h.P, o->height);
-    put(g, g->tau, o->tau);
-    for (int i = 0; i < g->n; i++)
-        o->order[hit_group_place(g, i)] = g->order[i];
+    scatter(g, from->x, to->x);
+    scatter(g, from->y, to->y);
+    scatter(g, from->z, to->z);
 }

@@ -2,16 +2,13 @@
 #ifndef KAGE_WAVE_GATHER_H
 #define KAGE_WAVE_GATHER_H
 
-#include "render/trace.h"
+#include "wave/hit_group.h"
 
 /* No hits yet. */
 void gather_begin(int n, hits *h);
 
 /* Rays that have met the surface again on which they started: they began on its smooth shape. */
 void gather_move_origins(int n, const ray_origins *from, const hits *h, rays *x);
-
-/* The samples of rays that meet nothing, their layers too where asked for, with the visibilities of `lights`. */
-void gather_background(int n, vec3 color, bool layers, int lights, workspace *v);
 
 /* Lanes lane[0..n-1] of a wave, side by side. */
 void gather_rays(int n, const int32_t *lane, const rays *x, rays *to);
@@ -21,8 +18,8 @@ void gather_ray_origins(int n, const int32_t *lane, const ray_origins *from, ray
  * object's id, -1 where no lane is left. */
 int32_t gather_next_group(int n, const rays *x, hits *h, hit_group *g);
 
-/* Put what a group has found out back at its places in the wave. */
-void scatter_samples(const hit_group *g, bool layers, bool bumped, samples *out);
-void scatter_visibility(const hit_group *g, bool tinted, real *visibility); /* tinted: the mean over g->tint */
+/* Put what a group has found out at its places in the wave. */
+void scatter(const hit_group *g, const real *from, real *to);
+void scatter_vec3s(const hit_group *g, const vec3s *from, vec3s *to);
 
 #endif

@@ -1,5 +1,5 @@
-/* The lanes of a wave that have hit one object, side by side, with all that the stages of trace.c find out about
- * them. One is allocated for each thread; its arrays are never cleared, the stages write before they read.
+/* The lanes of a wave that have hit one object, side by side, with all that the stages of trace.c find out about them.
+ * Its arrays are never cleared: stages write before they read.
  */
 #ifndef KAGE_WAVE_HIT_GROUP_H
 #define KAGE_WAVE_HIT_GROUP_H
@@ -21,12 +21,13 @@ typedef struct hit_group {
     partials q;
 
     /* the bump */
-    bump_values h;
+    bump_values bump;
     vec3s n_smooth; /* n = Qu x Qw, not normalised */
     vec3s n_bump;   /* n', unit */
 
     /* the method */
-    real tau[LANES];
+    real tau[LANES];      /* the shift, */
+    real t0[LANES];       /* t_hit + tau: the shifted place is r + s t0 */
     int32_t order[LANES]; /* really used; method_code's numbers */
 
     /* the light at hand: the segments to it, and 1 where it is seen, 0 where not */

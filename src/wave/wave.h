@@ -56,8 +56,15 @@ typedef struct rays {
 typedef struct hits {
     real t[LANES];
     int32_t id[LANES];   /* index of the object in the scene */
-    int32_t part[LANES]; /* of its surface; told by displaced surfaces and meshes, others find it in `locate` */
+    int32_t part[LANES]; /* of its surface; set by displaced surfaces and meshes, found by `locate` of the others */
 } hits;
+
+/* Where `take`, ray i has met object `id` at t. */
+static inline void hits_take(hits *h, int i, int take, real t, int32_t id)
+{
+    h->t[i] = take ? t : h->t[i];
+    h->id[i] = take ? id : h->id[i];
+}
 
 /* The starts of rays that leave a surface: the object, the part of its surface, and the place on its smooth shape.
  * There the ray begins for the surface itself, while r is where it begins for all others. */

@@ -38,30 +38,44 @@ static bool is_text(const char *path, const char *text, size_t n, errors *e)
     return text_error(e, path, text, line, column, message);
 }
 
-static char *read_all(const char *path, size_t *size, errors *e)
+/* The bytes of the file, or of the text, with a 0 behind them; owned. NULL: an error is in *e. */
+static char *read_bytes(const char *path, const char *text, size_t *size, errors *e)
 {
-    FILE *f = fopen(path, "rb");
-    char *text = f ? malloc(YAML_MAX_BYTES + 2) : NULL;
-    size_t n = 0;
-    bool good = text != NULL;
-    if (text) {
+    FILE *f = text ? NULL : fopen(path, "rb");
+    const size_t most = YAML_MAX_BYTES + 1, n = text && *size < most ? *size : most;
+    char *bytes = text || f ? malloc(n + 1) : NULL;
+    bool good = bytes != NULL;
+    if (bytes && text)
+        memcpy(bytes, text, *size = n);
+    else if (bytes) {
         errno = 0;
-        n = fread(text, 1, YAML_MAX_BYTES + 1, f);
+        *size = fread(bytes, 1, n, f);
         good = !ferror(f);
-        text[n] = 0;
     }
-    if (!good)
+    if (!good && (text || f) && !bytes)
+        errors_add(e, "%s: out of memory", path);
+    else if (!good)
         errors_add(e, "%s: can't read the scene: %s", path, strerror(errno));
+    else
+        bytes[*size] = 0;
     if (f)
         fclose(f);
-    if (good && n >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0) /* a byte order mark */
-        memmove(text, text + 3, (n -= 3) + 1);
-    if (!good || !is_text(path, text, n, e)) {
+    if (good)
+        return bytes;
+    free(bytes);
+    return NULL;
+}
+
+static char *read_all(const char *path, const char *from, size_t *size, errors *e)
+{
+    char *text = read_bytes(path, from, size, e);
+    if (text && *size >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0) /* a byte order mark */
+        memmove(text, text + 3, (*size -= 3) + 1);
+    if (!text || !is_text(path, text, *size, e)) {
         free(text);
         return NULL;
     }
-    *size = n;
-    char *fit = realloc(text, n + 1);
+    char *fit = realloc(text, *size + 1);
     return fit ? fit : text;
 }
 
@@ -98,7 +112,8 @@ static bool load(yaml *y)
     return good;
 }
 
-yaml *yaml_open(const char *path, int sets, char *const *set, const char *optional, errors *e)
+yaml *yaml_open(const char *path, const char *text, size_t size, int sets, const char *const *set, const char *optional,
+                errors *e)
 {
     yaml *y = calloc(1, sizeof *y);
     if (!y) {
@@ -107,9 +122,13 @@ yaml *yaml_open(const char *path, int sets, char *const *set, const char *option
     }
     y->errors = e;
     y->path = strdup(path);
-    y->text = read_all(path, &y->size, e);
+    y->size = size;
+    y->text = read_all(path, text, &y->size, e);
     y->diag = new_diag();
-    if (!y->path || !y->text || !y->diag || !load(y) || !yaml_change(y, sets, set, optional)) {
+    const bool good = y->path && y->diag;
+    if (!good)
+        errors_add(e, "%s: out of memory", path);
+    if (!good || !y->text || !load(y) || !yaml_change(y, sets, set, optional)) {
         yaml_close(y);
         return NULL;
     }

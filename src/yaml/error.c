@@ -82,7 +82,7 @@ static scalar_style style_of(struct fy_token *token)
     }
 }
 
-bool yaml_tell(yaml *y, const origin *o, int line, int column, const char *message)
+bool yaml_add_error(yaml *y, const origin *o, int line, int column, const char *message)
 {
     const bool set = o && o->set;
     if (set && line == 1)
@@ -108,7 +108,7 @@ static bool error_at(yaml *y, node *at, size_t offset, const char *fmt, va_list 
         const char *text = o && o->set ? o->set + o->start - 1 : y->text;
         text_place(text, text_offset(text, mark->input_pos, style_of(token), offset), &line, &column);
     }
-    return yaml_tell(y, o, line, column, message);
+    return yaml_add_error(y, o, line, column, message);
 }
 
 bool yaml_error_in(yaml *y, node *at, size_t offset, const char *fmt, ...)
@@ -131,7 +131,7 @@ bool yaml_error(yaml *y, node *at, const char *fmt, ...)
 
 /* ---- syntax ---- */
 
-/* libfyaml's words where they leave a person wondering. */
+/* Clearer words for some of libfyaml's messages. */
 static const char *reworded(const char *message)
 {
     static const char *const words[][2] = {
@@ -151,11 +151,11 @@ static const char *reworded(const char *message)
 bool yaml_syntax_errors(yaml *y, const origin *o)
 {
     struct fy_diag_error *k;
-    bool told = false;
+    bool added = false;
     while ((k = yaml_report(y)))
-        if (k->line >= 1 && !told) {
-            yaml_tell(y, o, k->line, k->column, reworded(k->msg));
-            told = true;
+        if (k->line >= 1 && !added) {
+            yaml_add_error(y, o, k->line, k->column, reworded(k->msg));
+            added = true;
         }
-    return told ? false : yaml_tell(y, o, 1, 1, o ? "no value here" : "no scene here, only comments");
+    return added ? false : yaml_add_error(y, o, 1, 1, o ? "no value here" : "no scene here, only comments");
 }

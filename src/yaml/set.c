@@ -1,5 +1,5 @@
-/* --set: changes of the document. What they put in remembers where it came from, so that an error in it shows the
- * setting. */
+/* --set: changes of the document. New nodes remember the setting that they came from, which errors in them then show.
+ */
 #include "yaml/document.h"
 
 #include <libfyaml.h>
@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/spelling.h"
 #include "yaml/text.h"
 
 #define NAME_LETTERS "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-"
@@ -34,7 +35,7 @@ static bool set_error(yaml *y, const char *set, const char *at, const char *fmt,
     vsnprintf(message, sizeof message, fmt, args);
     va_end(args);
     text_place(set, (size_t)(at - set), &line, &column);
-    return yaml_tell(y, &(origin){set, 1, true, line, column}, line, column, message);
+    return yaml_add_error(y, &(origin){set, 1, true, line, column}, line, column, message);
 }
 
 /* Before something in a node changes: keep its place, and those of the nodes around it. */
@@ -57,7 +58,7 @@ static void keep_places(yaml *y, node *at)
     }
 }
 
-/* A new node from a part of a setting, with its origin. NULL: an error is told. */
+/* A new node from a part of a setting, with its origin. NULL: an error is added. */
 static node *made(yaml *y, const char *set, const char *at, size_t n, bool key)
 {
     int line, column;
@@ -115,7 +116,7 @@ static bool step(yaml *y, const char *set, const char *k, size_t n, node *at, co
     *next = fy_node_mapping_lookup_by_string(at, key, n);
     if (*next || last)
         return true;
-    if (root && text_among(key, optional) >= 0) {
+    if (root && spelling_among(key, optional) >= 0) {
         keep_places(y, at);
         *next = fy_node_create_mapping(y->doc);
         fy_node_set_meta(*next, &y->origins[y->count_origins]); /* that of its key */
@@ -124,7 +125,7 @@ static bool step(yaml *y, const char *set, const char *k, size_t n, node *at, co
     keys_of(at, keys, sizeof keys);
     if (!*keys)
         return set_error(y, set, k, "the scene has no '%s' here, there is nothing here", key);
-    text_nearest(key, keys, near, sizeof near);
+    spelling_nearest(key, keys, near, sizeof near);
     if (*near)
         return set_error(y, set, k, "the scene has no '%s' here, did you mean '%s'?", key, near);
     return set_error(y, set, k, "the scene has no '%s' here, expected one of: %s", key, keys);
@@ -172,7 +173,7 @@ static bool apply(yaml *y, const char *set, const char *optional)
            set_error(y, set, set, "can't be set");
 }
 
-bool yaml_change(yaml *y, int sets, char *const *set, const char *optional)
+bool yaml_change(yaml *y, int sets, const char *const *set, const char *optional)
 {
     size_t origins = 1;
     for (int k = 0; k < sets; k++, origins += 5) /* the root, a map, two keys and a value, and what lies on the path */

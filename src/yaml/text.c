@@ -1,3 +1,4 @@
+/* Places in a text, and how an error shows one. */
 #include "yaml/text.h"
 
 #include <stdio.h>
@@ -69,9 +70,9 @@ void text_place(const char *text, size_t at, int *line, int *column)
 bool text_error(errors *e, const char *name, const char *text, int line, int column, const char *message)
 {
     enum { BEFORE = 60, SHOWN = 150, BYTES = 4 };
-    char told[1024], excerpt[SHOWN * BYTES + 1], blank[SHOWN + 1];
+    char shown_message[1024], excerpt[SHOWN * BYTES + 1], blank[SHOWN + 1];
     const char *from = text;
-    copy_shown(told, sizeof told, message, strlen(message));
+    copy_shown(shown_message, sizeof shown_message, message, strlen(message));
     for (int k = 1; k < line; k++) {
         const char *next = from + strcspn(from, "\r\n");
         next += line_end(next);
@@ -101,7 +102,7 @@ bool text_error(errors *e, const char *name, const char *text, int line, int col
             blank[pad++] = *c == '\t' ? '\t' : ' ';
     blank[pad] = 0;
     copy_shown(excerpt, sizeof excerpt, from, length);
-    return errors_add(e, "%s:%d:%d: %s\n%5d | %s\n      | %s^", name, line, column, told, line, excerpt, blank);
+    return errors_add_at(e, name, line, column, shown_message, "\n%5d | %s\n      | %s^", line, excerpt, blank);
 }
 
 /* ---- scalars ---- */
@@ -198,56 +199,4 @@ size_t text_offset(const char *text, size_t start, scalar_style style, size_t of
 {
     return style == SCALAR_LITERAL || style == SCALAR_FOLDED ? block_offset(text, start, style, offset)
                                                              : flow_offset(text, start, style, offset);
-}
-
-/* ---- words ---- */
-
-/* How many letters must be inserted, left out, replaced or swapped with the next to make a of b; up to 31 letters each.
- */
-static int distance(const char *a, size_t n, const char *b, size_t m)
-{
-    int row[3][32];
-    for (size_t i = 0; i <= n; i++)
-        for (size_t j = 0; j <= m; j++) {
-            int *d = row[i % 3], *above = row[(i + 2) % 3], *before = row[(i + 1) % 3];
-            if (i == 0 || j == 0) {
-                d[j] = (int)(i + j);
-                continue;
-            }
-            d[j] = above[j - 1] + (a[i - 1] != b[j - 1]);
-            d[j] = above[j] + 1 < d[j] ? above[j] + 1 : d[j];
-            d[j] = d[j - 1] + 1 < d[j] ? d[j - 1] + 1 : d[j];
-            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] && before[j - 2] + 1 < d[j])
-                d[j] = before[j - 2] + 1;
-        }
-    return row[n % 3][m];
-}
-
-void text_nearest(const char *text, const char *words, char *out, size_t size)
-{
-    int best = (int)(strlen(text) + 2) / 3 + 1; /* nearer than about a third of the word */
-    *out = 0;
-    if (strlen(text) > 31)
-        return;
-    for (const char *w = words; *w;) {
-        size_t n = strcspn(w, " ");
-        int d = n <= 31 ? distance(text, strlen(text), w, n) : best;
-        if (d < best) {
-            best = d;
-            snprintf(out, size, "%.*s", (int)n, w);
-        }
-        w += n + (w[n] == ' ');
-    }
-}
-
-int text_among(const char *word, const char *words)
-{
-    size_t length = strlen(word);
-    for (int i = 0; *words; i++) {
-        size_t n = strcspn(words, " ");
-        if (n == length && strncmp(words, word, n) == 0)
-            return i;
-        words += n + (words[n] == ' ');
-    }
-    return -1;
 }

@@ -1,5 +1,4 @@
-/* Places in a text: lines, columns and what an error shows of them; and the word that was meant. Nothing here knows
- * YAML's library. */
+/* Places in a text: lines and columns, and what an error shows of them. Nothing here knows libfyaml. */
 #ifndef KAGE_YAML_TEXT_H
 #define KAGE_YAML_TEXT_H
 
@@ -24,11 +23,5 @@ bool text_error(errors *e, const char *name, const char *text, int line, int col
 
 /* The first byte that is no UTF-8, or `size`. */
 size_t text_not_utf8(const char *text, size_t size);
-
-/* The index of a word among words separated by spaces, -1 where it is none of them. */
-int text_among(const char *word, const char *words);
-
-/* Writes the words' nearest to `text` into out, or "" where none is near. */
-void text_nearest(const char *text, const char *words, char *out, size_t size);
 
 #endif

@@ -1,4 +1,4 @@
-/* The typed getters: each checks what it hands out, and tells what it expected. */
+/* The typed getters: each checks the value that it returns, and says in its error what it expected. */
 #include "yaml/document.h"
 
 #include <libfyaml.h>
@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "yaml/text.h"
+#include "base/spelling.h"
 
 static bool is_empty(node *at)
 {
@@ -37,12 +37,12 @@ bool yaml_map(yaml *y, node *at, const char *what, const char *keys)
         char near[64];
         node *key = fy_node_pair_key(p);
         const char *text = key && fy_node_is_scalar(key) && !fy_node_is_alias(key) ? fy_node_get_scalar0(key) : NULL;
-        int k = text ? text_among(text, keys) : -1;
+        int k = text ? spelling_among(text, keys) : -1;
         if (k >= 0 && !(seen & 1u << k)) {
             seen |= 1u << k;
             continue;
         }
-        text_nearest(text ? text : "", keys, near, sizeof near);
+        spelling_nearest(text ? text : "", keys, near, sizeof near);
         if (k >= 0)
             good = yaml_error(y, key, "a second '%s' in %s, expected one", text, what);
         else if (!text)
@@ -187,10 +187,10 @@ int yaml_word(yaml *y, node *at, const char *words, const char *what)
     const char *text = yaml_text(y, at, what);
     if (!text)
         return -1;
-    int i = text_among(text, words);
+    int i = spelling_among(text, words);
     if (i >= 0)
         return i;
-    text_nearest(text, words, near, sizeof near);
+    spelling_nearest(text, words, near, sizeof near);
     yaml_error(y, at, "'%.60s' is unknown, expected %s%s%s%s", text, what, *near ? "; did you mean '" : "", near,
                *near ? "'?" : "");
     return -1;

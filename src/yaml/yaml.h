@@ -1,13 +1,12 @@
-/* A YAML file as the scene reader sees it: nodes, and errors that point at them. Only yaml.c, yaml_error.c, yaml_set.c
- * and yaml_value.c include libfyaml.
+/* A YAML file for the scene reader: nodes, and errors that point at them. Only this room includes libfyaml.
  *
- * All getters take the place of an error as a node: a wrong value adds one message to the list given to yaml_open,
+ * A wrong value adds one message to the list given to yaml_open, with the place of the node,
  *
  *     scene.yaml:12:10: what is wrong, expected what was expected
  *        12 |     scale: -1
  *           |            ^
  *
- * and the reader goes on, so that all the errors of a file are told at once.
+ * and the reader goes on, so that all errors of a file are reported at once.
  */
 #ifndef KAGE_YAML_YAML_H
 #define KAGE_YAML_YAML_H
@@ -22,10 +21,11 @@ typedef struct yaml yaml;
 
 enum { YAML_MAX_BYTES = 1 << 22 };
 
-/* Read the file at `path` and make the changes PATH=VALUE (PATH: keys and indices with dots between them; VALUE: YAML).
+/* Read the file at `path`, or the text of that name where `text` is not NULL, and make the changes PATH=VALUE (PATH: keys and indices with dots between them; VALUE: YAML).
  * A change may go into the maps at the top named in `optional` also where the file has none. Errors go to e, from now
  * on. NULL where there is no document to go on with. */
-yaml *yaml_open(const char *path, int sets, char *const *set, const char *optional, errors *e);
+yaml *yaml_open(const char *path, const char *text, size_t size, int sets, const char *const *set, const char *optional,
+                errors *e);
 void yaml_close(yaml *y);
 
 node *yaml_root(const yaml *y);
@@ -40,7 +40,7 @@ bool yaml_map(yaml *y, node *at, const char *what, const char *keys);
 bool yaml_is_map(node *at);
 node *yaml_get(node *map, const char *key);   /* NULL: not there */
 node *yaml_first(node *map, const char *key); /* the key itself; of several of that name the first */
-node *yaml_need(yaml *y, node *map, const char *key, const char *what); /* NULL: an error is told */
+node *yaml_need(yaml *y, node *map, const char *key, const char *what); /* NULL, with an error: not there */
 int yaml_size(node *map);
 node *yaml_pair(node *map, int i, node **key);
 
@@ -55,7 +55,7 @@ bool yaml_bool(yaml *y, node *at, const char *what, bool *x);
 /* n numbers in [ ]. */
 bool yaml_numbers(yaml *y, node *at, int n, double lo, double hi, const char *what, double *x);
 
-/* Lists. yaml_list: how many items; -1: an error is told. */
+/* Lists. yaml_list: the number of items; -1, with an error: it is no list. */
 bool yaml_is_list(node *at);
 int yaml_list(yaml *y, node *at, const char *what);
 node *yaml_item(node *list, int i);

@@ -27,6 +27,11 @@ def select(a, b, c, d=None):
     return b if a < 0 else c if d is None or a == 0 else d
 
 
+def smoothstep(a, b, x):
+    t = min(max((x - a) / (b - a), 0), 1)
+    return t * t * (3 - 2 * t)
+
+
 def mix(h):
     h = (h ^ h >> 16) * 0x7FEB352D % 2**32
     h = (h ^ h >> 15) * 0x846CA68B % 2**32
@@ -54,6 +59,7 @@ NAMES = dict(
     sin=mp.sin, cos=mp.cos, tan=mp.tan, asin=mp.asin, acos=mp.acos, atan=mp.atan, atan2=mp.atan2,
     sinh=mp.sinh, cosh=mp.cosh, tanh=mp.tanh, exp=mp.exp, log=mp.log, sqrt=mp.sqrt, floor=mp.floor,
     abs=abs, min=min, max=max, pow=lambda a, b: mpf(a) ** b, mod=mod, noise=noise, select=select,
+    smoothstep=smoothstep,
     clamp=lambda x, lo, hi: min(max(x, lo), hi), pi=mpf(math.pi))
 
 # text, range of u, range of w, points
@@ -114,6 +120,9 @@ CASES = [
     ("sin(u*w)*tanh(u - w) + log(3 + u*sin(w))", (-1, 1), (-2, 2), 30),
     ("atan2(sinh(u) + 3, cosh(w))*asin(0.5*sin(u + w))", (-2, 2), (-2, 2), 30),
     ("acos(u*w/5)^2 - tan(u/3)*atan(w)^3", (-2, 2), (-2, 2), 30),
+    ("smoothstep(-1.5, 2, u)", (-3, 3), (-1, 1), 30),
+    ("smoothstep(u*w, 2 + w*w, sin(u) + w)", (-1, 1), (-2, 2), 50),
+    ("0.1*smoothstep(0.75, 0.25, u^2 + w^2)", (-1, 1), (-1, 1), 30),
 ]
 ORDERS = [(0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2)]
 

@@ -82,6 +82,18 @@ def test_clamped_ramp_is_the_function(tmp_path: Path, method: str) -> None:
         assert np.abs(got[name] - want[name])[away].max() < 1e-4, name
 
 
+@pytest.mark.parametrize("method", ["0", "1", "2", "march:4"])
+def test_smoothstep_is_the_polynomial(tmp_path: Path, method: str) -> None:
+    """The same pictures by smoothstep and by its definition, with a and b that vary."""
+    t, at = "clamp((u - 0.3*w)/(1 - 0.3*w), 0, 1)", ["--shadow", method, "--size", "160x120"]
+    want = render(tmp_path, SCENE.format(ground=FLAT, bump=f', bump: {{function: "0.2*{t}^2*(3 - 2*{t})"}}'), *at)
+    got = render(tmp_path, SCENE.format(ground=FLAT, bump=', bump: {function: "0.2*smoothstep(0.3*w, 1, u)"}'), *at)
+    assert (np.abs(want["N.X"]) > 0.01).sum() > 1000
+    for name in ("N.X", "N.Y", "N.Z", "height"):
+        assert np.abs(got[name] - want[name])[ground(want)].max() < 1e-5, name
+    assert shadows_differ(got, want)[0] <= 3
+
+
 @pytest.mark.parametrize("method", ["march:1", "march:4"])
 @pytest.mark.parametrize("function", ["0.1*sqrt(u^2+w^2)", "-0.1*sqrt(u^2+w^2)", "0.01*u^2", "0.3*exp(u)", "0.1*u"])
 def test_march_without_a_bound_is_order_0(tmp_path: Path, method: str, function: str) -> None:

@@ -64,8 +64,8 @@ REPLACED = [
      "5:60: an area of a parallel light, expected a point light or a spot"),
     ("material-key", "diffuse: 0.8", "difuse: 0.8", "7:48: a material has no 'difuse', did you mean 'diffuse'?"),
     ("object-key", "    box: {", "    brick: {",
-     "19:5: an object has no 'brick', expected one of: plane rectangle disc box sphere cylinder cone torus parametric "
-     "patches mesh material bump transform copy"),
+     "19:5: an object has no 'brick', expected one of: plane rectangle disc box sphere cylinder cone torus ellipsoid "
+     "parametric patches mesh material bump transform copy"),
     ("plane-key", "u: [0, 0, 1]", "U: [0, 0, 1]", "10:32: plane has no 'U', did you mean 'u'?"),
     ("box-key", "to: [0, 1.5", "too: [0, 1.5", "19:32: box has no 'too', did you mean 'to'?"),
     ("sphere-key", "radius: 0.5", "r: 0.5", "22:33: sphere has no 'r', expected one of: center radius"),
@@ -181,7 +181,7 @@ REPLACED = [
     ("image-exr-rg", "color: [0.8, 0.7, 0.6]", "color: {image: {file: rg.exr, size: [1, 1]}}",
      "7:32: 'rg.exr' can't be used: not all of the channels R, G and B are there"),
     ("image-encoding", "color: [0.8, 0.7, 0.6]", "color: {image: {file: color.png, encoding: sRGB, size: [1, 1]}}",
-     "7:53: 'sRGB' is unknown, expected srgb or linear"),
+     "7:53: 'sRGB' is unknown, expected srgb or linear; did you mean 'srgb'?"),
     ("image-interpolation", "color: [0.8, 0.7, 0.6]",
      "color: {image: {file: color.png, interpolation: cubic, size: [1, 1]}}",
      "7:58: 'cubic' is unknown, expected bilinear or nearest"),
@@ -285,6 +285,10 @@ REPLACED = [
      "22:11: a cone without thickness, expected a radius of 1e-6 or more at one end"),
     ("cone-flat", BALL, "cone: {from: [0, 0, 0], from_radius: 1, to: [0, 0, 0], to_radius: 0}",
      "22:49: a cone without length, expected 'to' apart from 'from'"),
+    ("ellipsoid-flat", BALL, "ellipsoid: {center: [0, 0, 0], radii: [1, 0, 2]}",
+     "22:43: a radius that is not above 0, expected three of 1e-6 to 1e6"),
+    ("ellipsoid-radii", BALL, "ellipsoid: {center: [0, 0, 0], radii: 2}",
+     "22:43: a single value, expected the radii along x, y and z"),
     ("torus-key", BALL, "torus: {center: [0, 0, 0], axis: [0, 1, 0], mayor: 1, minor: 0.5}",
      "22:49: torus has no 'mayor', did you mean 'major'?"),
     ("torus-no-axis", BALL, "torus: {center: [0, 0, 0], major: 1, minor: 0.5}",
@@ -353,8 +357,8 @@ REPLACED = [
      "    sphere: {center: [1, 1, 0], radius: 0.5}",
      "22:5: an object lacks its 'material'"),
     ("no-shape", "    sphere: {center: [1, 1, 0], radius: 0.5}\n", "",
-     "22:5: an object lacks its shape, expected one of: plane rectangle disc box sphere cylinder cone torus parametric "
-     "patches mesh"),
+     "22:5: an object lacks its shape, expected one of: plane rectangle disc box sphere cylinder cone torus ellipsoid "
+     "parametric patches mesh"),
     ("two-shapes", "    sphere: {", "    box: {from: [0, 0, 0], to: [1, 1, 1]}\n    sphere: {",
      "23:13: a second shape, 'sphere' beside 'box', expected one"),
     ("unknown-material", "radius: 0.5}\n    material: clay", "radius: 0.5}\n    material: caly",

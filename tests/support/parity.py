@@ -53,6 +53,7 @@ ROUND_ONES = {
     "pointed cone": "cone: {from: [-0.2, 0, 0.2], from_radius: 1, to: [0.1, 1.8, 0.1], to_radius: 0}",
     "open cone": "cone: {from: [0.1, 0.1, 0.2], from_radius: 0.4, to: [0.1, 1.2, 0.1], to_radius: 1.1, open: true}",
     "torus": "torus: {center: [0, 0.7, 0], axis: [0.2, 1, -0.3], major: 1, minor: 0.4}",
+    "ellipsoid": "ellipsoid: {center: [0, 0.8, 0], radii: [1.2, 0.6, 0.8]}",
     "standing torus": "torus: {center: [0, 1, 0], axis: [0.4, 0, 1], major: 0.8, minor: 0.2}",
 }
 #: Transforms of what is about 1 in size, at the origin.
@@ -69,6 +70,7 @@ PLAIN = {
     "cylinder": "cylinder: {from: [0.1, -0.8, 0], to: [-0.1, 0.8, 0.1], radius: 0.8}",
     "cone": "cone: {from: [0, -0.8, 0], from_radius: 1, to: [0.1, 0.9, 0.1], to_radius: 0.3}",
     "torus": "torus: {center: [0, 0, 0.1], axis: [0.2, 1, 0.1], major: 0.8, minor: 0.35}",
+    "ellipsoid": "ellipsoid: {center: [0.1, 0, -0.1], radii: [1, 0.5, 0.7]}",
     "rectangle": "rectangle: {origin: [-1, 0, -1], u: [2, 0.3, 0], w: [0.2, 0, 2.1]}",
     "disc": "disc: {center: [0.1, 0, 0], normal: [0.2, 1, 0.3], radius: 1}",
 }
@@ -265,7 +267,7 @@ SECONDARY = {
                             TILED + SHEET.replace("MATERIAL", "stained") + SIDE),
     **{f"{material} {name}": (CAMERA, LIGHTS, 6, f"{TILED}{SIDE}  it: {{{ROUND_ONES[name]}, material: {material}}}\n")
        for material, name in (("mirror", "torus"), ("glass", "torus"), ("clear", "standing torus"),
-                              ("glass", "cylinder"),
+                              ("glass", "cylinder"), ("glass", "ellipsoid"),
                               ("pane", "open cylinder"), ("mirror", "cone"), ("clear", "pointed cone"),
                               ("gold", "open cone"),
                               ("mirror", "disc"), ("pane", "disc"), ("stained", "cylinder"), ("printed", "torus"))},
@@ -346,6 +348,8 @@ CUBE = "box: {from: [-1, 0, -1], to: [1, 1.2, 1]}"
 DISPLACED = {
     "plane": (PLANE, FUNCTION, "isosurface"),
     "skewed rectangle": (SKEWED, "{function: '0.1*sin(9*u)*sin(11*w)', scale: -0.8}", "isosurface"),
+    "terraces": (SKEWED, "{function: '0.03*(smoothstep(0.25, 0.15, abs(u - 0.5)) + smoothstep(0, 0.2, w - 0.3*u))'}",
+                 "isosurface"),
     "box": (CUBE, "{function: '0.04*sin(12*u)*sin(10*w)'}", "isosurface"),
     "sphere": (GLOBE, ROUND, "isosurface"),
     "sphere, steep at its poles": (GLOBE, "{function: '0.04*sin(8*u)*sin(6*w)'}", "isosurface"),
@@ -446,6 +450,7 @@ CHECKER = "{checker: {even: [0.9, 0.8, 0.7], odd: [0.1, 0.2, 0.4], size: [0.25, 
 SHEETS_COLORS = {
     "checker waves": (CHECKER, SHEETS["waves"]),
     "image waves": ("{image: {file: color.png}}", SHEETS["waves"]),
+    "checker ellipsoid": (CHECKER.replace("0.25, 0.2", "0.5, 0.4"), ROUND_ONES["ellipsoid"]),
     "image moebius": ("{image: {file: color.png, size: [2.5, 0.7], offset: [0.4, 0.3]}}", SHEETS["moebius"]),
     "checker shell": (CHECKER.replace("0.25, 0.2", "0.5, 0.4"), SHEETS["shell"]),
     "image saddle, nearest": ("{image: {file: color.png, interpolation: nearest, wrap: clamp}}", SHEETS["saddle"]),
@@ -470,6 +475,8 @@ SHEETS_DISPLACED = {
     "moebius": (SHEETS["moebius"], "{function: '0.02*sin(9*u)*sin(9*w)'}"),
     "saddle": (SHEETS["saddle"], "{function: '0.03*sin(18*u)*sin(18*w)'}"),
     "stretched sphere": (moved("sphere", "stretched"), ROUND),
+    "ellipsoid": (ROUND_ONES["ellipsoid"], ROUND),
+    "moved ellipsoid": (moved("ellipsoid", "moved"), ROUND),
     "sheared torus": (moved("torus", "sheared"), WAVES),
     "stretched open cone": ("cone: {from: [0, -0.8, 0], from_radius: 1, to: [0.1, 0.9, 0.1], to_radius: 0.3, open: "
                             "true}\n"
@@ -517,13 +524,13 @@ class Scene:
 
 
 COLUMNS = ("smooth", "colours", "mirror, glass", "displaced", "own shadows")
-ROWS = ("plane", "rectangle", "disc", "box", "sphere", "cylinder", "cone", "torus", "parametric", "patches",
-        "moved, copied", "lights", "cameras")
+ROWS = ("plane", "rectangle", "disc", "box", "sphere", "cylinder", "cone", "torus", "ellipsoid", "parametric",
+        "patches", "moved, copied", "lights", "cameras")
 
 
 def surface_in(text: str) -> str:
     """The last surface that an object's text has: what the scene is about comes after the floor."""
-    return max((kind for kind in ROWS[:10] if f"{kind}:" in text), key=lambda kind: text.rindex(f"{kind}:"))
+    return max((kind for kind in ROWS[:11] if f"{kind}:" in text), key=lambda kind: text.rindex(f"{kind}:"))
 
 
 def plain(row: str, name: str, camera: str, lights: str, objects: str) -> Scene:
@@ -601,7 +608,7 @@ def displaced_ones() -> Iterator[Scene]:
                             ("--surface", "displaced", *(["--no-self-shadow"] if column == "displaced" else [])), least,
                             shape=made)
     for name, (shape, bump) in SHEETS_DISPLACED.items():
-        size = (48, 36) if name == "stretched sphere" else (80, 60)  # that is slow
+        size = (48, 36) if name in ("stretched sphere", "ellipsoid", "moved ellipsoid") else (80, 60)  # that is slow
         yield Scene(surface_in(shape), "own shadows", name, HEAD.format(camera=CAMERA, lights=LIGHTS)
                     + f"{FLOOR}  rough:\n    {shape}\n    material: shiny\n    bump: {bump}\n", size,
                     ("--surface", "displaced"), 0.995,

@@ -155,6 +155,7 @@ static void random_expr(char *text, size_t size, int depth, bool smooth)
                                         "(%)^0.7",
                                         "atan2(%,%)",
                                         "mod(%,%)",
+                                        "smoothstep(%,%,%)",
                                         "cosh(%)",
                                         "sinh(%)"};
     size_t n = strlen(text);
@@ -369,6 +370,11 @@ static void test_range_tight(void **state)
     check_range("select(u,5,w)", 1, 2, 0, 1, 0, 1);
     check_range("select(u,5,w)", -1, 2, 0, 1, 0, 5);
     check_range("select(u,5,w,9)", 0, 2, 0, 1, 0, 9);
+    check_range("smoothstep(0,1,u)", -1, 2, 0, 0, 0, 1);
+    check_range("smoothstep(0,1,u)", 0.25, 0.5, 0, 0, 0.15625, 0.5);
+    check_range("smoothstep(3,1,u)", 1.5, 2, 0, 0, 0.5, 0.84375);
+    check_range("smoothstep(0,1,u)", 2, 3, 0, 0, 1, 1);
+    check_range("smoothstep(w,1,u)", 2, 3, 0, 1, 0, 1); /* where w = 1 it is a step */
     check_range("atan2(w,u)", -1, 1, 1, 2, pi / 4, 3 * pi / 4);
     check_range("atan2(w,u)", -1, 1, -1, 1, -pi, pi);
     check_range("noise(u,w)", -inf, inf, -inf, inf, -1, 1);
@@ -518,6 +524,11 @@ static void test_gradient_tight(void **state)
     check_gradient("atan2(w,u)", 1, 2, 0, 0, 0, 0, 0.25, 1);
     check_gradient("atan2(w,u)", -inf, inf, 2, inf, -0.5, 0, -0.5, 0.5);
     check_gradient("noise(2*u,w)", -inf, inf, -inf, inf, -5.86, 5.86, -2.93, 2.93);
+    check_gradient("smoothstep(1,3,u)", -inf, inf, 0, 0, 0, 0.75, 0, 0);
+    check_gradient("smoothstep(1,3,u)", 1, 1.5, 0, 0, 0, 0.5625, 0, 0);
+    check_gradient("smoothstep(1,3,u)", 3, 4, 0, 0, 0, 0, 0, 0);
+    check_gradient("smoothstep(w,3,u)", 2, 2, 1, 1, 0.75, 0.75, -0.375, -0.375);
+    check_gradient("smoothstep(1,w,u)", 2, 2, 3, 3, 0.75, 0.75, -0.375, -0.375);
     /* kinks: the slopes of both sides */
     check_gradient("abs(u)", -1, 2, 0, 0, -1, 1, 0, 0);
     check_gradient("abs(u)", 0, 2, 0, 0, 0, 1, 0, 0);
@@ -553,6 +564,7 @@ static void test_gradient_infinite(void **state)
     check_gradient("mod(u,w)", 7, 7.5, 2, 3, -inf, inf, -inf, inf);
     check_gradient("mod(u,w)", 0, 1, -1, 1, -inf, inf, -inf, inf);
     check_gradient("select(u,2,3)", -1, 1, 0, 0, -inf, inf, 0, 0);
+    check_gradient("smoothstep(1,1,u)", 0, 2, 0, 0, -inf, inf, 0, 0);
     check_gradient("select(u,2,3)", -1, 0, 0, 0, -inf, inf, 0, 0);
     check_gradient("select(u,2*w,3*w)", -1, 1, 0, 1, -inf, inf, 2, 3);
     check_gradient("select(u,4,5,4)", -1, 1, 0, 0, -inf, inf, 0, 0);
@@ -647,6 +659,14 @@ static void test_edges(void **state)
     check_jet("select(u,1,w,u*u)", -2, 7, 1, 0, 0, 0, 0, 0);
     check_jet("select(u,1,w,u*u)", 0, 7, 7, 0, 1, 0, 0, 0);
     check_jet("select(u,1,w,u*u)", 2, 7, 4, 4, 0, 2, 0, 0);
+    check_jet("smoothstep(1,3,u)", 2, 0, 0.5, 0.75, 0, 0, 0, 0);
+    check_jet("smoothstep(1,3,u)", 1.5, 0, 0.15625, 0.5625, 0, 0.75, 0, 0);
+    check_jet("smoothstep(1,3,u)", 1, 0, 0, 0, 0, 0, 0, 0);
+    check_jet("smoothstep(1,3,u)", 3, 0, 1, 0, 0, 0, 0, 0);
+    check_jet("smoothstep(u,w,2)", 1, 3, 0.5, -0.375, -0.375, -0.375, 0, 0.375);
+    check_jet("smoothstep(w,u,3)", 1, 1, 1, 0, 0, 0, 0, 0); /* b = a: a step */
+    check_jet("smoothstep(w,u,0)", 1, 1, 0, 0, 0, 0, 0, 0);
+    check_jet("smoothstep(1,3,log(u))", -1, 0, nan_, nan_, 0, nan_, 0, 0);
     check_jet("log(u)", -1, 0, nan_, -1, 0, -1, 0, 0);
     check_jet("max(log(u),0)", -1, 0, nan_, nan_, 0, nan_, 0, 0);
     check_jet("select(log(u),0,1)", -1, 0, nan_, 0, 0, 0, 0, 0);

@@ -1,23 +1,15 @@
 /* Surfaces: hits lie on Q(u,w), partials are the derivatives of Q, n points outward, shadows agree with hits, and rays
  * without sense do no harm.
  */
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "base/frame.h"
-#include "wave/lane.h"
-#include "support/check.h"
-#include "support/random_rays.h"
 #include "geometry/surface.h"
+#include "support/properties.h"
+#include "support/random_rays.h"
+#include "wave/lane.h"
 
-/* Digits of a place a few units from the origin. */
 enum { PLANE, RECTANGLE, BOX, SPHERE, DISC, DRUM, TUBE, BELL, CUP, HAT, TORUS, THIN, KINDS };
 
 /* The surfaces with an inside that no ray from outside sees, and those of them that never shade themselves from
@@ -27,6 +19,11 @@ static bool is_closed(int kind)
     return kind != PLANE && kind != RECTANGLE && kind != DISC && kind != TUBE && kind != CUP;
 }
 static bool is_convex(int kind) { return is_closed(kind) && kind != TORUS && kind != THIN; }
+
+static bool is_flat(int kind) { return kind == PLANE || kind == RECTANGLE || kind == DISC; }
+
+static const char *const NAMES[KINDS] = {"plane", "rectangle", "box", "sphere", "disc",  "drum",
+                                         "tube",  "bell",      "cup", "hat",    "torus", "thin torus"};
 
 static surface *make(int kind)
 {
@@ -66,93 +63,83 @@ static double distance(bs_vec3 a, bs_vec3 b)
 
 static void hits_are_on_the_surface(void **state)
 {
-    (void)state;
-    for (int kind = 0; kind < KINDS; kind++) {
-        surface *f = make(kind);
-        int met = 0;
-        for (int round = 0; round < 40; round++) {
-            static rays x;
-            static hits h;
-            static partials q;
-            int32_t part[LANES];
-            real u[LANES], w[LANES];
-            for (int i = 0; i < LANES; i++)
-                random_ray(&x, i, 1);
-            no_hits(&h, LANES);
-            f->ops->hit(f, LANES, &x, 3, &h);
-            f->ops->locate(f, LANES, &x, h.t, part, u, w);
-            f->ops->eval(f, LANES, part, u, w, 2, &q);
-            for (int i = 0; i < LANES; i++) {
-                if (h.id[i] < 0)
-                    continue;
-                met++;
-                assert_int_equal(h.id[i], 3);
-                CHECK(h.t[i], >, 0);
-                CHECK(h.t[i], <, REAL_FAR);
-                double far = 1 + distance(lane_at(&x, i, 0), lane_at(&x, i, h.t[i]));
-                double off = distance(lane_get(&q.Q, i), lane_at(&x, i, h.t[i]));
-                if (!(off <= 24 * EPS * far)) {
-                    print_error("%s: Q(u,w) is %g off r + s t\n", f->ops->kind, off);
-                    fail();
-                }
-                /* on what is closed, seen from outside, the first hit's n faces the viewer */
-                bs_vec3 n = bs_normal(lane_get(&q.Qu, i), lane_get(&q.Qw, i));
-                if (is_closed(kind))
-                    CHECK(bs_dot(n, lane_get(&x.s, i)), <, R(1e-4));
-            }
+    const int kind = *(const int *)*state;
+    surface *f = make(kind);
+    int met = 0;
+    for (int round = 0; round < 40; round++) {
+        static rays x;
+        static hits h;
+        static partials q;
+        int32_t part[LANES];
+        real u[LANES], w[LANES];
+        for (int i = 0; i < LANES; i++)
+            random_ray(&x, i, 1);
+        no_hits(&h, LANES);
+        f->ops->hit(f, LANES, &x, 3, &h);
+        f->ops->locate(f, LANES, &x, h.t, part, u, w);
+        f->ops->eval(f, LANES, part, u, w, 2, &q);
+        for (int i = 0; i < LANES; i++) {
+            if (h.id[i] < 0)
+                continue;
+            met++;
+            assert_int_equal(h.id[i], 3);
+            CHECK(h.t[i], >, 0);
+            CHECK(h.t[i], <, REAL_FAR);
+            double far = 1 + distance(lane_at(&x, i, 0), lane_at(&x, i, h.t[i]));
+            double off = distance(lane_get(&q.Q, i), lane_at(&x, i, h.t[i]));
+            CHECK(off, <=, 24 * EPS * far);
+            /* on what is closed, seen from outside, the first hit's n faces the viewer */
+            bs_vec3 n = bs_normal(lane_get(&q.Qu, i), lane_get(&q.Qw, i));
+            if (is_closed(kind))
+                CHECK(bs_dot(n, lane_get(&x.s, i)), <, R(1e-4));
         }
-        assert_true(met > (kind == THIN ? 200 : 500));
-        surface_free(f);
     }
+    CHECK(met, >, (kind == THIN ? 200 : 500));
+    surface_free(f);
 }
 
 static void partials_are_derivatives(void **state)
 {
-    (void)state;
+    const int kind = *(const int *)*state;
     const double h = sqrt(EPS) * 0.3; /* balances the curve's error, h^2, and the rounding, EPS/h */
-    for (int kind = 0; kind < KINDS; kind++) {
-        surface *f = make(kind);
-        for (int round = 0; round < 200; round++) {
-            static partials q[5];
-            real u[1], w[1];
-            int32_t part[1] = {round % f->ops->parts};
-            double u0 = random_in(0.3, 0.7), w0 = random_in(0.4, 0.6), du[5] = {0, h, -h, 0, 0},
-                   dw[5] = {0, 0, 0, h, -h};
-            double du_[5], dw_[5];
-            if (kind != PLANE) {
-                double U[2], W[2];
-                f->ops->extent(f, part[0], U, W);
-                u0 = random_in(U[0] + 0.1, U[1] - 0.1), w0 = random_in(W[0] + 0.1, W[1] - 0.1);
-                if (!(U[0] < U[1])) /* a hat has no upper cap */
-                    continue;
-            }
-            for (int k = 0; k < 5; k++) {
-                u[0] = (real)(u0 + du[k]);
-                w[0] = (real)(w0 + dw[k]);
-                du_[k] = (double)u[0];
-                dw_[k] = (double)w[0];
-                f->ops->eval(f, 1, part, u, w, 2, &q[k]);
-            }
-            const struct {
-                vec3s *a, *b, *want;
-                double step;
-            } tests[] = {
-                {&q[1].Q, &q[2].Q, &q[0].Qu, du_[1] - du_[2]},    {&q[3].Q, &q[4].Q, &q[0].Qw, dw_[3] - dw_[4]},
-                {&q[1].Qu, &q[2].Qu, &q[0].Quu, du_[1] - du_[2]}, {&q[3].Qu, &q[4].Qu, &q[0].Quw, dw_[3] - dw_[4]},
-                {&q[1].Qw, &q[2].Qw, &q[0].Quw, du_[1] - du_[2]}, {&q[3].Qw, &q[4].Qw, &q[0].Qww, dw_[3] - dw_[4]},
-            };
-            for (int k = 0; k < 6; k++) {
-                bs_vec3 a = lane_get(tests[k].a, 0), b = lane_get(tests[k].b, 0), c = lane_get(tests[k].want, 0);
-                bs_vec3 d = {(real)((double)(a.x - b.x) / tests[k].step), (real)((double)(a.y - b.y) / tests[k].step),
-                             (real)((double)(a.z - b.z) / tests[k].step)};
-                if (!(distance(d, c) < 20 * sqrt(EPS))) {
-                    print_error("%s: derivative %d is off by %g\n", f->ops->kind, k, distance(d, c));
-                    fail();
-                }
-            }
+    surface *f = make(kind);
+    for (int round = 0; round < 200; round++) {
+        static partials q[5];
+        real u[1], w[1];
+        int32_t part[1] = {round % f->ops->parts};
+        double u0 = random_in(0.3, 0.7), w0 = random_in(0.4, 0.6), du[5] = {0, h, -h, 0, 0}, dw[5] = {0, 0, 0, h, -h};
+        double du_[5], dw_[5];
+        if (kind != PLANE) {
+            double U[2], W[2];
+            f->ops->extent(f, part[0], U, W);
+            u0 = random_in(U[0] + 0.1, U[1] - 0.1), w0 = random_in(W[0] + 0.1, W[1] - 0.1);
+            if (!(U[0] < U[1])) /* a hat has no upper cap */
+                continue;
         }
-        surface_free(f);
+        for (int k = 0; k < 5; k++) {
+            u[0] = (real)(u0 + du[k]);
+            w[0] = (real)(w0 + dw[k]);
+            du_[k] = (double)u[0];
+            dw_[k] = (double)w[0];
+            f->ops->eval(f, 1, part, u, w, 2, &q[k]);
+        }
+        const struct {
+            vec3s *a, *b, *want;
+            double step;
+        } tests[] = {
+            {&q[1].Q, &q[2].Q, &q[0].Qu, du_[1] - du_[2]},    {&q[3].Q, &q[4].Q, &q[0].Qw, dw_[3] - dw_[4]},
+            {&q[1].Qu, &q[2].Qu, &q[0].Quu, du_[1] - du_[2]}, {&q[3].Qu, &q[4].Qu, &q[0].Quw, dw_[3] - dw_[4]},
+            {&q[1].Qw, &q[2].Qw, &q[0].Quw, du_[1] - du_[2]}, {&q[3].Qw, &q[4].Qw, &q[0].Qww, dw_[3] - dw_[4]},
+        };
+        for (int k = 0; k < 6; k++) {
+            bs_vec3 a = lane_get(tests[k].a, 0), b = lane_get(tests[k].b, 0), c = lane_get(tests[k].want, 0);
+            bs_vec3 d = {(real)((double)(a.x - b.x) / tests[k].step), (real)((double)(a.y - b.y) / tests[k].step),
+                         (real)((double)(a.z - b.z) / tests[k].step)};
+            if (!(distance(d, c) < 20 * sqrt(EPS)))
+                fail_msg("derivative %d is off by %g", k, distance(d, c));
+        }
     }
+    surface_free(f);
 }
 
 /* Every face of the box has its own (u,w) over 0..1 and n outward; the six cover it. */
@@ -182,199 +169,254 @@ static void box_faces(void **state)
 /* occlude says 0 just where a hit lies in (0,1). */
 static void shadows_agree_with_hits(void **state)
 {
-    (void)state;
-    for (int kind = 0; kind < KINDS; kind++) {
-        surface *f = make(kind);
-        int dark = 0;
-        for (int round = 0; round < 20; round++) {
-            static rays x;
-            static hits h;
-            real lit[LANES];
-            for (int i = 0; i < LANES; i++) {
-                random_ray(&x, i, 1);
-                lit[i] = 1;
-            }
-            no_hits(&h, LANES);
-            f->ops->hit(f, LANES, &x, 0, &h);
-            f->ops->occlude(f, LANES, &x, lit);
-            for (int i = 0; i < LANES; i++) {
-                assert_true(lit[i] == (h.id[i] >= 0 && h.t[i] < 1 ? R(0) : R(1)));
-                dark += lit[i] == 0;
-            }
-            /* what is dark already stays so */
-            for (int i = 0; i < LANES; i++)
-                lit[i] = 0;
-            f->ops->occlude(f, LANES, &x, lit);
-            for (int i = 0; i < LANES; i++)
-                CHECK(lit[i], ==, 0);
+    surface *f = make(*(const int *)*state);
+    int dark = 0;
+    for (int round = 0; round < 20; round++) {
+        static rays x;
+        static hits h;
+        real lit[LANES];
+        for (int i = 0; i < LANES; i++) {
+            random_ray(&x, i, 1);
+            lit[i] = 1;
         }
-        CHECK(dark, >, 100);
-        surface_free(f);
+        no_hits(&h, LANES);
+        f->ops->hit(f, LANES, &x, 0, &h);
+        f->ops->occlude(f, LANES, &x, lit);
+        for (int i = 0; i < LANES; i++) {
+            const bool met = h.id[i] >= 0 && h.t[i] < 1;
+            CHECK(lit[i], ==, !met);
+            dark += met;
+        }
+    }
+    CHECK(dark, >, 100);
+    surface_free(f);
+}
+
+static void dark_stays_dark(void **state)
+{
+    surface *f = make(*(const int *)*state);
+    static rays x;
+    real lit[LANES] = {0};
+    for (int i = 0; i < LANES; i++)
+        random_ray(&x, i, 1);
+    f->ops->occlude(f, LANES, &x, lit);
+    for (int i = 0; i < LANES; i++)
+        CHECK(lit[i], ==, 0);
+    surface_free(f);
+}
+
+static void only_flat_ones_cannot_shade_themselves(void **state)
+{
+    const int kind = *(const int *)*state;
+    surface *f = make(kind);
+    CHECK(f->ops->occlude_own == NULL, ==, is_flat(kind));
+    surface_free(f);
+}
+
+/* Random points of a surface, as rays from outside hit them. */
+typedef struct points {
+    int n;
+    rays x; /* these rays */
+    real t[LANES];
+    int32_t part[LANES];
+    bs_vec3 at[LANES], normal[LANES]; /* the normal a unit vector */
+} points;
+
+static void random_points(const surface *f, points *p)
+{
+    static hits h;
+    static partials q;
+    real u[LANES], w[LANES];
+    for (int i = 0; i < LANES; i++)
+        random_ray(&p->x, i, 1);
+    no_hits(&h, LANES);
+    f->ops->hit(f, LANES, &p->x, 0, &h);
+    p->n = 0;
+    for (int i = 0; i < LANES; i++)
+        if (h.id[i] >= 0) {
+            bs_vec3 r = lane_get(&p->x.r, i), s = lane_get(&p->x.s, i);
+            lane_set(&p->x.r, p->n, r);
+            lane_set(&p->x.s, p->n, s);
+            p->t[p->n++] = h.t[i];
+        }
+    f->ops->locate(f, p->n, &p->x, p->t, p->part, u, w);
+    f->ops->eval(f, p->n, p->part, u, w, 1, &q);
+    for (int i = 0; i < p->n; i++) {
+        p->at[i] = lane_at(&p->x, i, p->t[i]);
+        p->normal[i] = lane_unit(bs_normal(lane_get(&q.Qu, i), lane_get(&q.Qw, i)));
     }
 }
 
-/* From the surface itself: rays outward are free, rays inward are blocked by the far side, however slanted, unless they
- * end before it; with no epsilon that a grazing ray could fall under. */
-static void own_shadow(void **state)
+static bs_vec3 random_direction(void)
 {
-    (void)state;
-    for (int kind = 0; kind < KINDS; kind++) {
-        if (!is_convex(kind))
-            continue;
-        surface *f = make(kind);
-        for (int round = 0; round < 40; round++) {
-            static rays x, out;
-            static hits h;
-            static partials q;
-            int32_t part[LANES];
-            real u[LANES], w[LANES], lit[LANES], cosine[LANES];
-            int n = 0;
-            for (int i = 0; i < LANES; i++)
-                random_ray(&x, i, 1);
-            no_hits(&h, LANES);
-            f->ops->hit(f, LANES, &x, 0, &h);
-            for (int i = 0; i < LANES; i++)
-                if (h.id[i] >= 0) {
-                    bs_vec3 r = lane_at(&x, i, 0), s = lane_get(&x.s, i);
-                    lane_set(&x.r, n, r);
-                    lane_set(&x.s, n, s);
-                    h.t[n++] = h.t[i];
-                }
-            f->ops->locate(f, n, &x, h.t, part, u, w);
-            f->ops->eval(f, n, part, u, w, 1, &q);
-            for (int i = 0; i < n; i++) {
-                bs_vec3 d = {(real)random_in(-9, 9), (real)random_in(-9, 9), (real)random_in(-9, 9)};
-                bs_vec3 nn = lane_unit(bs_normal(lane_get(&q.Qu, i), lane_get(&q.Qw, i)));
-                if (round % 4 == 0) { /* grazing: 1e-3 to either side of the tangent plane */
-                    real c = bs_dot(d, nn) - (i % 2 ? R(1e-3) : R(-1e-3));
-                    d.x -= c * nn.x, d.y -= c * nn.y, d.z -= c * nn.z;
-                }
-                cosine[i] = bs_dot(d, nn);
-                lane_set(&out.r, i, lane_at(&x, i, h.t[i]));
-                lane_set(&out.s, i, d);
-                lit[i] = 1;
+    bs_vec3 d = {(real)random_in(-9, 9), (real)random_in(-9, 9), (real)random_in(-9, 9)};
+    return d;
+}
+
+/* Segments from points of a convex surface: which are lit that leave it, or that enter it and are longer than it is
+ * wide. In every fourth round they are within 1e-3 of the tangent plane: there is no epsilon that these could fall
+ * under. */
+static void own_segments(int kind, bool outward)
+{
+    surface *f = make(kind);
+    int some = 0;
+    for (int round = 0; round < 40; round++) {
+        static points p;
+        static rays out;
+        real lit[LANES], cosine[LANES], length[LANES];
+        random_points(f, &p);
+        for (int i = 0; i < p.n; i++) {
+            bs_vec3 d = random_direction(), n = p.normal[i];
+            if (round % 4 == 0) {
+                real c = bs_dot(d, n) - (i % 2 ? R(1e-3) : R(-1e-3));
+                d.x -= c * n.x, d.y -= c * n.y, d.z -= c * n.z;
             }
-            f->ops->occlude_own(f, n, &out, part, lit);
-            for (int i = 0; i < n; i++) {
-                double length = (double)real_sqrt(bs_dot(lane_get(&out.s, i), lane_get(&out.s, i)));
-                if (cosine[i] > R(1e-4))
-                    CHECK(lit[i], ==, 1);
-                else if ((double)cosine[i] < -1e-4 && length > 4) /* longer than the surface is wide */
-                    CHECK(lit[i], ==, 0);
-            }
+            cosine[i] = bs_dot(d, n);
+            length[i] = real_sqrt(bs_dot(d, d));
+            lane_set(&out.r, i, p.at[i]);
+            lane_set(&out.s, i, d);
+            lit[i] = 1;
         }
-        surface_free(f);
+        f->ops->occlude_own(f, p.n, &out, p.part, lit);
+        for (int i = 0; i < p.n; i++)
+            if (outward ? cosine[i] > R(1e-4) : cosine[i] < R(-1e-4) && length[i] > 4) {
+                CHECK(lit[i], ==, outward);
+                some++;
+            }
     }
-    for (int kind = 0; kind < KINDS; kind++) {
-        surface *f = make(kind);
-        CHECK((f->ops->occlude_own == NULL), ==, (kind == PLANE || kind == RECTANGLE || kind == DISC));
-        surface_free(f);
+    CHECK(some, >, 300);
+    surface_free(f);
+}
+
+static void outward_is_lit(void **state) { own_segments(*(const int *)*state, true); }
+static void inward_is_dark(void **state) { own_segments(*(const int *)*state, false); }
+
+/* Rays from points of a surface, as object 7. */
+static void own_rays(const points *p, int round, rays *out, ray_origins *from)
+{
+    for (int i = 0; i < p->n; i++) {
+        bs_vec3 d = random_direction();
+        d.x = round == 1 ? 0 : d.x;                                /* along a face of the box */
+        lane_set(&out->r, i, lane_at(&p->x, i, p->t[i] * R(0.9))); /* another origin, which must not matter */
+        lane_set(&out->s, i, d);
+        lane_set(&from->at, i, p->at[i]);
+        from->id[i] = 7;
+        from->part[i] = p->part[i];
     }
 }
 
-/* hit_own leaves the own start out: what is met again is met at a place of the surface and not at the start; from a
- * convex one inward the far side is, outward nothing. Other surfaces' rays it treats as hit does. */
-static void own_hits(void **state)
+/* A ray from a flat surface never returns, nor does one that leaves a convex surface. One that enters a closed surface
+ * meets it again. The own start never counts. */
+static void own_rays_meet_what_is_ahead(void **state)
 {
-    (void)state;
-    for (int kind = 0; kind < KINDS; kind++) {
-        surface *f = make(kind);
-        const bool flat = kind == PLANE || kind == RECTANGLE || kind == DISC;
-        int inward = 0;
-        for (int round = 0; round < 40; round++) {
-            static rays x, out;
-            static hits h, again, want;
-            static partials q;
-            static ray_origins from;
-            int32_t part[LANES], there[LANES];
-            real u[LANES], w[LANES], cosine[LANES];
-            int n = 0;
-            for (int i = 0; i < LANES; i++)
-                random_ray(&x, i, 1);
-            no_hits(&h, LANES);
-            f->ops->hit(f, LANES, &x, 7, &h);
-            for (int i = 0; i < LANES; i++)
-                if (h.id[i] >= 0) {
-                    bs_vec3 r = lane_at(&x, i, 0), s = lane_get(&x.s, i);
-                    lane_set(&x.r, n, r);
-                    lane_set(&x.s, n, s);
-                    h.t[n++] = h.t[i];
-                }
-            f->ops->locate(f, n, &x, h.t, part, u, w);
-            f->ops->eval(f, n, part, u, w, 1, &q);
-            for (int i = 0; i < n; i++) {
-                bs_vec3 d = {(real)random_in(-9, 9), (real)random_in(-9, 9), (real)random_in(-9, 9)};
-                d.x = round == 1 ? 0 : d.x; /* along a face of the box */
-                cosine[i] = bs_dot(lane_unit(d), lane_unit(bs_normal(lane_get(&q.Qu, i), lane_get(&q.Qw, i))));
-                lane_set(&out.r, i, lane_at(&x, i, h.t[i] * R(0.9))); /* anywhere: it does not matter */
-                lane_set(&from.at, i, lane_at(&x, i, h.t[i]));
-                lane_set(&out.s, i, d);
-                from.id[i] = 7;
-                from.part[i] = part[i];
-            }
-            no_hits(&again, n);
-            f->ops->hit_own(f, n, &out, &from, 7, &again);
-            for (int i = 0; i < n; i++) {
-                const bool back = again.id[i] == 7;
-                if (flat || (is_convex(kind) && cosine[i] > R(1e-4)))
-                    assert_false(back);
-                else if (is_closed(kind) && cosine[i] < R(-1e-3))
-                    assert_true(back);
-                assert_true(!back || again.t[i] > 0);
-                inward += back;
-                again.t[i] = back ? again.t[i] : 1;
-            }
-            out.r = from.at;
-            f->ops->locate(f, n, &out, again.t, there, u, w);
-            f->ops->eval(f, n, there, u, w, 1, &q);
-            for (int i = 0; i < n; i++)
-                if (again.id[i] == 7) {
-                    assert_true(distance(lane_get(&q.Q, i), lane_at(&out, i, again.t[i])) <
-                                (kind == HAT ? 300 : 60) * EPS); /* a tip */
-                    const real pieces = bs_dot(lane_get(&out.s, i), bs_normal(lane_get(&q.Qu, i), lane_get(&q.Qw, i)));
-                    assert_true(!is_closed(kind) || (pieces > 0) == (cosine[i] < 0));
-                    assert_true(kind != BOX || there[i] != part[i]);
-                }
-            /* what comes from elsewhere */
-            no_hits(&again, n);
-            no_hits(&want, n);
-            f->ops->hit_own(f, n, &x, &from, 3, &again);
-            f->ops->hit(f, n, &x, 3, &want);
-            assert_memory_equal(again.t, want.t, (size_t)n * sizeof(real));
-            assert_memory_equal(again.id, want.id, (size_t)n * sizeof(int32_t));
+    const int kind = *(const int *)*state;
+    surface *f = make(kind);
+    int met = 0;
+    for (int round = 0; round < 40; round++) {
+        static points p;
+        static rays out;
+        static hits h;
+        static ray_origins from;
+        random_points(f, &p);
+        own_rays(&p, round, &out, &from);
+        no_hits(&h, p.n);
+        f->ops->hit_own(f, p.n, &out, &from, 7, &h);
+        for (int i = 0; i < p.n; i++) {
+            const real cosine = bs_dot(lane_unit(lane_get(&out.s, i)), p.normal[i]);
+            if (is_flat(kind) || (is_convex(kind) && cosine > R(1e-4)))
+                CHECK(h.id[i], ==, -1);
+            else if (is_closed(kind) && cosine < R(-1e-3))
+                CHECK(h.id[i], ==, 7);
+            CHECK(h.t[i], >, 0);
+            met += h.id[i] == 7;
         }
-        assert_true(flat ? inward == 0 : inward > (is_closed(kind) && kind != THIN ? 500 : 100));
-        surface_free(f);
     }
+    BETWEEN(is_flat(kind) ? 0 : is_closed(kind) && kind != THIN ? 500 : 100, met, is_flat(kind) ? 0 : 1e9);
+    surface_free(f);
+}
+
+/* What a ray from the surface meets is a point of the surface, seen from within where the ray has entered, and on a box
+ * another face. */
+static void own_hits_are_on_the_surface(void **state)
+{
+    const int kind = *(const int *)*state;
+    surface *f = make(kind);
+    for (int round = 0; round < 40; round++) {
+        static points p;
+        static rays out;
+        static hits h;
+        static partials q;
+        static ray_origins from;
+        int32_t part[LANES];
+        real u[LANES], w[LANES];
+        random_points(f, &p);
+        own_rays(&p, round, &out, &from);
+        no_hits(&h, p.n);
+        f->ops->hit_own(f, p.n, &out, &from, 7, &h);
+        for (int i = 0; i < p.n; i++)
+            h.t[i] = h.id[i] == 7 ? h.t[i] : 1;
+        out.r = from.at;
+        f->ops->locate(f, p.n, &out, h.t, part, u, w);
+        f->ops->eval(f, p.n, part, u, w, 1, &q);
+        for (int i = 0; i < p.n; i++) {
+            if (h.id[i] != 7)
+                continue;
+            const bs_vec3 s = lane_get(&out.s, i), n = bs_normal(lane_get(&q.Qu, i), lane_get(&q.Qw, i));
+            NEAR(distance(lane_get(&q.Q, i), lane_at(&out, i, h.t[i])), 0, (kind == HAT ? 300 : 60) * EPS); /* a tip */
+            if (is_closed(kind))
+                CHECK(bs_dot(s, n) > 0, ==, bs_dot(s, p.normal[i]) < 0);
+            if (kind == BOX)
+                CHECK(part[i], !=, p.part[i]);
+        }
+    }
+    surface_free(f);
+}
+
+/* Rays that start on another surface are treated as hit treats them, to the bit. */
+static void rays_from_elsewhere_as_hit(void **state)
+{
+    surface *f = make(*(const int *)*state);
+    for (int round = 0; round < 10; round++) {
+        static points p;
+        static rays out;
+        static hits h, want;
+        static ray_origins from;
+        random_points(f, &p);
+        own_rays(&p, round, &out, &from);
+        no_hits(&h, p.n);
+        no_hits(&want, p.n);
+        f->ops->hit_own(f, p.n, &p.x, &from, 3, &h);
+        f->ops->hit(f, p.n, &p.x, 3, &want);
+        assert_memory_equal(h.t, want.t, (size_t)p.n * sizeof(real));
+        assert_memory_equal(h.id, want.id, (size_t)p.n * sizeof(int32_t));
+    }
+    surface_free(f);
 }
 
 /* Rays from within see the inner side. */
 static void from_inside(void **state)
 {
-    (void)state;
-    for (int kind = 0; kind < KINDS; kind++) {
-        if (!is_convex(kind))
-            continue;
-        surface *f = make(kind);
-        static rays x;
-        static hits h;
-        for (int i = 0; i < LANES; i++) {
-            random_ray(&x, i, 1);
-            x.r.x[i] = R(0.1), x.r.y[i] = R(-0.1), x.r.z[i] = R(0.2);
-        }
-        no_hits(&h, LANES);
-        f->ops->hit(f, LANES, &x, 0, &h);
-        for (int i = 0; i < LANES; i++)
-            assert_true(h.id[i] == 0 && h.t[i] > 0);
-        surface_free(f);
+    const int kind = *(const int *)*state;
+    surface *f = make(kind);
+    static rays x;
+    static hits h;
+    for (int i = 0; i < LANES; i++) {
+        random_ray(&x, i, 1);
+        x.r.x[i] = R(0.1), x.r.y[i] = R(-0.1), x.r.z[i] = R(0.2);
     }
+    no_hits(&h, LANES);
+    f->ops->hit(f, LANES, &x, 0, &h);
+    for (int i = 0; i < LANES; i++) {
+        CHECK(h.id[i], ==, 0);
+        CHECK(h.t[i], >, 0);
+    }
+    surface_free(f);
 }
 
 /* Rays along faces and edges, through corners and poles, of length 0, NaN or infinite: a hit or none, but never a t
  * that is not finite and positive, nor a lane beside it that is touched. */
 static void odd_rays(void **state)
 {
-    (void)state;
     const double nan = (double)NAN, inf = (double)INFINITY;
     const double odd[][6] = {
         {0, 0, 0, 0, 0, 0},
@@ -405,41 +447,39 @@ static void odd_rays(void **state)
         {-2.4, 0.3, 0.5, 1.6, -0.2, -0.3},
     };
     enum { ODD = sizeof odd / sizeof *odd };
-    for (int kind = 0; kind < KINDS; kind++) {
-        surface *f = make(kind);
-        static rays x;
-        static hits h;
-        static partials q;
-        static ray_origins from;
-        int32_t part[LANES];
-        real u[LANES], w[LANES], lit[LANES];
-        for (int i = 0; i < ODD; i++) {
-            x.r.x[i] = (real)odd[i][0], x.r.y[i] = (real)odd[i][1], x.r.z[i] = (real)odd[i][2];
-            x.s.x[i] = (real)odd[i][3], x.s.y[i] = (real)odd[i][4], x.s.z[i] = (real)odd[i][5];
-            lit[i] = 1;
-        }
-        no_hits(&h, ODD + 1);
-        f->ops->hit(f, ODD, &x, 0, &h);
-        f->ops->occlude(f, ODD, &x, lit);
-        from.at = x.r;
-        for (int i = 0; i < ODD; i++) {
-            from.id[i] = i % 2;
-            from.part[i] = i % f->ops->parts;
-        }
-        f->ops->hit_own(f, ODD, &x, &from, 0, &h);
-        f->ops->locate(f, ODD, &x, h.t, part, u, w);
-        f->ops->eval(f, ODD, part, u, w, 2, &q);
-        assert_int_equal(h.id[ODD], -1);
-        for (int i = 0; i < ODD; i++) {
-            assert_true(h.id[i] == -1 || h.id[i] == 0);
-            CHECK(h.t[i], >, 0);
-            CHECK(h.t[i], <=, REAL_FAR);
-            assert_true(lit[i] == 0 || lit[i] == 1);
-            CHECK(part[i], >=, 0);
-            CHECK(part[i], <, f->ops->parts);
-        }
-        surface_free(f);
+    const int kind = *(const int *)*state;
+    surface *f = make(kind);
+    static rays x;
+    static hits h;
+    static partials q;
+    static ray_origins from;
+    int32_t part[LANES];
+    real u[LANES], w[LANES], lit[LANES];
+    for (int i = 0; i < ODD; i++) {
+        x.r.x[i] = (real)odd[i][0], x.r.y[i] = (real)odd[i][1], x.r.z[i] = (real)odd[i][2];
+        x.s.x[i] = (real)odd[i][3], x.s.y[i] = (real)odd[i][4], x.s.z[i] = (real)odd[i][5];
+        lit[i] = 1;
     }
+    no_hits(&h, ODD + 1);
+    f->ops->hit(f, ODD, &x, 0, &h);
+    f->ops->occlude(f, ODD, &x, lit);
+    from.at = x.r;
+    for (int i = 0; i < ODD; i++) {
+        from.id[i] = i % 2;
+        from.part[i] = i % f->ops->parts;
+    }
+    f->ops->hit_own(f, ODD, &x, &from, 0, &h);
+    f->ops->locate(f, ODD, &x, h.t, part, u, w);
+    f->ops->eval(f, ODD, part, u, w, 2, &q);
+    assert_int_equal(h.id[ODD], -1);
+    for (int i = 0; i < ODD; i++) {
+        BETWEEN(-1, h.id[i], 0);
+        CHECK(h.t[i], >, 0);
+        CHECK(h.t[i], <=, REAL_FAR);
+        BETWEEN(0, lit[i], 1);
+        BETWEEN(0, part[i], f->ops->parts - 1);
+    }
+    surface_free(f);
 }
 
 /* Round surfaces have their seams where the documentation says, and u to the right where w goes down. */
@@ -540,21 +580,30 @@ static void constructors_refuse_nonsense(void **state)
     assert_null(torus_new(o, x, (double)NAN, 1));
 }
 
+static const property PROPERTIES[] = {
+    {"hits are on the surface", hits_are_on_the_surface, NULL},
+    {"partials are derivatives", partials_are_derivatives, NULL},
+    {"shadows agree with hits", shadows_agree_with_hits, NULL},
+    {"dark stays dark", dark_stays_dark, NULL},
+    {"only flat ones cannot shade themselves", only_flat_ones_cannot_shade_themselves, NULL},
+    {"outward is lit", outward_is_lit, is_convex},
+    {"inward is dark", inward_is_dark, is_convex},
+    {"own rays meet what is ahead", own_rays_meet_what_is_ahead, NULL},
+    {"own hits are on the surface", own_hits_are_on_the_surface, NULL},
+    {"rays from elsewhere as by hit", rays_from_elsewhere_as_hit, NULL},
+    {"from inside", from_inside, is_convex},
+    {"odd rays", odd_rays, NULL},
+};
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(hits_are_on_the_surface),
-        cmocka_unit_test(partials_are_derivatives),
         cmocka_unit_test(box_faces),
-        cmocka_unit_test(shadows_agree_with_hits),
-        cmocka_unit_test(own_shadow),
-        cmocka_unit_test(own_hits),
-        cmocka_unit_test(from_inside),
-        cmocka_unit_test(odd_rays),
         cmocka_unit_test(ways_around),
         cmocka_unit_test(frames),
         cmocka_unit_test(small_and_far),
         cmocka_unit_test(constructors_refuse_nonsense),
     };
-    return cmocka_run_group_tests_name("surfaces", tests, NULL, NULL);
+    return run_properties("surfaces", PROPERTIES, sizeof PROPERTIES / sizeof *PROPERTIES, NAMES, KINDS, NULL, NULL) +
+           cmocka_run_group_tests_name("surfaces, each by itself", tests, NULL, NULL);
 }

@@ -2,24 +2,15 @@
  * mapped; n points outward also where the map mirrors; rough ones are met where heights divided by the scale are met in
  * the surface's own space.
  */
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
-#include "displaced/march.h"
+#include "support/displace.h"
 #include "wave/lane.h"
-#include "support/check.h"
+#include "support/properties.h"
 #include "support/random_rays.h"
 #include "geometry/surface.h"
 
-/* Digits of a place a few units from the origin. */
 enum { PLANE, RECTANGLE, DISC, BOX, SPHERE, DRUM, TUBE, HAT, TORUS, KINDS };
 enum { MOVED, MIRRORED, STRETCHED, SHEARED, MAPS };
+static const char *const kind_names[] = {"plane", "rectangle", "disc", "box", "sphere", "drum", "tube", "hat", "torus"};
 static const char *const map_names[] = {"moved", "mirrored", "stretched", "sheared"};
 
 static surface *make(int kind)
@@ -86,20 +77,19 @@ static double turned(const surface *f, int part, const affine *m, double u)
 
 typedef void check(int kind, int map, const surface *own, const surface *f, const affine *m);
 
-static void for_all(check *c)
+/* *state: the number of a pair, KINDS x MAPS. */
+static void for_pair(void **state, check *c)
 {
-    for (int kind = 0; kind < KINDS; kind++)
-        for (int map = 0; map < MAPS; map++) {
-            const affine m = make_map(map);
-            surface *own = make(kind), *f = surface_transformed(own, &m);
-            assert_non_null(f);
-            assert_string_equal(f->ops->kind, own->ops->kind);
-            assert_int_equal(f->ops->parts, own->ops->parts);
-            for (int round = 0; round < 10; round++)
-                c(kind, map, own, f, &m);
-            surface_free(f);
-            surface_free(own);
-        }
+    const int kind = *(const int *)*state / MAPS, map = *(const int *)*state % MAPS;
+    const affine m = make_map(map);
+    surface *own = make(kind), *f = surface_transformed(own, &m);
+    assert_non_null(f);
+    assert_string_equal(f->ops->kind, own->ops->kind);
+    assert_int_equal(f->ops->parts, own->ops->parts);
+    for (int round = 0; round < 10; round++)
+        c(kind, map, own, f, &m);
+    surface_free(f);
+    surface_free(own);
 }
 
 /* ---- rays ---- */
@@ -167,11 +157,7 @@ static void rays_meet_alike(int kind, int map, const surface *own, const surface
     }
 }
 
-static void rays_alike(void **state)
-{
-    (void)state;
-    for_all(rays_meet_alike);
-}
+static void rays_alike(void **state) { for_pair(state, rays_meet_alike); }
 
 static void vectors_are_images(int kind, int map, const surface *own, const surface *f, const affine *m)
 {
@@ -212,11 +198,7 @@ static void vectors_are_images(int kind, int map, const surface *own, const surf
     }
 }
 
-static void partials_and_normals(void **state)
-{
-    (void)state;
-    for_all(vectors_are_images);
-}
+static void partials_and_normals(void **state) { for_pair(state, vectors_are_images); }
 
 static void own_shadow_alike(int kind, int map, const surface *own, const surface *f, const affine *m)
 {
@@ -275,11 +257,7 @@ static void own_shadow_alike(int kind, int map, const surface *own, const surfac
     assert_true(differ <= (kind == TORUS ? 4 : 2));
 }
 
-static void own_shadows(void **state)
-{
-    (void)state;
-    for_all(own_shadow_alike);
-}
+static void own_shadows(void **state) { for_pair(state, own_shadow_alike); }
 
 /* ---- rough surfaces ---- */
 
@@ -293,10 +271,10 @@ static void feet_are_below(int kind, int map, const surface *own, const surface 
     static rays x;
     (void)own;
     (void)m;
-    CHECK((f->ops->foot != NULL), ==, has_feet(kind, map));
-    CHECK((f->ops->shell != NULL), ==, has_feet(kind, map));
-    CHECK((f->ops->steep != NULL), ==, has_feet(kind, map));
-    if (!f->ops->foot)
+    CHECK((f->ops->closest != NULL), ==, has_feet(kind, map));
+    CHECK((f->ops->bound != NULL), ==, has_feet(kind, map));
+    CHECK((f->ops->lipschitz != NULL), ==, has_feet(kind, map));
+    if (!f->ops->closest)
         return;
     for (int32_t part = 0; part < f->ops->parts; part++) {
         double U[2], W[2];
@@ -310,7 +288,7 @@ static void feet_are_below(int kind, int map, const surface *own, const surface 
         const bs_vec3 X = {Q.x + h * n.x, Q.y + h * n.y, Q.z + h * n.z};
         lane_set(&x.r, 0, X);
         lane_set(&x.s, 0, n);
-        f->ops->foot(f, part, 1, &x, &zero, &p);
+        f->ops->closest(f, part, 1, &x, &zero, &p);
         NEAR(p.u[0], u, 300 * EPS);
         NEAR(p.w[0], w, 300 * EPS);
         NEAR(p.h[0], h, 100 * EPS);
@@ -321,13 +299,13 @@ static void feet_are_below(int kind, int map, const surface *own, const surface 
         const real t = (real)half, minus = (real)-half;
         real rate, reach;
         lane_set(&x.s, 0, d);
-        f->ops->foot(f, part, 1, &x, &t, &a);
-        f->ops->foot(f, part, 1, &x, &minus, &b);
+        f->ops->closest(f, part, 1, &x, &t, &a);
+        f->ops->closest(f, part, 1, &x, &minus, &b);
         NEAR((double)(a.u[0] - b.u[0]) / step, (double)bs_dot(d, lane_get(&p.gu, 0)), 60 * sqrt(EPS));
         NEAR((double)(a.w[0] - b.w[0]) / step, (double)bs_dot(d, lane_get(&p.gw, 0)), 60 * sqrt(EPS));
         NEAR((double)(a.h[0] - b.h[0]) / step, (double)bs_dot(d, lane_get(&p.gh, 0)), 60 * sqrt(EPS));
         const real Pu = R(0.3), Pw = R(0.4);
-        f->ops->steep(f, part, 1, &x, &p, Pu, Pw, &rate, &reach);
+        f->ops->lipschitz(f, part, 1, &x, &p, Pu, Pw, &rate, &reach);
         const real worst = real_abs(bs_dot(d, lane_get(&p.gh, 0))) + Pu * real_abs(bs_dot(d, lane_get(&p.gu, 0))) +
                            Pw * real_abs(bs_dot(d, lane_get(&p.gw, 0)));
         CHECK(rate, >=, worst * R(0.999));
@@ -336,11 +314,7 @@ static void feet_are_below(int kind, int map, const surface *own, const surface 
     }
 }
 
-static void feet_of_images(void **state)
-{
-    (void)state;
-    for_all(feet_are_below);
-}
+static void feet_of_images(void **state) { for_pair(state, feet_are_below); }
 
 /* Heights h over the image are h/scale over the surface itself. */
 static void rough_alike(int kind, int map, const surface *own, const surface *f, const affine *m)
@@ -370,8 +344,11 @@ static void rough_alike(int kind, int map, const surface *own, const surface *f,
     }
     no_hits(&h, LANES);
     no_hits(&g, LANES);
-    displaced_hit(f, P, LANES, &x, NULL, 0, &h, &counts);
-    displaced_hit(own, S, LANES, &y, NULL, 0, &g, &counts);
+    surface *of_image = displace(f, P, &counts), *original = displace(own, S, &counts);
+    of_image->ops->hit(of_image, LANES, &x, 0, &h);
+    original->ops->hit(original, LANES, &y, 0, &g);
+    surface_free(of_image);
+    surface_free(original);
     for (int i = 0; i < LANES; i++) {
         const double s = (double)real_sqrt(bs_dot(lane_get(&y.s, i), lane_get(&y.s, i)));
         met += g.id[i] == 0;
@@ -386,11 +363,7 @@ static void rough_alike(int kind, int map, const surface *own, const surface *f,
     bump_free(S);
 }
 
-static void rough_hits(void **state)
-{
-    (void)state;
-    for_all(rough_alike);
-}
+static void rough_hits(void **state) { for_pair(state, rough_alike); }
 
 /* On a box that is stretched or sheared hits are on Q + P n/|n|, along the normal of the image. */
 static void rough_box(void **state)
@@ -406,19 +379,20 @@ static void rough_box(void **state)
         static hits h;
         static rays y;
         displaced_counts counts = {0};
+        surface *d = displace(f, P, &counts);
         int met = 0;
         for (int i = 0; i < LANES; i++) {
             random_ray(&y, i, 1);
             map_ray(&m, &y, &g.x, i);
         }
         no_hits(&h, LANES);
-        displaced_hit(f, P, LANES, &g.x, NULL, 0, &h, &counts);
+        d->ops->hit(d, LANES, &g.x, 0, &h);
         g.n = LANES;
         for (int i = 0; i < LANES; i++) {
             g.t[i] = h.id[i] == 0 ? h.t[i] : R(1);
             g.part[i] = h.id[i] == 0 ? h.part[i] : 0;
         }
-        displaced_shape(f, P, &g);
+        displaced_shape(d, &g);
         for (int i = 0; i < LANES; i++) {
             partials q;
             if (h.id[i] < 0)
@@ -426,11 +400,12 @@ static void rough_box(void **state)
             met++;
             f->ops->eval(f, 1, &g.part[i], &g.u[i], &g.w[i], 1, &q);
             const bs_vec3 Q = lane_get(&q.Q, 0), n = lane_unit(bs_normal(lane_get(&q.Qu, 0), lane_get(&q.Qw, 0)));
-            const vec3 X = vec3_add(widen(Q), vec3_scale(widen(n), (double)g.h.P[i]));
-            CHECK(apart(lane_at(&g.x, i, h.t[i]), X), <, 100 * EPS);
+            const vec3 X = vec3_add(widen(Q), vec3_scale(widen(n), (double)g.bump.P[i]));
+            assert_true(apart(lane_at(&g.x, i, h.t[i]), X) < 100 * EPS);
         }
         CHECK(met, >, 40);
         assert_int_equal(counts.uncertain, 0);
+        surface_free(d);
         bump_free(P);
         surface_free(f);
         surface_free(own);
@@ -450,12 +425,22 @@ static void none(void **state)
     }
 }
 
+static const property PROPERTIES[] = {
+    {"rays alike", rays_alike, NULL},   {"partials and normals", partials_and_normals, NULL},
+    {"own shadows", own_shadows, NULL}, {"feet of images", feet_of_images, NULL},
+    {"rough hits", rough_hits, NULL},
+};
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(rays_alike),     cmocka_unit_test(partials_and_normals), cmocka_unit_test(own_shadows),
-        cmocka_unit_test(feet_of_images), cmocka_unit_test(rough_hits),           cmocka_unit_test(rough_box),
-        cmocka_unit_test(none),
-    };
-    return cmocka_run_group_tests_name("transformed surfaces", tests, NULL, NULL);
+    static char text[KINDS * MAPS][40];
+    static const char *names[KINDS * MAPS];
+    for (int k = 0; k < KINDS * MAPS; k++) {
+        snprintf(text[k], sizeof text[k], "%s, %s", kind_names[k / MAPS], map_names[k % MAPS]);
+        names[k] = text[k];
+    }
+    const struct CMUnitTest tests[] = {cmocka_unit_test(rough_box), cmocka_unit_test(none)};
+    return run_properties("transformed surfaces", PROPERTIES, sizeof PROPERTIES / sizeof *PROPERTIES, names,
+                          KINDS * MAPS, NULL, NULL) +
+           cmocka_run_group_tests_name("transformed surfaces, each by itself", tests, NULL, NULL);
 }

@@ -528,7 +528,7 @@ static bool write_planes(const char *path, errors *e)
                                {"scene", "objects:\n  - \xe5\xbd\xb1\n"},
                                {"a name of an attribute that is longer than 31", "x"},
                                {"empty", ""}};
-    return image_write_exr(path, WIDTH, HEIGHT, 4, channel, 4, text, e);
+    return image_write_exr(path, 0, WIDTH, HEIGHT, 4, channel, 4, text, e);
 }
 
 static void exr_round_trip_keeps_every_bit(void **state)
@@ -759,10 +759,10 @@ static void nonsense_is_refused(void **state)
     for (int i = 0; i < 6; i++) {
         errors e = {0};
         path = in_folder("unwritten");
-        assert_false(i == 0   ? image_write_exr(path, 0, 1, 1, twice, 0, NULL, &e)
-                     : i == 1 ? image_write_exr(path, 70000, 1, 1, twice, 0, NULL, &e)
-                     : i == 2 ? image_write_exr(path, WIDTH, 1, 2, twice, 0, NULL, &e)
-                     : i == 3 ? image_write_exr(path, WIDTH, 1, 0, NULL, 0, NULL, &e)
+        assert_false(i == 0   ? image_write_exr(path, 0, 0, 1, 1, twice, 0, NULL, &e)
+                     : i == 1 ? image_write_exr(path, 0, 70000, 1, 1, twice, 0, NULL, &e)
+                     : i == 2 ? image_write_exr(path, 0, WIDTH, 1, 2, twice, 0, NULL, &e)
+                     : i == 3 ? image_write_exr(path, 0, WIDTH, 1, 0, NULL, 0, NULL, &e)
                      : i == 4 ? image_write_png(path, WIDTH, -1, 8, red, red, red, 0, NULL, &e)
                               : image_write_png(path, WIDTH, 1, 12, red, red, red, 0, NULL, &e));
         assert_int_equal(e.count, 1);

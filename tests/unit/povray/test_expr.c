@@ -51,6 +51,7 @@ static const struct {
     {"clamp(u, -1, w)", "min(max(u, -1), w)"},
     {"select(u, w, 2)", "select(u, w, 2)"},
     {"select(u - w, 1, 2, 3) + 10*select(w, 1, 2, 3)", NULL},
+    {"smoothstep(-w, 2, u) + 10*smoothstep(u, w + 4, smoothstep(3, -1, w))", NULL},
     {"0.03*(sin(6*u)*cos(5.4*w) + 0.5*sin(10.2*u + 6.6*w))", "0.03*(sin(6*u)*cos(5.4*w) + 0.5*sin(10.2*u + 6.6*w))"},
 };
 enum { CASES = sizeof cases / sizeof *cases, PLACES = 6 };

@@ -1,11 +1,10 @@
-/* Models from files, by assimp, which this file alone knows. It runs in a process of its own (mesh_file.c), for what a
- * broken file may do to it.
+/* Models from files, by assimp, which this file alone knows.
  *
  * Of a model its triangles are taken, all of its nodes where their matrices put them; polygons are divided; materials,
  * textures, bones, cameras and lights are not. Files are right-handed, as these formats say: z changes its sign, and
- * with it the order of corners. Texture coordinates have their v upward, also glTF's as assimp tells them: w = 1 - v.
+ * with it the order of corners. Texture coordinates have their v upward, also glTF's as assimp gives them: w = 1 - v.
  */
-#include "mesh/mesh_data.h"
+#include "import/import.h"
 
 #include <assimp/cfileio.h>
 #include <assimp/cimport.h>
@@ -26,7 +25,7 @@ typedef struct reading {
     bool buffers; /* glTF: other files may be opened, too */
     size_t size, done;
     double told; /* the share that was told last */
-    const mesh_listener *to;
+    const import_listener *to;
 } reading;
 
 /* A file with the way to whom its reading is told. */
@@ -87,7 +86,7 @@ static enum aiReturn seek(struct aiFile *base, size_t offset, enum aiOrigin orig
 static void flush(struct aiFile *base) { (void)base; }
 
 /* A regular file; it is told. */
-static bool is_good(FILE *f, const mesh_listener *to)
+static bool is_good(FILE *f, const import_listener *to)
 {
     struct stat about;
     if (fstat(fileno(f), &about) != 0 || !S_ISREG(about.st_mode))
@@ -230,7 +229,8 @@ static bool harvest_scene(const struct aiScene *s, mesh_data *out, char why[MESH
     }
     *out = (mesh_data){(int)n, malloc(sizeof *out->at * (size_t)n), malloc(sizeof *out->skin * (size_t)n), {0}};
     if (!out->at || !out->skin) {
-        mesh_data_free(out);
+        free(out->at);
+        free(out->skin);
         snprintf(why, MESH_WHY, "out of memory");
         return false;
     }
@@ -254,7 +254,7 @@ static bool ends_with(const char *path, const char *end)
     return n >= m;
 }
 
-bool mesh_import(const char *path, const mesh_listener *to, mesh_data *out, char why[MESH_WHY])
+bool import_model(const char *path, const import_listener *to, mesh_data *out, char why[MESH_WHY])
 {
     struct stat about;
     reading of = {path, ends_with(path, ".gltf"), stat(path, &about) == 0 ? (size_t)about.st_size : 0, 0, 0, to};

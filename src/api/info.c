@@ -1,0 +1,112 @@
+/* What is in a scene, as data: kage_scene_info. */
+#include "api/api.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static void set3(double to[3], vec3 v)
+{
+    to[0] = v.x;
+    to[1] = v.y;
+    to[2] = v.z;
+}
+
+static kage_light_info of_light(const light *l)
+{
+    static const char *const kinds[] = {"point", "spot", "parallel"};
+    kage_light_info x = {.name = l->name, .kind = kinds[l->kind], .fades = l->fade_distance > 0};
+    set3(x.at, l->at);
+    x.samples[0] = l->samples[0];
+    x.samples[1] = l->samples[1];
+    return x;
+}
+
+static kage_model_info of_model(const shape_spec *f)
+{
+    const mesh_notes *n = &f->found;
+    return (kage_model_info){f->file, f->triangles, n->flat, n->turned, n->bent, n->bare, n->folded, n->spread};
+}
+
+static void note_bump(const object *o, kage_object_info *x)
+{
+    x->bump = o->bump->ops->kind;
+    x->map = o->map.file;
+    x->map_size[0] = o->map.width;
+    x->map_size[1] = o->map.height;
+    x->map_range[0] = o->map.low;
+    x->map_range[1] = o->map.high;
+    x->height[0] = (double)o->bump->Pmin;
+    x->height[1] = (double)o->bump->Pmax;
+    x->bounded = o->bump->Pmax - o->bump->Pmin < REAL_FAR;
+}
+
+static kage_object_info of_object(const scene *s, const object *o, const kage_model_info *model)
+{
+    const material *m = &s->material[o->material];
+    kage_object_info x = {
+        .name = o->name,
+        .shape = o->shape->ops->kind,
+        .copy_of = o->copy_of,
+        .transformed = o->moved,
+        .material = m->name,
+        .color = o->color ? o->color->ops->kind : NULL,
+        .mirrors = material_mirrors(m),
+        .transparent = material_clear(m),
+        .model = o->shape_spec.kind == SHAPE_MESH && !o->copy_of ? model : NULL,
+    };
+    if (o->bump)
+        note_bump(o, &x);
+    return x;
+}
+
+/* The models lie behind the objects, one for each. */
+static bool note_all(const scene *s, kage_scene_info *x)
+{
+    const size_t lights = (size_t)s->lights, objects = (size_t)s->objects;
+    kage_light_info *l = calloc(lights + 1, sizeof *l);
+    kage_object_info *o = calloc(1, (objects + 1) * sizeof *o + objects * sizeof(kage_model_info));
+    x->lights = l;
+    x->objects = o;
+    if (!l || !o)
+        return false;
+    kage_model_info *model = (kage_model_info *)(void *)&o[objects + 1];
+    for (size_t k = 0; k < lights; k++)
+        l[k] = of_light(&s->light[k]);
+    for (size_t k = 0; k < objects; k++) {
+        model[k] = of_model(&s->object[k].shape_spec);
+        o[k] = of_object(s, &s->object[k], &model[k]);
+    }
+    return true;
+}
+
+bool scene_note(kage_scene *k)
+{
+    const scene *s = k->first;
+    char *name = malloc(METHOD_NAME_SIZE);
+    if (name)
+        method_name(s->shadow, name);
+    k->info = (kage_scene_info){
+        .path = s->path,
+        .width = s->width,
+        .height = s->height,
+        .aa = s->aa,
+        .aa_threshold = s->aa_threshold,
+        .method = name,
+        .guard = s->guard,
+        .displaced = s->displaced,
+        .self_shadow = s->self_shadow,
+        .depth = s->sends ? s->depth : 0,
+        .light_count = s->lights,
+        .object_count = s->objects,
+    };
+    return note_all(s, &k->info) && name;
+}
+
+void scene_forget(kage_scene *k)
+{
+    free((void *)(size_t)k->info.method);
+    free((void *)(size_t)k->info.lights);
+    free((void *)(size_t)k->info.objects);
+}
+
+const kage_scene_info *kage_scene_get_info(const kage_scene *k) { return &k->info; }

@@ -1,0 +1,31 @@
+/* The export to POV-Ray. */
+#include "api/api.h"
+
+#include "povray/povray.h"
+
+kage_status kage_scene_write_povray(kage_scene *k, const char *path, const kage_povray_options *given,
+                                    kage_povray_report *report, kage_errors **to)
+{
+    const kage_povray_options o = given ? *given : (kage_povray_options){0};
+    const bool displaced = o.displaced == KAGE_AS_SCENE ? k->first->displaced : o.displaced == KAGE_YES;
+    errors e = {0};
+    pov_report r = {0};
+    kage_status status = KAGE_BAD_INPUT;
+    if (to)
+        *to = NULL;
+    c_locale l = c_locale_begin();
+    const scene *s = scene_reading(k, displaced, k->first->shadow, &e);
+    bool good = s && pov_possible(s, &e);
+    if (good) {
+        const pov_options how = {o.command ? o.command : "libkage", o.no_cast != 0};
+        status = KAGE_NOT_WRITTEN;
+        good = pov_write(s, &how, path, &r, &e);
+    }
+    c_locale_end(&l);
+    if (report)
+        *report = (kage_povray_report){.coarse = good ? r.coarse : NULL, .height = r.height, .pixels = r.pixels};
+    if (!good)
+        return errors_give(&e, status, NULL, to);
+    errors_free(&e);
+    return KAGE_OK;
+}

@@ -1,0 +1,231 @@
+/* kage_render: the options against the scene, the render, and what it counted. */
+#include "api/api.h"
+
+#include "image/image.h"
+#include "render/render.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A render, settled: the scene with the caller's wishes in it. `view` owns nothing. */
+typedef struct job {
+    scene view;
+    window part;
+    bool layers;
+} job;
+
+static bool chosen(kage_choice c, bool scene_says) { return c == KAGE_AS_SCENE ? scene_says : c == KAGE_YES; }
+
+static bool is_choice(kage_choice c) { return c == KAGE_AS_SCENE || c == KAGE_YES || c == KAGE_NO; }
+
+/* Each option by itself. False: an error is in *e. */
+static bool options_are_good(const kage_render_options *o, errors *e)
+{
+    method m;
+    bool good = true;
+    if (o->method && !method_parse(o->method, &m))
+        good = errors_add(e, "'%.60s' is no method, expected %s", o->method, method_expected);
+    if (!is_choice(o->guard) || !is_choice(o->displaced) || !is_choice(o->self_shadow))
+        good = errors_add(e, "no choice, expected KAGE_AS_SCENE, KAGE_YES or KAGE_NO");
+    if ((o->width != 0 || o->height != 0) &&
+        (o->width < 1 || o->height < 1 || o->width > KAGE_MAX_SIDE || o->height > KAGE_MAX_SIDE ||
+         (long)o->width * o->height > IMAGE_MAX_PIXELS))
+        good = errors_add(e, "a picture of %d x %d pixels, expected 1 to %d each, and %ld in all", o->width, o->height,
+                          KAGE_MAX_SIDE, IMAGE_MAX_PIXELS);
+    if (o->aa < 0 || o->aa > KAGE_MAX_AA)
+        good = errors_add(e, "%d samples along a pixel's side, expected 1 to %d", o->aa, KAGE_MAX_AA);
+    if (!(o->aa_threshold >= 0 && o->aa_threshold <= 3))
+        good = errors_add(e, "a threshold of %g, expected 0 to 3", o->aa_threshold);
+    if (o->threads < 0 || o->threads > KAGE_MAX_THREADS)
+        good = errors_add(e, "%d threads, expected 0 to %d", o->threads, KAGE_MAX_THREADS);
+    return good;
+}
+
+/* The scene's camera for another size. */
+static void resize(scene *s, int width, int height)
+{
+    const camera_view *v = &s->view;
+    s->width = width;
+    s->height = height;
+    if (s->camera.orthographic)
+        camera_orthographic(&s->camera, s->camera.from, v->at, v->up, v->width, width, height);
+    else
+        camera_look(&s->camera, s->camera.from, v->at, v->up, v->fov, width, height);
+}
+
+static bool set_crop(const int crop[4], job *j, errors *e)
+{
+    static const int none[4] = {0};
+    const int width = j->view.width, height = j->view.height;
+    j->part = (window){0, 0, width, height};
+    if (memcmp(crop, none, sizeof none) == 0)
+        return true;
+    j->part = (window){crop[0], crop[1], crop[2], crop[3]};
+    if (crop[0] < 0 || crop[1] < 0 || crop[0] >= crop[2] || crop[1] >= crop[3] || crop[2] > width || crop[3] > height)
+        return errors_add(e, "crop %d,%d,%d,%d: expected a part of the picture, which has %d x %d pixels", crop[0],
+                          crop[1], crop[2], crop[3], width, height);
+    return true;
+}
+
+/* KAGE_OK, or what is wrong with *e. */
+static kage_status settle(kage_scene *k, const kage_render_options *o, job *j, errors *e)
+{
+    const scene *first = k->first;
+    method m = first->shadow;
+    if (!options_are_good(o, e))
+        return KAGE_BAD_OPTION;
+    if (o->method)
+        method_parse(o->method, &m);
+    const scene *s = scene_reading(k, chosen(o->displaced, first->displaced), m, e);
+    if (!s)
+        return KAGE_BAD_INPUT;
+    j->view = *s;
+    j->view.shadow = m;
+    j->view.guard = chosen(o->guard, s->guard);
+    j->view.self_shadow = chosen(o->self_shadow, s->self_shadow);
+    if (o->aa)
+        j->view.aa = o->aa;
+    if (o->aa_threshold > 0)
+        j->view.aa_threshold = o->aa_threshold;
+    if (o->width)
+        resize(&j->view, o->width, o->height);
+    j->layers = o->layers != 0;
+    return set_crop(o->crop, j, e) ? KAGE_OK : KAGE_BAD_OPTION;
+}
+
+/* ---- what a picture is made from ---- */
+
+/* A text that grows; NULL once there is no memory. */
+static void add_line(char **text, const char *fmt, ...) KAGE_PRINTF(2, 3);
+static void add_line(char **text, const char *fmt, ...)
+{
+    char line[128];
+    va_list args;
+    va_start(args, fmt);
+    vsnprintf(line, sizeof line, fmt, args);
+    va_end(args);
+    const size_t n = *text ? strlen(*text) : 0;
+    char *more = *text ? realloc(*text, n + strlen(line) + 2) : NULL;
+    if (more)
+        sprintf(more + n, "%s%s", n ? "\n" : "", line);
+    else
+        free(*text);
+    *text = more;
+}
+
+static const char *yes(bool x) { return x ? "true" : "false"; }
+
+/* The changes made to the scene, a line each: those of reading it, and the options as changes. NULL: out of memory. */
+static char *sets_of(const kage_scene *k, const kage_render_options *o, const scene *view)
+{
+    char name[METHOD_NAME_SIZE];
+    size_t size = 1;
+    for (int i = 0; i < k->sets; i++)
+        size += strlen(k->set[i]) + 1;
+    char *text = calloc(1, size);
+    for (int i = 0; text && i < k->sets; i++)
+        strcat(strcat(text, i ? "\n" : ""), k->set[i]);
+    method_name(view->shadow, name);
+    if (o->method)
+        add_line(&text, "render.shadow=%s", name);
+    if (o->displaced)
+        add_line(&text, "render.surface=%s", view->displaced ? "displaced" : "smooth");
+    if (o->guard)
+        add_line(&text, "render.guard=%s", yes(view->guard));
+    if (o->self_shadow)
+        add_line(&text, "render.self_shadow=%s", yes(view->self_shadow));
+    if (o->width)
+        add_line(&text, "image.size=[%d, %d]", view->width, view->height);
+    if (o->aa)
+        add_line(&text, "render.aa=%d", view->aa);
+    if (o->aa_threshold > 0)
+        add_line(&text, "render.aa_threshold=%.17g", view->aa_threshold);
+    return text;
+}
+
+/* The film without its values. NULL: an error is in *e. */
+static kage_film *new_film(const kage_scene *k, const kage_render_options *o, const job *j, errors *e)
+{
+    const char *slash = strrchr(k->first->path, '/');
+    kage_film *f = calloc(1, sizeof *f);
+    if (f) {
+        f->file = strdup(slash ? slash + 1 : k->first->path);
+        f->source = strdup(k->first->source);
+        f->sets = sets_of(k, o, &j->view);
+        f->stages = calloc(STAGES, sizeof *f->stages);
+        method_name(j->view.shadow, f->method);
+        f->guard = j->view.guard;
+    }
+    if (!f || !f->file || !f->source || !f->sets || !f->stages)
+        errors_add(e, "out of memory");
+    else if ((f->film = film_new(&j->view, j->part, j->layers, e)))
+        return f;
+    kage_film_free(f);
+    return NULL;
+}
+
+static void set_stats(kage_film *f, const stats *t, double seconds)
+{
+    for (int k = 0; k < STAGES; k++)
+        f->stages[k] = (kage_stage){stage_names[k], t->seconds[k]};
+    for (int k = 0; k < ORDER_CODES; k++)
+        f->orders[k] = (kage_order_count){method_code_name(k - 1), t->orders[k]};
+    f->stats = (kage_stats){
+        .seconds = seconds,
+        .method = f->method,
+        .camera_rays = t->rays,
+        .shadow_rays = t->shadow_rays,
+        .secondary_rays = t->secondary_rays,
+        .height_lookups = t->evaluations + t->displaced.evaluations,
+        .bumped = t->bumped,
+        .fell_back = t->fell_back,
+        .unconfirmed = t->displaced.uncertain,
+        .stage_count = STAGES,
+        .order_count = ORDER_CODES,
+        .stages = f->stages,
+        .orders = f->orders,
+    };
+}
+
+static bool fill(kage_film *f, const job *j, const kage_render_options *o, watch *w, errors *e)
+{
+    const scene *s = &j->view;
+    const tracer k = {.scene = s,
+                      .shadow = s->shadow,
+                      .guard = s->guard,
+                      .layers = j->layers,
+                      .displaced = s->displaced,
+                      .self_shadow = s->self_shadow};
+    const progress p = watch_progress(w);
+    const render_options how = {s->aa, s->aa_threshold, o->threads, o->timing != 0, w->call ? &p : NULL};
+    stats t;
+    const double start = stats_clock();
+    const bool good = render(&k, &how, f->film, &t, e);
+    set_stats(f, &t, stats_clock() - start);
+    return good && !w->cancelled;
+}
+
+kage_status kage_render(kage_scene *k, const kage_render_options *given, kage_film **out, kage_errors **to)
+{
+    const kage_render_options o = given ? *given : (kage_render_options){0};
+    errors e = {0};
+    job j;
+    *out = NULL;
+    if (to)
+        *to = NULL;
+    c_locale l = c_locale_begin();
+    watch w = {o.progress, o.user, &l, false};
+    kage_status status = settle(k, &o, &j, &e);
+    kage_film *f = status == KAGE_OK ? new_film(k, &o, &j, &e) : NULL;
+    const bool good = f && fill(f, &j, &o, &w, &e);
+    c_locale_end(&l);
+    if (good) {
+        *out = f;
+        errors_free(&e);
+        return KAGE_OK;
+    }
+    kage_film_free(f);
+    return errors_give(&e, status == KAGE_OK ? KAGE_NO_MEMORY : status, &w, to);
+}

@@ -1,0 +1,143 @@
+/* Scenes: reading, reading again where another kind of surface is asked for, and what is in them. */
+#include "api/api.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static int reading_index(bool displaced, method m) { return 2 * displaced + (m.kind == METHOD_EXACT); }
+
+static char *copy(const char *text, bool *good)
+{
+    char *c = text ? strdup(text) : NULL;
+    *good = *good && (!text || c);
+    return c;
+}
+
+/* What the options say, for good. False: out of memory. */
+static bool keep(kage_scene *k, const char *folder, const kage_load_options *o)
+{
+    bool good = true;
+    k->folder = copy(folder, &good);
+    k->model_reader = copy(o->model_reader, &good);
+    k->threads = o->threads;
+    k->set = calloc((size_t)o->set_count + 1, sizeof *k->set);
+    for (; k->set && k->sets < o->set_count && good; k->sets++)
+        k->set[k->sets] = copy(o->sets[k->sets], &good);
+    return good && k->set;
+}
+
+/* Reading 2 d + x has the displaced surface where d, and the method exact where x. */
+static void hold(kage_scene *k, scene *s)
+{
+    k->first = s;
+    k->reading[reading_index(s->displaced, s->shadow)] = s;
+}
+
+static kage_status load(scene_source *from, const kage_load_options *given, kage_scene **out, kage_errors **to)
+{
+    const kage_load_options o = given ? *given : (kage_load_options){0};
+    *out = NULL;
+    if (to)
+        *to = NULL;
+    if (o.threads < 0 || o.threads > KAGE_MAX_THREADS || o.set_count < 0)
+        return error_give(KAGE_BAD_OPTION, to, "%d threads and %d changes, expected 0 to %d and 0 or more", o.threads,
+                          o.set_count, KAGE_MAX_THREADS);
+    errors e = {0};
+    c_locale l = c_locale_begin();
+    watch w = {o.progress, o.user, &l, false};
+    const progress p = watch_progress(&w);
+    kage_scene *k = calloc(1, sizeof *k);
+    const bool locks = k && pthread_mutex_init(&k->lock, NULL) == 0;
+    if (!locks) {
+        free(k);
+        k = NULL;
+    }
+    from->sets = o.set_count;
+    from->set = o.sets;
+    from->threads = o.threads;
+    from->model_reader = o.model_reader;
+    from->progress = &p;
+    scene *s = k && keep(k, from->folder, &o) ? scene_read(from, &e) : NULL;
+    if (s)
+        hold(k, s);
+    const bool good = s && !w.cancelled && scene_note(k);
+    c_locale_end(&l);
+    if (good) {
+        errors_free(&e);
+        *out = k;
+        return KAGE_OK;
+    }
+    kage_scene_free(k);
+    return errors_give(&e, KAGE_BAD_INPUT, &w, to);
+}
+
+kage_status kage_scene_load(const char *path, const kage_load_options *options, kage_scene **out, kage_errors **to)
+{
+    scene_source from = {.path = path};
+    return load(&from, options, out, to);
+}
+
+kage_status kage_scene_parse(const char *text, size_t size, const char *name, const char *folder,
+                             const kage_load_options *options, kage_scene **out, kage_errors **to)
+{
+    scene_source from = {.path = name ? name : "scene", .text = text, .size = size, .folder = folder ? folder : ""};
+    return load(&from, options, out, to);
+}
+
+void kage_scene_free(kage_scene *k)
+{
+    if (!k)
+        return;
+    scene_forget(k);
+    for (int i = 0; i < READINGS; i++)
+        scene_free(k->reading[i]);
+    for (int i = 0; k->set && i < k->sets; i++)
+        free(k->set[i]);
+    free(k->set);
+    free(k->folder);
+    free(k->model_reader);
+    pthread_mutex_destroy(&k->lock);
+    free(k);
+}
+
+/* From its text, with two more changes. */
+static scene *read_again(const kage_scene *k, bool displaced, method m, errors *e)
+{
+    char shadow[METHOD_NAME_SIZE + sizeof "render.shadow="] = "render.shadow=";
+    method_name(m, shadow + strlen(shadow));
+    const char **set = malloc(((size_t)k->sets + 2) * sizeof *set);
+    if (!set) {
+        errors_add(e, "out of memory");
+        return NULL;
+    }
+    for (int i = 0; i < k->sets; i++)
+        set[i] = k->set[i];
+    set[k->sets] = displaced ? "render.surface=displaced" : "render.surface=smooth";
+    set[k->sets + 1] = shadow;
+    const scene_source from = {
+        .path = k->first->path,
+        .text = k->first->source,
+        .size = strlen(k->first->source),
+        .folder = k->folder,
+        .sets = k->sets + 2,
+        .set = set,
+        .threads = k->threads,
+        .model_reader = k->model_reader,
+    };
+    scene *s = scene_read(&from, e);
+    free(set);
+    return s;
+}
+
+const scene *scene_reading(kage_scene *k, bool displaced, method m, errors *e)
+{
+    scene **at = &k->reading[reading_index(displaced, m)];
+    pthread_mutex_lock(&k->lock);
+    if (!*at)
+        *at = read_again(k, displaced, m, e);
+    const scene *s = *at;
+    pthread_mutex_unlock(&k->lock);
+    return s;
+}
+
+int kage_scene_uses_file(const kage_scene *k, const char *path) { return files_have_path(&k->first->made_from, path); }

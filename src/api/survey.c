@@ -1,0 +1,140 @@
+/* How steep the bumps are where the camera sees them, and what a user should be warned of. */
+#include "api/api.h"
+
+#include "render/intersect.h"
+#include "render/trace.h"
+#include "wave/gather.h"
+#include "wave/lane.h"
+
+#include <stdlib.h>
+
+enum { SAMPLES = 200, MOST_WARNINGS = 4 }; /* SAMPLES x SAMPLES rays over the picture; warnings of one object */
+
+/* Above this slope (95th percentile) the orders 0, 1 and 2 put more than about 1 % of a cast shadow's pixels wrong: the
+ * table of docs/method.md, "How far the orders go". */
+#define SLOPE_BOUND 0.35
+
+/* More than this share falls back often, in per cent. */
+#define FALL_BACK_BOUND 1.0
+
+/* What the rays have found on one object. */
+typedef struct seen {
+    float *slope;
+    int n;
+    long back[3]; /* samples where the orders 1 and 2 fell back */
+} seen;
+
+static int ascending(const void *a, const void *b)
+{
+    const float x = *(const float *)a, y = *(const float *)b;
+    return (x > y) - (x < y);
+}
+
+/* tan of the angle between the smooth and the perturbed normal: the slope of the bump in scene units. */
+static float slope(const hit_group *g, int i)
+{
+    const bs_vec3 n = lane_unit(lane_get(&g->n_smooth, i)), np = lane_get(&g->n_bump, i), c = bs_cross(n, np);
+    return (float)(real_sqrt(bs_dot(c, c)) / bs_dot(n, np));
+}
+
+/* The slopes are noted with order 2. */
+static void look(const scene *s, int order, workspace *v, seen *all)
+{
+    const tracer k = {.scene = s, .shadow = {METHOD_ORDER, order}, .guard = true};
+    for (int first = 0; first < SAMPLES * SAMPLES; first += LANES) {
+        const int n = SAMPLES * SAMPLES - first < LANES ? SAMPLES * SAMPLES - first : LANES;
+        for (int i = 0; i < n; i++)
+            camera_ray(&s->camera, SAMPLES, SAMPLES, (first + i) % SAMPLES + 0.5, (double)((first + i) / SAMPLES) + 0.5,
+                       &v->x, i);
+        intersect_nearest(s, n, v);
+        for (int32_t id; (id = gather_next_group(n, &v->x, &v->nearest, &v->g)) >= 0;) {
+            const hit_group *g = &v->g;
+            seen *o = &all[id];
+            if (!s->object[id].bump)
+                continue;
+            trace_group(&k, id, v);
+            for (int i = 0; i < g->n; i++) {
+                o->back[order] += g->order[i] != order;
+                if (order == 2)
+                    o->slope[o->n++] = slope(g, i);
+            }
+        }
+    }
+}
+
+static kage_bump_survey summary(seen *x)
+{
+    kage_bump_survey b = {.samples = x->n};
+    if (!x->n)
+        return b;
+    qsort(x->slope, (size_t)x->n, sizeof *x->slope, ascending);
+    b.slope_median = (double)x->slope[x->n / 2];
+    b.slope_95 = (double)x->slope[(int)(0.95 * x->n)];
+    b.slope_max = (double)x->slope[x->n - 1];
+    for (int k = 1; k <= 2; k++)
+        b.fell_back[k] = 100.0 * (double)x->back[k] / x->n;
+    return b;
+}
+
+static void warn(kage_warning *w, int *n, kage_warning_code code, int id, double value, double bound)
+{
+    w[(*n)++] = (kage_warning){code, id, value, bound};
+}
+
+static void warn_of(const kage_object_info *o, const kage_bump_survey *b, int id, kage_warning *w, int *n)
+{
+    const double back = b->fell_back[1] > b->fell_back[2] ? b->fell_back[1] : b->fell_back[2];
+    if (o->model && o->model->flat)
+        warn(w, n, KAGE_WARN_FLAT_TRIANGLES, id, o->model->flat, 0);
+    if (o->bump && !o->bounded)
+        warn(w, n, KAGE_WARN_UNBOUNDED, id, 0, 0);
+    if (b->slope_95 > SLOPE_BOUND)
+        warn(w, n, KAGE_WARN_STEEP, id, b->slope_95, SLOPE_BOUND);
+    if (back > FALL_BACK_BOUND)
+        warn(w, n, KAGE_WARN_FALLS_BACK, id, back, FALL_BACK_BOUND);
+}
+
+/* The survey with what it points to, in one piece: the objects' surveys lie behind it, and the warnings behind those.
+ */
+static kage_survey *report(const kage_scene *k, seen *all)
+{
+    const size_t objects = (size_t)k->info.object_count;
+    kage_survey *v =
+        malloc(sizeof *v + (objects + 1) * (sizeof(kage_bump_survey) + MOST_WARNINGS * sizeof(kage_warning)));
+    if (!v)
+        return NULL;
+    kage_bump_survey *b = (kage_bump_survey *)(void *)(v + 1);
+    kage_warning *w = (kage_warning *)(void *)(b + objects + 1);
+    *v = (kage_survey){.objects = b, .warnings = w};
+    for (int i = 0; i < k->info.object_count; i++) {
+        b[i] = summary(&all[i]);
+        warn_of(&k->info.objects[i], &b[i], i, w, &v->warning_count);
+    }
+    return v;
+}
+
+kage_status kage_scene_survey(kage_scene *k, kage_survey **out, kage_errors **to)
+{
+    const scene *s = k->first;
+    workspace *v = workspace_new(&(tracer){.scene = s});
+    seen *all = calloc((size_t)s->objects + 1, sizeof *all);
+    bool good = v && all;
+    *out = NULL;
+    if (to)
+        *to = NULL;
+    for (int i = 0; good && i < s->objects; i++)
+        if (s->object[i].bump)
+            good = (all[i].slope = malloc(sizeof(float) * SAMPLES * SAMPLES)) != NULL;
+    if (good) {
+        look(s, 1, v, all);
+        look(s, 2, v, all);
+        *out = report(k, all);
+    }
+    for (int i = 0; all && i < s->objects; i++)
+        free(all[i].slope);
+    free(all);
+    workspace_free(v);
+    return *out ? KAGE_OK : error_give(KAGE_NO_MEMORY, to, "out of memory");
+}
+
+void kage_survey_free(kage_survey *v) { free(v); }

@@ -1,0 +1,75 @@
+/* What all commands do: load the scene, print errors. */
+#include "cli/command.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+#include <time.h>
+
+bool usage_error(const char *fmt, ...)
+{
+    va_list args;
+    va_start(args, fmt);
+    fputs("kage: ", stderr);
+    vfprintf(stderr, fmt, args);
+    fputs("\n", stderr);
+    va_end(args);
+    return false;
+}
+
+const char *base_name(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
+double clock_now(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+int print_errors(kage_errors *e, int status)
+{
+    const int found = kage_errors_found(e), count = kage_errors_count(e);
+    for (int k = 0; k < count; k++)
+        fprintf(stderr, "%s\n", kage_errors_get(e, k)->message);
+    if (status == EXIT_INPUT && found > 1)
+        fprintf(stderr, "%d errors%s\n", found, found > count ? ", the first of them above" : "");
+    kage_errors_free(e);
+    return status;
+}
+
+/* A model is shown without its triangles that have no area; that is nothing to see, but may be a sign. */
+static void print_flat(const kage_scene_info *s)
+{
+    for (int k = 0; k < s->object_count; k++) {
+        const kage_model_info *m = s->objects[k].model;
+        if (m && m->flat)
+            fprintf(stderr, "kage: object %s: %d of the %d triangles in %s have no area; they are left out\n",
+                    s->objects[k].name, m->flat, m->triangles + m->flat, m->file);
+    }
+}
+
+kage_scene *load_scene(const arguments *a)
+{
+    kage_scene *s;
+    kage_errors *e;
+    progress_bar p;
+    progress_bar_start(&p, a->quiet, base_name(a->operand[0]), 0);
+    const kage_load_options o = {.sets = (const char *const *)a->set,
+                                 .set_count = a->sets,
+                                 .threads = a->threads,
+                                 .progress = progress_bar_load,
+                                 .user = &p};
+    const kage_status status = kage_scene_load(a->operand[0], &o, &s, &e);
+    progress_bar_end(&p);
+    if (status != KAGE_OK) {
+        print_errors(e, EXIT_INPUT);
+        return NULL;
+    }
+    if (!a->quiet && a->command != COMMAND_CHECK) /* which prints it itself */
+        print_flat(kage_scene_get_info(s));
+    return s;
+}

@@ -1,0 +1,155 @@
+/* The displaced surface's methods, which are the same whatever it is over, and the choice of its form. */
+#include "displaced/displaced.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "bvh/bvh.h"
+#include "displaced/form.h"
+#include "method/method.h"
+#include "wave/lane.h"
+
+static const displaced *of(const surface *f) { return (const displaced *)f; }
+
+static void displaced_hit(const surface *f, int n, const rays *x, int32_t id, hits *h)
+{
+    of(f)->form->hit(of(f), n, x, NULL, id, h);
+}
+
+static void displaced_hit_own(const surface *f, int n, const rays *x, const ray_origins *from, int32_t id, hits *h)
+{
+    of(f)->form->hit(of(f), n, x, from, id, h);
+}
+
+static void displaced_occlude(const surface *f, int n, const rays *x, real *lit)
+{
+    of(f)->form->occlude(of(f), n, x, NULL, lit);
+}
+
+static void displaced_occlude_own(const surface *f, int n, const rays *x, const int32_t *part, real *lit)
+{
+    of(f)->form->occlude(of(f), n, x, part, lit);
+}
+
+static void displaced_locate(const surface *f, int n, const rays *x, const real *t, int32_t *part, real *u, real *w)
+{
+    closest_points p;
+    of(f)->form->closest(of(f), n, x, t, part, &p);
+    memcpy(u, p.u, (size_t)n * sizeof *u);
+    memcpy(w, p.w, (size_t)n * sizeof *w);
+}
+
+static void displaced_extent(const surface *f, int part, double u[2], double w[2])
+{
+    of(f)->smooth->ops->extent(of(f)->smooth, part, u, w);
+}
+
+static void displaced_box(const surface *f, double lo[3], double hi[3])
+{
+    const displaced *d = of(f);
+    const double high = fmax(fabs((double)d->P->Pmin), fabs((double)d->P->Pmax));
+    d->smooth->ops->box(d->smooth, lo, hi);
+    for (int k = 0; k < 3; k++) {
+        lo[k] -= high;
+        hi[k] += high;
+    }
+}
+
+static const surface_ops displaced_ops = {
+    .kind = "displaced",
+    .hit = displaced_hit,
+    .hit_own = displaced_hit_own,
+    .locate = displaced_locate,
+    .occlude = displaced_occlude,
+    .occlude_own = displaced_occlude_own,
+    .extent = displaced_extent,
+    .box = displaced_box,
+};
+
+bool displaced_is(const surface *f) { return f->ops == &displaced_ops; }
+
+static const displaced_form *form_of(const surface *f)
+{
+    static const displaced_form *const all[] = {&displaced_over_patch, &displaced_over_mesh, &displaced_over_closed};
+    for (int k = 0; k < 3; k++)
+        if (all[k]->fits(f))
+            return all[k];
+    return NULL;
+}
+
+bool displaced_has_form(const surface *f) { return form_of(f) != NULL; }
+
+bool displaced_has_bounds(const bump *P)
+{
+    return P->Pmax - P->Pmin < REAL_FAR && P->Pu_max < REAL_FAR && P->Pw_max < REAL_FAR;
+}
+
+static void displaced_free(surface *f)
+{
+    displaced *d = (displaced *)f;
+    surface_free(d->offset);
+    bvh_free(d->prisms);
+    free(d);
+}
+
+surface *displaced_new(const surface *f, const bump *P)
+{
+    displaced *d = calloc(1, sizeof *d);
+    if (!d)
+        return NULL;
+    d->base = (surface){&displaced_ops, displaced_free};
+    d->form = form_of(f);
+    d->smooth = f;
+    d->P = P;
+    if (!d->form->prepare || d->form->prepare(d))
+        return &d->base;
+    displaced_free(&d->base);
+    return NULL;
+}
+
+displaced displaced_counting(const surface *f, displaced_counts *c)
+{
+    displaced d = *of(f);
+    d.counts = c;
+    return d;
+}
+
+/* The surface is where height - P = 0: its normal is the gradient of that. */
+void displaced_shape(const surface *f, hit_group *g)
+{
+    const displaced *d = of(f);
+    closest_points p;
+    d->form->closest(d, g->n, &g->x, g->t, g->part, &p);
+    memcpy(g->u, p.u, sizeof g->u);
+    memcpy(g->w, p.w, sizeof g->w);
+    d->P->ops->eval(d->P, g->n, g->u, g->w, 1, &g->bump);
+    for (int i = 0; i < g->n; i++) {
+        bs_vec3 h = lane_get(&p.gh, i), u = lane_get(&p.gu, i), w = lane_get(&p.gw, i);
+        bs_vec3 n = {h.x - g->bump.Pu[i] * u.x - g->bump.Pw[i] * w.x, h.y - g->bump.Pu[i] * u.y - g->bump.Pw[i] * w.y,
+                     h.z - g->bump.Pu[i] * u.z - g->bump.Pw[i] * w.z};
+        n = lane_unit(n);
+        lane_set(&g->n_smooth, i, n);
+        lane_set(&g->n_bump, i, n);
+        lane_set(&g->q.Q, i, lane_at(&g->x, i, g->t[i]));
+        g->tau[i] = 0;
+        g->order[i] = ORDER_EXACT;
+    }
+}
+
+void displaced_shift(const surface *f, hit_group *g)
+{
+    hits h;
+    for (int i = 0; i < g->n; i++) {
+        h.t[i] = REAL_FAR;
+        h.id[i] = -1;
+    }
+    f->ops->hit(f, g->n, &g->x, 0, &h);
+    for (int i = 0; i < g->n; i++) {
+        bs_vec3 n = lane_get(&g->n_smooth, i), Qu = lane_get(&g->q.Qu, i), Qw = lane_get(&g->q.Qw, i);
+        bs_real sn = bs_dot(lane_get(&g->x.s, i), n) / real_sqrt(bs_dot(n, n));
+        bs_view v = {sn, 0, 0};
+        real order_0 = bs_regular(n, Qu, Qw) ? bs_tau0(v, g->bump.P[i]) : 0;
+        g->tau[i] = h.id[i] == 0 ? h.t[i] - g->t[i] : order_0;
+        g->order[i] = h.id[i] == 0 ? ORDER_EXACT : 0;
+    }
+}

@@ -1,0 +1,116 @@
+/* Where an object's shape is: its image by the object's transform, and whether that is of a size, and in a place, that
+ * float bears. For true displacement a shape needs to know the foot of a perpendicular; one that does not is made a
+ * patch, if it has a formula, which is searched without.
+ */
+#include "displaced/displaced.h"
+#include "mesh/mesh.h"
+#include "patch/surface.h"
+#include "read/parts.h"
+
+/* By how much one direction may be stretched more than another: float has 7 digits, and needs 3 for the hits. */
+#define STRETCH 1e4
+
+/* Between what is allowed for keys, 1e-6 to 1e6, and this: numbers that a transform rounds. */
+#define ROUNDED 4
+
+static double length(const vec3s *v) { return vec3_length((vec3){(double)v->x[0], (double)v->y[0], (double)v->z[0]}); }
+
+static bool is_size(double x) { return x >= SMALL / ROUNDED && x <= BIG * ROUNDED; }
+
+/* The lengths of Qu and Qw in the middle of each part, within what a shape's own keys allow. */
+static bool is_sized(const surface *f, double *wrong)
+{
+    for (int32_t part = 0; part < f->ops->parts; part++) {
+        double U[2], W[2];
+        partials q;
+        f->ops->extent(f, part, U, W);
+        if (!(U[0] < U[1])) /* a cap of a cone that ends in a point */
+            continue;
+        const real u = U[1] < HUGE_VAL ? (real)(0.5 * (U[0] + U[1])) : 0,
+                   w = W[1] < HUGE_VAL ? (real)(0.5 * (W[0] + W[1])) : 0;
+        f->ops->eval(f, 1, &part, &u, &w, 1, &q);
+        const double l[2] = {length(&q.Qu), length(&q.Qw)};
+        for (int k = 0; k < 2; k++)
+            if (!is_size(l[k])) {
+                *wrong = l[k];
+                return false;
+            }
+    }
+    return true;
+}
+
+/* A mesh has no edges of its own: its size is that of the sphere around it. */
+static bool is_mesh_sized(const surface *f, const affine *m, double *wrong)
+{
+    const double longest = fmax(vec3_length(m->x), fmax(vec3_length(m->y), vec3_length(m->z)));
+    *wrong = longest * ((const mesh *)f)->space.radius;
+    return is_size(*wrong);
+}
+
+/* A closed form as a patch about the origin; NULL: it has no formula, or out of memory. */
+static surface *as_patch(const object *o, int threads)
+{
+    form_formula formula;
+    const shape_spec *f = &o->shape_spec;
+    return f->form->formula && f->form->formula(&f->values, &formula)
+               ? patch_surface_formula(f->form->name, &formula, threads)
+               : NULL;
+}
+
+/* The image of a closed form, which the values describe about the origin. */
+static surface *image_of_closed(object *o, const shape_values *values, const affine *m, bool truth, int threads)
+{
+    form_fault fault;
+    o->centred = o->shape_spec.form->make(values, &fault);
+    surface *f = o->centred ? surface_transformed(o->centred, m) : NULL,
+            *searched = f && truth && !displaced_has_form(f) ? as_patch(o, threads) : NULL;
+    if (!searched)
+        return f;
+    surface_free(f);
+    surface_free(o->centred);
+    o->centred = searched;
+    return patch_surface_affine(searched, m);
+}
+
+/* The image of the object's own shape; of a closed form that of `values`, about the origin. NULL: out of memory. */
+static surface *image_of(object *o, const shape_values *values, const affine *m, bool truth, int threads)
+{
+    if (o->shape_spec.kind == SHAPE_CLOSED)
+        return image_of_closed(o, values, m, truth, threads);
+    if (!truth)
+        return surface_transformed(o->own, m);
+    return o->shape_spec.kind == SHAPE_MESH ? mesh_moved(o->own, m) : patch_surface_affine(o->own, m);
+}
+
+static double square(const affine *m) { return vec3_dot(m->x, m->x) + vec3_dot(m->y, m->y) + vec3_dot(m->z, m->z); }
+
+bool reader_place(reader *r, node *at, object *o)
+{
+    const affine *m = &o->placed, back = affine_back(m);
+    const bool is_mesh = o->shape_spec.kind == SHAPE_MESH, truth = o->bump && scene_wants_truth(r->s);
+    affine whole = affine_identity();
+    shape_values values = {.open = false};
+    double wrong = 0;
+    /* closed forms about the origin: float would lose digits where a shape is far from it before the transform */
+    if (o->shape_spec.kind == SHAPE_CLOSED)
+        values = shape_centred(o->shape_spec.form, &o->shape_spec.values, &whole.o);
+    const vec3 to = affine_point(m, is_mesh ? ((const mesh *)o->own)->space.centre : whole.o);
+    const double far = fmax(fabs(to.x), fmax(fabs(to.y), fabs(to.z)));
+    if (!(far <= BIG))
+        return yaml_error(r->y, at, "it goes %.4g scene units away, expected 1000000 at most", far);
+    if (!(square(m) * square(&back) <= STRETCH * STRETCH))
+        return yaml_error(r->y, at, "one way is stretched more than %g times as much as another, expected less",
+                          STRETCH);
+    whole = affine_then(&whole, m);
+    if (!(o->shape = image_of(o, &values, &whole, truth, r->from->threads)))
+        return errors_add(r->e, "out of memory");
+    if (!(is_mesh ? is_mesh_sized(o->own, m, &wrong) : is_sized(o->shape, &wrong)))
+        return yaml_error(r->y, at, "an edge or a radius of %.4g scene units comes from this, expected 1e-6 to 1e6",
+                          wrong);
+    if (truth && !displaced_has_form(o->shape))
+        return yaml_error(r->y, at,
+                          "a %s with caps and a bump is stretched more one way than another, expected the same scale "
+                          "all ways, or 'open: true', for %s",
+                          o->shape->ops->kind, r->s->displaced ? "surface displaced" : "shadow exact");
+    return true;
+}

@@ -1,0 +1,99 @@
+/* The scene reader's image, camera and render: what the picture is to be, apart from what is in it. */
+#include "image/image.h"
+#include "read/parts.h"
+
+static void read_image(reader *r)
+{
+    scene *s = r->s;
+    node *at = yaml_get(yaml_root(r->y), "image");
+    double size[2];
+    s->width = 640;
+    s->height = 480;
+    if (!at || !yaml_map(r->y, at, "image", "size background"))
+        return;
+    node *k = yaml_get(at, "size");
+    if (k && yaml_numbers(r->y, k, 2, 1, SCENE_MAX_SIDE, "[width, height] in pixels, from 1 to 32768", size)) {
+        if (size[0] != floor(size[0]) || size[1] != floor(size[1]))
+            yaml_error(r->y, k, "no whole numbers, expected [width, height] in pixels");
+        if (size[0] * size[1] > (double)IMAGE_MAX_PIXELS)
+            yaml_error(r->y, k, "%.0f pixels, expected at most %ld", size[0] * size[1], IMAGE_MAX_PIXELS);
+        s->width = (int)size[0];
+        s->height = (int)size[1];
+    }
+    reader_color(r, at, "background", &s->background);
+}
+
+static void read_camera(reader *r)
+{
+    node *at = yaml_need(r->y, yaml_root(r->y), "camera", "the scene");
+    if (!at || !yaml_map(r->y, at, "camera", "from at up fov width"))
+        return;
+    vec3 from = {0, 0, 0}, to = {0, 0, 0}, up = {0, 1, 0};
+    double fov = 40, width = 0;
+    node *across = yaml_get(at, "width");
+    bool good = reader_need_all(r, at, "from at", "camera");
+    good = reader_vector(r, at, "from", "the eye's place [x, y, z]", &from) && good;
+    good = reader_vector(r, at, "at", "the place looked at [x, y, z]", &to) && good;
+    good = reader_vector(r, at, "up", "a direction [x, y, z]", &up) && good;
+    good = reader_number(r, at, "fov", 0, true, 175, "the horizontal angle in degrees, above 0 and up to 175", &fov) &&
+           good;
+    good = reader_number(r, at, "width", SMALL, false, BIG,
+                         "the width of an orthographic picture in scene units, from 1e-6 to 1e6", &width) &&
+           good;
+    if (across && yaml_get(at, "fov"))
+        good = yaml_error(
+            r->y, across,
+            "both 'width' and 'fov', expected the one for an orthographic camera or the other for a pinhole");
+    if (!good)
+        return;
+    camera *c = &r->s->camera;
+    const int columns = r->s->width, rows = r->s->height;
+    r->s->view = (camera_view){to, up, fov, width};
+    if (vec3_length(vec3_sub(to, from)) < SMALL)
+        yaml_error(r->y, yaml_get(at, "at"), "the camera looks at its own place, expected 'at' apart from 'from'");
+    else if (vec3_length(up) < SMALL)
+        yaml_error(r->y, yaml_get(at, "up"), "no direction, expected a vector with a length");
+    else if (across ? !camera_orthographic(c, from, to, up, width, columns, rows)
+                    : !camera_look(c, from, to, up, fov, columns, rows))
+        yaml_error(r->y, yaml_get(at, "up") ? yaml_get(at, "up") : at,
+                   "'up' is along the view, expected a direction across it%s",
+                   yaml_get(at, "up") ? "" : " (it is [0, 1, 0])");
+}
+
+static void read_render(reader *r)
+{
+    scene *s = r->s;
+    node *at = yaml_get(yaml_root(r->y), "render"), *k;
+    s->shadow = (method){METHOD_ORDER, 0};
+    s->guard = true;
+    s->aa = 1;
+    s->aa_threshold = -1;
+    s->depth = 5;
+    s->self_shadow = true;
+    if (!at || !yaml_map(r->y, at, "render", "shadow guard aa aa_threshold depth surface self_shadow"))
+        return;
+    if ((k = yaml_get(at, "shadow"))) {
+        const char *text = yaml_text(r->y, k, method_expected);
+        if (text && !method_parse(text, &s->shadow))
+            yaml_error(r->y, k, "'%.60s' is no method, expected %s", text, method_expected);
+    }
+    if ((k = yaml_get(at, "guard")))
+        yaml_bool(r->y, k, "true or false", &s->guard);
+    if ((k = yaml_get(at, "aa")))
+        yaml_whole(r->y, k, 1, SCENE_MAX_AA, "samples along a pixel's side, 1 to 16", &s->aa);
+    reader_number(r, at, "aa_threshold", 0, false, 3,
+                  "how much two pixels may differ, red, green and blue together, 0 to 3", &s->aa_threshold);
+    if ((k = yaml_get(at, "depth")))
+        yaml_whole(r->y, k, 1, SCENE_MAX_DEPTH, "how many rays follow one another, 1 to 32", &s->depth);
+    if ((k = yaml_get(at, "surface")))
+        s->displaced = yaml_word(r->y, k, "smooth displaced", "smooth or displaced") == 1;
+    if ((k = yaml_get(at, "self_shadow")))
+        yaml_bool(r->y, k, "true or false", &s->self_shadow);
+}
+
+void reader_view(reader *r)
+{
+    read_image(r);
+    read_camera(r);
+    read_render(r);
+}

@@ -1,0 +1,46 @@
+/* The nearest hits: each object in turn shortens the rays. In a scene of many objects each is tried with those rays
+ * alone that pass its box. */
+#include "render/intersect.h"
+
+#include "wave/gather.h"
+
+static void intersect_some(const surface *f, int n, const int32_t *lane, const rays *x, const ray_origins *from,
+                           int32_t id, hits *h)
+{
+    rays y;
+    ray_origins begin;
+    hits some;
+    gather_rays(n, lane, x, &y);
+    if (from)
+        gather_ray_origins(n, lane, from, &begin);
+    for (int i = 0; i < n; i++) {
+        some.t[i] = h->t[lane[i]];
+        some.id[i] = h->id[lane[i]];
+        some.part[i] = h->part[lane[i]];
+    }
+    intersect_surface(f, n, &y, from ? &begin : NULL, id, &some);
+    for (int i = 0; i < n; i++) {
+        h->t[lane[i]] = some.t[i];
+        h->id[lane[i]] = some.id[i];
+        h->part[lane[i]] = some.part[i];
+    }
+}
+
+void intersect_nearest(const scene *s, int n, workspace *v)
+{
+    const ray_origins *from = v->of ? &v->of->from : NULL;
+    int32_t lane[LANES];
+    gather_begin(n, &v->nearest);
+    if (v->candidates)
+        object_bvh_find(s->object_bvh, n, &v->x, v->nearest.t, from ? from->id : NULL, v->candidates);
+    for (int32_t id = intersect_next(s, v->candidates, -1); id >= 0; id = intersect_next(s, v->candidates, id)) {
+        const int some = v->candidates ? candidates_rays(v->candidates, id, lane) : n;
+        if (some < n)
+            intersect_some(v->surface[id], some, lane, &v->x, from, id, &v->nearest);
+        else
+            intersect_surface(v->surface[id], n, &v->x, from, id, &v->nearest);
+    }
+    if (from)
+        gather_move_origins(n, from, &v->nearest, &v->x);
+    *(from ? &v->stats->secondary_rays : &v->stats->rays) += n;
+}

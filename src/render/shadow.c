@@ -1,0 +1,129 @@
+/* Shadows. The paper shifts the start of the shadow rays (section 3: "the shadow is computed from the intersection
+ * found anew"; section 6: from r + s t0 instead of p1 = r + s t_hit). The shift is for other objects' shadows. A
+ * surface's own smooth shape would shade itself wherever a start is shifted below it, so its own shadow starts at p1
+ * (ours). No offset is added to a start: surfaces leave their own t = 0 out.
+ */
+#include "render/shadow.h"
+
+#include <string.h>
+
+#include "render/intersect.h"
+#include "render/lighting.h"
+#include "render/transmittance.h"
+#include "wave/gather.h"
+#include "wave/lane.h"
+
+static bool casts(const tracer *tr, int32_t id) { return tr->self_shadow || !tr->scene->object[id].bump; }
+
+static bool is_clear(const tracer *tr, int32_t id)
+{
+    return material_clear(&tr->scene->material[tr->scene->object[id].material]);
+}
+
+/* A displaced surface that faces away from the light is dark; rays leave it to the side that is seen alone. */
+static void darken_facing_away(hit_group *g)
+{
+    for (int i = 0; i < g->n; i++) {
+        bs_vec3 n = lane_get(&g->n_smooth, i);
+        bool lit = bs_dot(n, lane_get(&g->to_light.s, i)) * bs_dot(n, lane_get(&g->x.s, i)) < 0;
+        g->lit[i] = lit ? g->lit[i] : 0;
+    }
+}
+
+static void cast_own(const tracer *tr, int32_t id, workspace *v)
+{
+    const surface *f = v->surface[id];
+    hit_group *g = &v->g;
+    if (displaced_is(f))
+        darken_facing_away(g);
+    if (is_clear(tr, id))
+        transmittance_own(tr->scene, id, v);
+    else
+        f->ops->occlude_own(f, g->n, &g->to_light, g->part, g->lit);
+}
+
+/* Another object's shadow on some lanes of the group. */
+static void occlude_some(const surface *f, int n, const int32_t *lane, hit_group *g)
+{
+    rays x;
+    real lit[LANES];
+    gather_rays(n, lane, &g->to_light, &x);
+    for (int i = 0; i < n; i++)
+        lit[i] = g->lit[lane[i]];
+    f->ops->occlude(f, n, &x, lit);
+    for (int i = 0; i < n; i++)
+        g->lit[lane[i]] = lit[i];
+}
+
+/* The objects that a group's segments to the light may meet. What is dark already need not be searched. */
+static void find_candidates(const object_bvh *c, const hit_group *g, candidates *m)
+{
+    real end[LANES];
+    for (int i = 0; i < g->n; i++)
+        end[i] = g->lit[i] > 0 ? R(1) : R(-1);
+    object_bvh_find(c, g->n, &g->to_light, end, NULL, m);
+}
+
+static void cast_others(const tracer *tr, int32_t id, workspace *v)
+{
+    const scene *s = tr->scene;
+    hit_group *g = &v->g;
+    int32_t lane[LANES];
+    if (v->candidates)
+        find_candidates(s->object_bvh, g, v->candidates);
+    for (int32_t j = intersect_next(s, v->candidates, -1); j >= 0; j = intersect_next(s, v->candidates, j)) {
+        const surface *f = v->surface[j];
+        if (j == id || !casts(tr, j))
+            continue;
+        if (is_clear(tr, j))
+            transmittance_other(s, j, v);
+        else if (v->candidates)
+            occlude_some(f, candidates_rays(v->candidates, j, lane), lane, g);
+        else
+            f->ops->occlude(f, g->n, &g->to_light, g->lit);
+    }
+}
+
+/* By a light of one place. */
+static void shadow_place(const tracer *tr, int32_t id, const light *l, workspace *v)
+{
+    hit_group *g = &v->g;
+    for (int i = 0; i < g->n; i++)
+        g->lit[i] = 1;
+    if (tr->scene->clear)
+        transmittance_begin(g);
+    if (casts(tr, id) && (v->surface[id]->ops->occlude_own || is_clear(tr, id))) {
+        lighting_aim(l, g->t, g); /* from p1 */
+        cast_own(tr, id, v);
+    }
+    lighting_aim(l, g->t0, g); /* from r + s t0 */
+    cast_others(tr, id, v);
+    v->stats->shadow_rays += g->n;
+}
+
+void shadow_light(const tracer *tr, int32_t id, const light *l, workspace *v)
+{
+    const int places = l->samples[0] * l->samples[1];
+    const bool tinted = tr->scene->clear;
+    hit_group *g = &v->g;
+    if (places == 1) {
+        shadow_place(tr, id, l, v);
+        return;
+    }
+    real sum[LANES] = {0}, share;
+    vec3s colors = {{0}, {0}, {0}};
+    for (int k = 0; k < places; k++) {
+        const light one = light_sample(l, k, &share);
+        shadow_place(tr, id, &one, v);
+        if (tinted)
+            lighting_add_tint(g, share, &colors);
+        else
+            lighting_add(g, share, sum);
+    }
+    if (tinted) {
+        g->tint = colors;
+        for (int i = 0; i < g->n; i++)
+            g->lit[i] = 1;
+    } else
+        memcpy(g->lit, sum, sizeof sum);
+}

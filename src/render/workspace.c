@@ -1,0 +1,73 @@
+/* The memory of a thread: a workspace for the camera's waves, and a chain of others for the secondary waves. */
+#include "render/workspace.h"
+
+#include <stdlib.h>
+
+#include "scene/object_bvh.h"
+
+static workspace *chain_new(int lights, int deeper)
+{
+    workspace *v = calloc(1, sizeof *v);
+    if (!v)
+        return NULL;
+    v->visibility = malloc((size_t)(lights ? lights : 1) * sizeof *v->visibility);
+    v->deeper = v->visibility && deeper ? chain_new(0, deeper - 1) : NULL;
+    if (v->visibility && (!deeper || v->deeper))
+        return v;
+    workspace_free(v);
+    return NULL;
+}
+
+/* The surfaces that rays meet. */
+static void choose_surfaces(const tracer *tr, workspace *v)
+{
+    for (int k = 0; k < tr->scene->objects; k++) {
+        const object *o = &tr->scene->object[k];
+        if (o->displaced)
+            v->displaced[k] = displaced_counting(o->displaced, &v->stats->displaced);
+        v->surface[k] = tr->displaced && o->displaced ? &v->displaced[k].base : o->shape;
+    }
+}
+
+workspace *workspace_new(const tracer *tr)
+{
+    const scene *s = tr->scene;
+    const size_t objects = (size_t)(s->objects ? s->objects : 1);
+    /* one more than rays follow: what goes straight on from a camera's wave has one of its own */
+    workspace *v = chain_new(s->lights, s->sends && s->depth > 1 ? s->depth : 0);
+    if (!v)
+        return NULL;
+    v->left = s->depth - 1;
+    v->stats = calloc(1, sizeof *v->stats);
+    v->surface = malloc(objects * sizeof *v->surface);
+    v->displaced = malloc(objects * sizeof *v->displaced);
+    v->candidates = s->object_bvh ? candidates_new(s->object_bvh) : NULL;
+    if (!v->stats || !v->surface || !v->displaced || (s->object_bvh && !v->candidates)) {
+        workspace_free(v);
+        return NULL;
+    }
+    choose_surfaces(tr, v);
+    for (workspace *w = v->deeper; w; w = w->deeper) {
+        w->stats = v->stats;
+        w->surface = v->surface;
+        w->displaced = v->displaced;
+        w->candidates = v->candidates;
+    }
+    return v;
+}
+
+void workspace_free(workspace *v)
+{
+    if (v) {
+        candidates_free(v->candidates);
+        free(v->displaced);
+        free(v->surface);
+        free(v->stats);
+    }
+    while (v) {
+        workspace *next = v->deeper;
+        free(v->visibility);
+        free(v);
+        v = next;
+    }
+}

@@ -1,0 +1,45 @@
+/* The end of a scene: it owns all it points to. */
+#include "scene/scene.h"
+
+#include "scene/object_bvh.h"
+
+#include <stdlib.h>
+
+void scene_free(scene *s)
+{
+    if (!s)
+        return;
+    object_bvh_free(s->object_bvh);
+    for (int i = 0; i < s->lights; i++)
+        free(s->light[i].name);
+    for (int i = 0; i < s->materials; i++) {
+        free(s->material[i].name);
+        free(s->material[i].file);
+        texels_free(s->material[i].texels);
+    }
+    for (int i = 0; i < s->objects; i++) {
+        object *o = &s->object[i];
+        free(o->name);
+        surface_free(o->displaced);
+        if (o->shape != o->own)
+            surface_free(o->shape);
+        surface_free(o->centred);
+        if (!o->copy_of) {
+            surface_free(o->own);
+            free(o->shape_spec.file);
+        }
+        color_texture_free(o->color);
+        if (o->shares_bump)
+            continue;
+        bump_free(o->bump);
+        free(o->bump_spec.function);
+        free(o->map.file);
+    }
+    free(s->light);
+    free(s->material);
+    free(s->object);
+    files_free(&s->made_from);
+    free(s->path);
+    free(s->source);
+    free(s);
+}

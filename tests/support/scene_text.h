@@ -1,0 +1,41 @@
+/* Scenes from text, and what their rays find. */
+#ifndef KAGE_TESTS_SCENE_TEXT_H
+#define KAGE_TESTS_SCENE_TEXT_H
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+#include "render/trace.h"
+#include "scene/scene.h"
+#include "wave/lane.h"
+
+static inline scene *scene_text(const char *text)
+{
+    char path[] = "/tmp/kage-scene-XXXXXX";
+    const int fd = mkstemp(path);
+    FILE *f = fd >= 0 ? fdopen(fd, "w") : NULL;
+    errors e = {0};
+    assert_non_null(f);
+    fputs(text, f);
+    fclose(f);
+    scene *s = scene_read(path, 0, NULL, NULL, &e);
+    unlink(path);
+    if (!s)
+        fail_msg("%s", e.text);
+    errors_free(&e);
+    return s;
+}
+
+/* A workspace in which lane i has its ray through pixel i of the picture, row by row. */
+static inline workspace *camera_wave(const tracer *tr)
+{
+    const scene *s = tr->scene;
+    workspace *v = workspace_new(tr);
+    assert_non_null(v);
+    for (int i = 0; i < LANES; i++)
+        camera_ray(&s->camera, s->width, s->height, i % s->width + 0.5, i / s->width + 0.5, &v->x, i);
+    return v;
+}
+
+#endif

@@ -1,0 +1,200 @@
+/* Memory that runs out, at every place in turn: loading, rendering and writing a scene of each kind. The n-th request
+ * of the library fails; then there is an error, KAGE_NO_MEMORY, nothing crashes, and all that was given out is back.
+ *
+ * The linker puts the functions below in the place of malloc and its like for our own objects (--wrap, see the
+ * Makefile); other libraries keep theirs. A request that only makes a piece smaller may fail without any harm.
+ */
+#include "unit/api/scenes.h"
+
+#include <errno.h>
+#include <unistd.h>
+
+void *__real_malloc(size_t size);
+void *__real_calloc(size_t n, size_t size);
+void *__real_realloc(void *p, size_t size);
+int __real_posix_memalign(void **p, size_t align, size_t size);
+char *__real_strdup(const char *text);
+void __real_free(void *p);
+struct fy_node;
+struct fy_document;
+struct fy_node *__real_fy_node_build_from_malloc_string(struct fy_document *to, char *text, size_t size);
+struct fy_node *__wrap_fy_node_build_from_malloc_string(struct fy_document *to, char *text, size_t size);
+void *__wrap_malloc(size_t size);
+void *__wrap_calloc(size_t n, size_t size);
+void *__wrap_realloc(void *p, size_t size);
+int __wrap_posix_memalign(void **p, size_t align, size_t size);
+char *__wrap_strdup(const char *text);
+void __wrap_free(void *p);
+
+enum { MOST = 1 << 14 };
+static long request, fails_at; /* 0: none fails */
+static void *live[MOST];
+static int lives;
+
+static int fails(void)
+{
+    const int now = fails_at && ++request == fails_at;
+    if (now)
+        errno = ENOMEM;
+    return now;
+}
+
+static void *give(void *p)
+{
+    if (p && fails_at && lives < MOST)
+        live[lives++] = p;
+    return p;
+}
+
+/* What is not ours, as realpath's, is not in the list. */
+static void take(const void *p)
+{
+    for (int k = lives - 1; p && k >= 0; k--)
+        if (live[k] == p) {
+            live[k] = live[--lives];
+            return;
+        }
+}
+
+void *__wrap_malloc(size_t size) { return fails() ? NULL : give(__real_malloc(size)); }
+
+void *__wrap_calloc(size_t n, size_t size) { return fails() ? NULL : give(__real_calloc(n, size)); }
+
+void *__wrap_realloc(void *p, size_t size)
+{
+    if (fails())
+        return NULL;
+    void *q = __real_realloc(p, size);
+    if (q) {
+        take(p);
+        give(q);
+    }
+    return q;
+}
+
+int __wrap_posix_memalign(void **p, size_t align, size_t size)
+{
+    const int error = fails() ? ENOMEM : __real_posix_memalign(p, align, size);
+    if (!error)
+        give(*p);
+    return error;
+}
+
+char *__wrap_strdup(const char *text) { return fails() ? NULL : give(__real_strdup(text)); }
+
+void __wrap_free(void *p)
+{
+    take(p);
+    __real_free(p);
+}
+
+/* The text becomes the document's. */
+struct fy_node *__wrap_fy_node_build_from_malloc_string(struct fy_document *to, char *text, size_t size)
+{
+    take(text);
+    return __real_fy_node_build_from_malloc_string(to, text, size);
+}
+
+static const char *work_on(const char *text, const kage_render_options *o, const char *path, kage_status *status)
+{
+    kage_scene *s = NULL;
+    kage_film *f = NULL;
+    kage_errors *e = NULL;
+    const char *step = "load";
+    const kage_load_options one = {.threads = 1};
+    *status = kage_scene_parse(text, strlen(text), "m", KAGE_TESTS_DIR "/../scenes/data", &one, &s, &e);
+    if (*status == KAGE_OK) {
+        step = "render";
+        *status = kage_render(s, o, &f, &e);
+    }
+    if (*status == KAGE_OK) {
+        step = "write a PNG";
+        *status = kage_film_write_png(f, path, 8, &e);
+    }
+    if (*status == KAGE_OK) {
+        step = "write an EXR";
+        *status = kage_film_write_exr(f, path, NULL, 1, &e);
+    }
+    if (*status == KAGE_OK) {
+        step = "export";
+        *status = kage_scene_write_povray(s, path, NULL, NULL, &e);
+    }
+    if (*status != KAGE_OK && *status != KAGE_NO_MEMORY)
+        print_error("%s\n", kage_errors_get(e, 0)->message);
+    if (*status != KAGE_OK && kage_errors_count(e) == 0)
+        step = "say why";
+    kage_errors_free(e);
+    kage_film_free(f);
+    kage_scene_free(s);
+    return step;
+}
+
+/* `stride`: every how many requests one is tried; the first 100 all are. */
+static void each_fails(const char *text, const kage_render_options *o, long stride)
+{
+    char path[] = "/tmp/kage-memory-XXXXXX";
+    const int fd = mkstemp(path);
+    assert_true(fd >= 0);
+    long n = 1;
+    kage_status status = KAGE_NO_MEMORY;
+    int reached = 1;
+    for (; reached; n += n < 100 ? 1 : stride) {
+        request = 0;
+        lives = 0;
+        fails_at = n;
+        const char *step = work_on(text, o, path, &status);
+        const int left = lives;
+        reached = request >= n;
+        fails_at = 0;
+        if (left)
+            fail_msg("request %ld: %d pieces of memory are not freed, in: %s", n, left, step);
+        if (status != KAGE_OK && status != KAGE_NO_MEMORY)
+            fail_msg("request %ld failed, and status %d came of it, in: %s", n, status, step);
+    }
+    assert_true(n > 20);
+    close(fd);
+    unlink(path);
+}
+
+static const kage_render_options plain = {
+    .threads = 1, .layers = 1, .aa = 2, .aa_threshold = 0.1, .width = 16, .height = 12};
+static const kage_render_options truth = {.threads = 1, .displaced = KAGE_YES, .width = 16, .height = 12};
+
+static void of_functions(void **state)
+{
+    (void)state;
+    each_fails(GROUND, &plain, 1);
+}
+
+static void of_maps(void **state)
+{
+    (void)state;
+    each_fails(WITH_MAP, &plain, 1);
+}
+
+static void of_displaced_surfaces(void **state)
+{
+    (void)state;
+    each_fails(GROUND, &truth, 1);
+}
+
+static void of_parametric_surfaces(void **state)
+{
+    (void)state;
+    each_fails(PARAMETRIC, &truth, 7);
+}
+
+static void of_models(void **state)
+{
+    (void)state;
+    each_fails(MODEL, &plain, 7);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(of_functions),           cmocka_unit_test(of_maps),   cmocka_unit_test(of_displaced_surfaces),
+        cmocka_unit_test(of_parametric_surfaces), cmocka_unit_test(of_models),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
