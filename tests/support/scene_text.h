@@ -2,9 +2,7 @@
 #ifndef KAGE_TESTS_SCENE_TEXT_H
 #define KAGE_TESTS_SCENE_TEXT_H
 
-#include <stdio.h>
-#include <stdlib.h>
-#include <unistd.h>
+#include <string.h>
 
 #include "render/trace.h"
 #include "scene/scene.h"
@@ -12,15 +10,8 @@
 
 static inline scene *scene_text(const char *text)
 {
-    char path[] = "/tmp/kage-scene-XXXXXX";
-    const int fd = mkstemp(path);
-    FILE *f = fd >= 0 ? fdopen(fd, "w") : NULL;
     errors e = {0};
-    assert_non_null(f);
-    fputs(text, f);
-    fclose(f);
-    scene *s = scene_read(path, 0, NULL, NULL, &e);
-    unlink(path);
+    scene *s = scene_read(&(scene_source){.path = "test.yaml", .text = text, .size = strlen(text)}, &e);
     if (!s)
         fail_msg("%s", e.text);
     errors_free(&e);

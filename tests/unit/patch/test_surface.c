@@ -214,7 +214,7 @@ static void hits_are_on_the_surface(void **state)
 
 /* The sphere and the torus that have closed forms: the same hits, the same shadows, rays from within and such that
  * graze. */
-static void closed_forms(void **state)
+static void as_closed_forms(void **state)
 {
     const int kind = *(const int *)*state;
     surface *f = surface_of(kind);
@@ -796,7 +796,7 @@ static bool has_closed_form(int kind) { return kind == BALL || kind == RING; }
 
 static const property PROPERTIES[] = {
     {"hits are on the surface", hits_are_on_the_surface, NULL},
-    {"as by closed forms", closed_forms, has_closed_form},
+    {"as by closed forms", as_closed_forms, has_closed_form},
     {"own shadows as by closed forms", own_shadows, has_closed_form},
     {"as by brute force", brute_force, NULL},
     {"no cracks", no_cracks, NULL},
