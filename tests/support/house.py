@@ -212,7 +212,10 @@ def lines_are_short(house: House) -> Iterator[str]:
 
 
 def functions_are_short(house: House) -> Iterator[str]:
+    """The yardsticks of the bench are left out: each is one long loop, as that is what they measure."""
     for path, text in house.texts.items():
+        if path.startswith("bench/limits/"):
+            continue
         for name, line, length in (functions_in_python if path.endswith(".py") else functions_in_c)(path, text):
             if length > LINES_OF_FUNCTION:
                 yield f"{path}:{line}: {name} has {length} lines"
