@@ -1,3 +1,4 @@
+/* The small readers of the scene reader. */
 #include "read/values.h"
 
 #include <stdio.h>

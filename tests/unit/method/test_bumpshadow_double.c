@@ -1,3 +1,4 @@
+/* bumpshadow.h in double. */
 #define BS_DOUBLE
 #define BUMPSHADOW_NAME "bumpshadow.h in double"
 #include "bumpshadow_cases.h"
