@@ -16,7 +16,8 @@
 #include "render/shadow.h"
 #include "wave/gather.h"
 
-/* Where a group's lanes are on the smooth surface f, P there, n and n', and tau. */
+/* The smooth hit Q and its partials, P and its partials (a map's by bilinear interpolation: texture/bump_map.c), n and
+ * n' (shift_normals), and tau within the slab (shift_group). */
 static void shape_and_shift(const tracer *tr, int32_t id, workspace *v)
 {
     const surface *f = v->surface[id];
