@@ -50,12 +50,15 @@ endif
 # The libraries' headers as system headers: their warnings are not ours.
 PKG_CFLAGS := $(patsubst -I%,-isystem %,$(shell pkg-config --cflags $(PKGS) assimp 2>/dev/null))
 # Embree 4 or 3, whichever has its headers here: it need not have a pkg-config file.
-EMBREE     := $(firstword $(foreach v,4 3,$(shell printf '\043include <embree$(v)/rtcore.h>\n' | $(CC) -fsyntax-only -x c - 2>/dev/null && echo $(v))))
+EMBREE     := $(firstword $(foreach v,4 3,$(shell printf '\043include <embree$(v)/rtcore.h>\n' | \
+                  $(CC) -fsyntax-only -x c - 2>/dev/null && echo $(v))))
 DEFINES    += -DKAGE_EMBREE=$(or $(EMBREE),0)
-PKG_LIBS   := $(shell pkg-config --libs-only-L OpenEXR 2>/dev/null) -lOpenEXRCore $(shell pkg-config --libs libpng libfyaml 2>/dev/null)
+PKG_LIBS   := $(shell pkg-config --libs-only-L OpenEXR 2>/dev/null) -lOpenEXRCore \
+              $(shell pkg-config --libs libpng libfyaml 2>/dev/null)
 # All objects can go into the shared library, and only what kage.h declares can be seen from outside.
 VISIBILITY = -fPIC -fvisibility=hidden
-override CFLAGS  += -Iinclude -Isrc $(STANDARD) $(OPTIMISE) $(VISIBILITY) $(THREADS) $(WARNINGS) $(DEFINES) $(SANITIZER) $(PKG_CFLAGS) -MMD -MP
+override CFLAGS  += -Iinclude -Isrc $(STANDARD) $(OPTIMISE) $(VISIBILITY) $(THREADS) $(WARNINGS) $(DEFINES) \
+                    $(SANITIZER) $(PKG_CFLAGS) -MMD -MP
 override LDFLAGS += $(THREADS) $(SANITIZER)
 LIBS       = $(PKG_LIBS) -lembree$(or $(EMBREE),3) -ldl -lm
 IMPORT_LIBS := $(shell pkg-config --libs assimp 2>/dev/null) -lm
@@ -109,7 +112,8 @@ bootstrap:
 render: all
 	@CC='$(CC)' scripts/bootstrap python
 	@$(MAKE) --no-print-directory $(PICTURES) out/figures.png out/gallery.png out/gallery/index.html
-	@echo 'The pictures are in out/, those of the paper side by side in out/figures.png, the gallery in out/gallery/index.html and out/gallery.png:'
+	@echo 'The pictures are in out/, those of the paper side by side in out/figures.png,'
+	@echo 'the gallery in out/gallery/index.html and out/gallery.png:'
 	@ls $(PICTURES) $(PICTURES:.png=.exr) out/figures.png $(GALLERY:%=out/gallery/%.png)
 
 # A picture is a scene and a method; its EXR is written along with it.
@@ -145,8 +149,10 @@ out/gallery/%.png: scenes/gallery/%.yaml $(BUILD)/kage
 	$(BUILD)/kage render $< --aa 3 -o $@
 
 out/gallery.png: $(SHOWN:%=out/gallery/%-none.png) $(SHOWN:%=out/gallery/%.png) scripts/contact_sheet.py
-	scripts/venv python scripts/contact_sheet.py -o $@ --columns 3 --title "Above, bump mapping alone; below, the same scenes by their best method" \
-	    $(foreach s,$(SHOWN),out/gallery/$(s)-none.png="$(s): none") $(foreach s,$(SHOWN),out/gallery/$(s).png="$(s): kage")
+	scripts/venv python scripts/contact_sheet.py -o $@ --columns 3 \
+	    --title "Above, bump mapping alone; below, the same scenes by their best method" \
+	    $(foreach s,$(SHOWN),out/gallery/$(s)-none.png="$(s): none") \
+	    $(foreach s,$(SHOWN),out/gallery/$(s).png="$(s): kage")
 
 out/gallery/index.html: $(GALLERY:%=out/gallery/%-none.png) $(GALLERY:%=out/gallery/%.png) scripts/gallery.py
 	scripts/venv python scripts/gallery.py -o $@ $(GALLERY:%=scenes/gallery/%.yaml)
@@ -214,7 +220,8 @@ $(UNITS:%=$(BUILD)/%): $(BUILD)/%: $(BUILD)/%.o $(BUILD)/internal.a
 	$(Q)$(CC) $(LDFLAGS) -o $@ $^ -lcmocka $(LIBS)
 
 # A test in which memory runs out: our own objects ask its functions.
-$(BUILD)/unit/api/test_memory: override LDFLAGS += $(foreach f,malloc calloc realloc posix_memalign strdup free fy_node_build_from_malloc_string,-Wl$(comma)--wrap=$(f))
+WRAPPED   = malloc calloc realloc posix_memalign strdup free fy_node_build_from_malloc_string
+$(BUILD)/unit/api/test_memory: override LDFLAGS += $(WRAPPED:%=-Wl,--wrap=%)
 
 # ---- tests ----
 
@@ -262,9 +269,14 @@ SANE      = CLONES=no OPTIMISE='-O1 -fno-math-errno -fno-trapping-math -ffp-cont
 # Those that read every kind of input, right and wrong, and run every command.
 SANE_TESTS = $(addprefix tests/program/test_,cli.py input.py mesh.py patches.py)
 
+# Threads of one process on libkage, without OpenMP, whose barriers ThreadSanitizer does not see (see tsan.supp).
+TSAN      = $(SANE) OPENMP=no BUILD=build/tsan SANITIZE=thread
+
 sanitize: all
 	@CC='$(CC)' scripts/bootstrap test python
 	@$(MAKE) --no-print-directory $(JOBS) $(SANE) BUILD=build/asan SANITIZE=address,undefined unit-tests build/asan/kage
+	@TSAN_OPTIONS=suppressions=tests/support/tsan.supp \
+	    $(MAKE) --no-print-directory $(JOBS) $(TSAN) run-unit/api/test_threads
 	KAGE=build/asan/kage scripts/venv python -m pytest -q -n auto --dist loadfile $(SANE_TESTS)
 
 # ---- style ----
@@ -285,7 +297,8 @@ lint:
 tidy: $(TIDY:%=tidy-%)
 
 $(TIDY:%=tidy-%): tidy-%: %
-	@clang-tidy --quiet $< -- -Iinclude -Isrc -Itests -DKAGE_TESTS_DIR='"tests"' $(STANDARD) $(DEFINES) $(PKG_CFLAGS) 2>&1 | \
+	@clang-tidy --quiet $< -- \
+	    -Iinclude -Isrc -Itests -DKAGE_TESTS_DIR='"tests"' $(STANDARD) $(DEFINES) $(PKG_CFLAGS) 2>&1 | \
 	    { grep -v ' warnings\{0,1\} .*generated\.$$' && exit 1 || exit 0; }
 
 # Does this tree make the same pictures as another commit? make same REV=main

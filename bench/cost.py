@@ -82,7 +82,8 @@ def time_povray(scene: Path, size: Size) -> Value:
 def export(bench: Bench, scene: Facts, size: Size, displaced: bool, path: Path) -> Value:
     path.parent.mkdir(parents=True, exist_ok=True)
     surface = "displaced" if displaced else "smooth"
-    words = programs.run([bench.kage, "pov", scene.file, "--surface", surface, *programs.size_options(size), "-o", path])
+    size_options = programs.size_options(size)
+    words = programs.run([bench.kage, "pov", scene.file, "--surface", surface, *size_options, "-o", path])
     if "coarse mesh" in words:
         path.unlink()
         raise MeasureError(f"{scene.name}: POV-Ray would show another surface: {words.strip()}")

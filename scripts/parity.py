@@ -1,7 +1,7 @@
 """The table of docs/povray.md: how well kage and POV-Ray agree, over the same scenes as the test of parity.
 
-    scripts/venv python scripts/parity.py            print it, and the scenes with the largest differences
-    scripts/venv python scripts/parity.py --write    put it into docs/povray.md
+    scripts/venv python -m scripts.parity            print it, and the scenes with the largest differences
+    scripts/venv python -m scripts.parity --write    put it into docs/povray.md
 
 The environment variable KAGE names the program, by default build/float/kage.
 
@@ -16,12 +16,9 @@ import sys
 import tempfile
 from pathlib import Path
 
+from tests.support import parity
+
 TOP = Path(__file__).resolve().parent.parent
-sys.path.insert(0, str(TOP / "tests" / "support"))
-sys.path.insert(0, str(TOP / "tests"))
-
-import parity  # noqa: E402
-
 PAGE = TOP / "docs" / "povray.md"
 Results = dict[parity.Scene, parity.Found]
 

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import argparse
 import html
+import itertools
 import re
 import sys
 from collections.abc import Mapping
@@ -19,7 +20,7 @@ from pathlib import Path
 
 TOP = Path(__file__).resolve().parent.parent
 DESIGN, PICTURE = Path("docs/design.md"), Path("docs/rooms.svg")
-BEGIN, END = "<!-- rooms: scripts/rooms.py --write -->", "<!-- /rooms -->"
+BEGIN, END = "<!-- rooms -->", "<!-- /rooms -->"
 
 #: Each room's rank and purpose.
 ROOMS = {
@@ -90,8 +91,8 @@ def table(sources: Mapping[str, str]) -> str:
 
 
 def block(sources: Mapping[str, str]) -> str:
-    return (f"{BEGIN}\n{table(sources)}\n![The rooms and what they include]({PICTURE.name})\n\n"
-            "An arrow goes from a room to one that it includes, where no longer way of arrows leads there.\n"
+    return (f"{BEGIN}\n\n{table(sources)}\n![The rooms and what they include]({PICTURE.name})\n\n"
+            "An arrow goes from a room to one that it includes, where no longer way of arrows leads there.\n\n"
             f"{END}")
 
 
@@ -167,13 +168,14 @@ def ordered(layer: Mapping[str, int], found: list[Arrow]) -> dict[int, list[Plac
     for turn in range(24):
         near: dict[Place, list[float]] = {}
         for arrow in found:
-            for upper, lower in zip(arrow, arrow[1:], strict=False):
+            for upper, lower in itertools.pairwise(arrow):
                 here, there = (upper, lower) if turn % 2 else (lower, upper)
                 row = rows[there.layer]
                 near.setdefault(here, []).append((row.index(there) + 0.5) / len(row))
         for row in rows.values():
             at = {place: (k + 0.5) / len(row) for k, place in enumerate(row)}
-            row.sort(key=lambda place, at=at: sum(near[place]) / len(near[place]) if place in near else at[place])
+            at |= {place: sum(near[place]) / len(near[place]) for place in row if place in near}
+            row.sort(key=at.__getitem__)
     return rows
 
 

@@ -76,7 +76,7 @@ kage_status errors_give(errors *e, kage_status status, const watch *w, kage_erro
     if (to && !cancelled) {
         *to = list_of(e);
         if (!*to)
-            *to = (kage_errors *)(size_t)&no_memory;
+            *to = (kage_errors *)&no_memory;
     }
     errors_free(e);
     return cancelled ? KAGE_CANCELLED : status;

@@ -104,9 +104,9 @@ bool scene_note(kage_scene *k)
 
 void scene_forget(kage_scene *k)
 {
-    free((void *)(size_t)k->info.method);
-    free((void *)(size_t)k->info.lights);
-    free((void *)(size_t)k->info.objects);
+    free((void *)k->info.method);
+    free((void *)k->info.lights);
+    free((void *)k->info.objects);
 }
 
 const kage_scene_info *kage_scene_get_info(const kage_scene *k) { return &k->info; }

@@ -59,9 +59,6 @@ int print_errors(kage_errors *e, int status);
 /* One line on stderr for a mistake on the command line. Always false. */
 bool usage_error(const char *fmt, ...) CLI_PRINTF(1, 2);
 
-/* Seconds by a clock that only goes forward. */
-double clock_now(void);
-
 /* ---- output.c ---- */
 
 /* Whether no output is a file that the scene is made from. False: why is on stderr. */
@@ -73,6 +70,9 @@ bool output_is_replaceable(const char *path);
 bool has_ending(const char *path, const char *ending);
 
 /* ---- progress_bar.c ---- */
+
+/* Seconds by a clock that only goes forward. */
+double clock_now(void);
 
 /* A bar on the terminal behind stderr: what is done, the rate, the time left. Nothing where that is no terminal. */
 typedef struct progress_bar {
@@ -87,7 +87,7 @@ void progress_bar_start(progress_bar *p, bool quiet, const char *name, long pixe
 void progress_bar_end(progress_bar *p);
 
 /* For kage_progress: a render; and a scene's files, which have no pixels. */
-int progress_bar_render(void *p, const char *what, double share);
-int progress_bar_load(void *p, const char *what, double share);
+int progress_bar_render(void *user, const char *what, double share);
+int progress_bar_load(void *user, const char *what, double share);
 
 #endif

@@ -1,9 +1,17 @@
-/* The progress bar. */
+/* The progress bar, and the clock that it goes by. */
 #include "cli/command.h"
 
 #include <stdio.h>
 #include <string.h>
+#include <time.h>
 #include <unistd.h>
+
+double clock_now(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
 
 void progress_bar_start(progress_bar *p, bool quiet, const char *name, long pixels)
 {

@@ -32,7 +32,7 @@ typedef enum form_type {
     FORM_PLACE,     /* [x, y, z], in v: moving the shape moves it. A form has one, or two opposite ends */
     FORM_VECTOR,    /* [x, y, z], in v */
     FORM_DIRECTION, /* the same with a length above 0 */
-    FORM_EDGE,      /* likewise, and its length counts */
+    FORM_EDGE,      /* [x, y, z] with a length above 0, which counts */
     FORM_LENGTH,    /* 0 or more, in r */
     FORM_POSITIVE,  /* SHAPE_SMALL or more, in r */
     FORM_OPEN,      /* true or false, in open; false if it is not there. All others are needed */

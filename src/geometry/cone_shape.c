@@ -1,5 +1,6 @@
 /* The shape of cones and cylinders: (u,w) of a hit, Q and its partials, range and bounding box. */
 #include "geometry/cone.h"
+#include "math/kmath.h"
 
 /* The part of a hit is the one whose plane or side it is farthest beyond, or least within. */
 STAGE static void cone_part(const cone *restrict base, int n, const rays *restrict x, const real *restrict t,
@@ -107,10 +108,9 @@ void cone_eval(const surface *base, int n, const int32_t *part, const real *u, c
 
 void cone_extent(const surface *base, int part, double u[2], double w[2])
 {
-    const double pi = 3.14159265358979323846;
     if (part == 0) {
-        u[0] = -pi;
-        u[1] = pi;
+        u[0] = -KM_PI;
+        u[1] = KM_PI;
         w[0] = 0;
         w[1] = (double)((const cone *)base)->side;
     } else {

@@ -142,13 +142,12 @@ STAGE static void ellipsoid_occlude_own(const surface *base, int n, const rays *
 
 static void ellipsoid_extent(const surface *base, int part, double u[2], double w[2])
 {
-    const double pi = 3.14159265358979323846;
     (void)base;
     (void)part;
-    u[0] = -pi;
-    u[1] = pi;
+    u[0] = -KM_PI;
+    u[1] = KM_PI;
     w[0] = 0;
-    w[1] = pi;
+    w[1] = KM_PI;
 }
 
 static void ellipsoid_box(const surface *base, double lo[3], double hi[3])

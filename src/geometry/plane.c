@@ -159,26 +159,17 @@ static inline void shell(const surface *base, enum bounds bound, int n, const ra
     }
 }
 
-static void plane_bound(const surface *base, int part, int n, const rays *x, const real *end, real Pmin, real Pmax,
-                        real *t0, real *t1)
-{
-    (void)part;
-    shell(base, NOWHERE, n, x, end, Pmin, Pmax, t0, t1);
-}
+#define FLAT_BOUND(kind, bounds)                                                                                       \
+    static void kind##_bound(const surface *f, int part, int n, const rays *x, const real *end, real Pmin, real Pmax,  \
+                             real *t0, real *t1)                                                                       \
+    {                                                                                                                  \
+        (void)part;                                                                                                    \
+        shell(f, bounds, n, x, end, Pmin, Pmax, t0, t1);                                                               \
+    }
 
-static void rectangle_bound(const surface *base, int part, int n, const rays *x, const real *end, real Pmin, real Pmax,
-                            real *t0, real *t1)
-{
-    (void)part;
-    shell(base, AT_SIDES, n, x, end, Pmin, Pmax, t0, t1);
-}
-
-static void disc_bound(const surface *base, int part, int n, const rays *x, const real *end, real Pmin, real Pmax,
-                       real *t0, real *t1)
-{
-    (void)part;
-    shell(base, AT_RIM, n, x, end, Pmin, Pmax, t0, t1);
-}
+FLAT_BOUND(plane, NOWHERE)
+FLAT_BOUND(rectangle, AT_SIDES)
+FLAT_BOUND(disc, AT_RIM)
 
 /* The dual basis is in the plane, so Du.(X - O) is u of the foot. */
 STAGE static void plane_closest(const surface *base, int part, int n, const rays *x, const real *restrict t,
@@ -267,50 +258,16 @@ static void disc_box(const surface *base, double lo[3], double hi[3])
     }
 }
 
-static const surface_ops plane_methods = {
-    .kind = "plane",
-    .hit = plane_hit,
-    .hit_own = plane_hit_own,
-    .locate = plane_locate,
-    .eval = plane_eval,
-    .occlude = plane_occlude,
-    .extent = plane_extent,
-    .box = plane_box,
-    .parts = 1,
-    .bound = plane_bound,
-    .closest = plane_closest,
-    .lipschitz = plane_lipschitz,
-};
+#define FLAT_METHODS(name)                                                                                             \
+    {                                                                                                                  \
+        .kind = #name, .hit = name##_hit, .hit_own = name##_hit_own, .locate = plane_locate, .eval = plane_eval,       \
+        .occlude = name##_occlude, .extent = name##_extent, .box = name##_box, .parts = 1, .bound = name##_bound,      \
+        .closest = plane_closest, .lipschitz = plane_lipschitz                                                         \
+    }
 
-static const surface_ops rectangle_methods = {
-    .kind = "rectangle",
-    .hit = rectangle_hit,
-    .hit_own = rectangle_hit_own,
-    .locate = plane_locate,
-    .eval = plane_eval,
-    .occlude = rectangle_occlude,
-    .extent = rectangle_extent,
-    .box = rectangle_box,
-    .parts = 1,
-    .bound = rectangle_bound,
-    .closest = plane_closest,
-    .lipschitz = plane_lipschitz,
-};
-
-static const surface_ops disc_methods = {
-    .kind = "disc",
-    .hit = disc_hit,
-    .hit_own = disc_hit_own,
-    .locate = plane_locate,
-    .eval = plane_eval,
-    .occlude = disc_occlude,
-    .extent = disc_extent,
-    .box = disc_box,
-    .parts = 1,
-    .bound = disc_bound,
-    .closest = plane_closest,
-    .lipschitz = plane_lipschitz,
-};
+static const surface_ops plane_methods = FLAT_METHODS(plane);
+static const surface_ops rectangle_methods = FLAT_METHODS(rectangle);
+static const surface_ops disc_methods = FLAT_METHODS(disc);
 
 /* The squared sine of the angle between U and W below which float has no digits of N: an angle of 1e-6, float's
  * rounding is 1e-7. */

@@ -3,6 +3,7 @@
 
 #include "base/frame.h"
 #include "geometry/closed_form.h"
+#include "math/kmath.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -132,11 +133,10 @@ STAGE static void torus_lipschitz(const surface *base, int part, int n, const ra
 
 static void torus_extent(const surface *base, int part, double u[2], double w[2])
 {
-    const double pi = 3.14159265358979323846;
     (void)base;
     (void)part;
-    u[0] = w[0] = -pi;
-    u[1] = w[1] = pi;
+    u[0] = w[0] = -KM_PI;
+    u[1] = w[1] = KM_PI;
 }
 
 /* The circle that the tube is about reaches as far along an axis as that is across its own. */

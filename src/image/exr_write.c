@@ -105,8 +105,8 @@ static exr_result_t write_chunks(exr_context_t ctx, int threads, int width, int 
     return result;
 }
 
-static exr_result_t encode(file_writer *file, int threads, int width, int height, int channels, const image_channel *channel,
-                           int texts, const image_text *text)
+static exr_result_t encode(file_writer *file, int threads, int width, int height, int channels,
+                           const image_channel *channel, int texts, const image_text *text)
 {
     exr_context_t ctx = NULL;
     exr_context_initializer_t init = EXR_DEFAULT_CONTEXT_INITIALIZER;

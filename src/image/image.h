@@ -53,7 +53,8 @@ typedef struct image_channel {
 
 /* Write an OpenEXR file of float32 channels (scanlines, ZIP), in any order given, with the texts as string
  * attributes and nothing that depends on the clock. The file appears whole (written aside, then renamed)
- * or not at all. By so many threads, 0: all processors; the bytes are the same. False with a message in *e that names the file. */
+ * or not at all. `threads` share the work, 0: one for each processor; the bytes are the same. False with a message in
+ * *e that names the file. */
 bool image_write_exr(const char *path, int threads, int width, int height, int channels, const image_channel *channel,
                      int texts, const image_text *text, errors *e);
 

@@ -55,7 +55,7 @@ static void confine(size_t size)
 {
     limit(RLIMIT_CORE, 0);
     limit(RLIMIT_CPU, LETTER_SECONDS + size / MIB / LETTER_MIB_A_SECOND);
-#ifndef __SANITIZE_ADDRESS__ /* which has all addresses for itself */
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) /* which have all addresses for themselves */
     limit(RLIMIT_AS, ROOM_MIB * MIB + TIMES * size);
 #else
     (void)ROOM_MIB, (void)TIMES;

@@ -181,7 +181,7 @@ static bool smooth(mesh_data *d, double crease)
 {
     places p;
     const bool good = find_places(d, &p);
-    const double least = km_cos(crease * (3.14159265358979323846 / 180)) - SAME_ANGLE;
+    const double least = km_cos(crease * (KM_PI / 180)) - SAME_ANGLE;
     for (int k = 0; good && k < p.n; k++)
         smooth_place(d, p.corner + p.first[k], p.first[k + 1] - p.first[k], least);
     free_places(&p);

@@ -116,7 +116,7 @@ static bool can_open(const char *path, size_t *size, char why[MESH_WHY])
  * program finds them, whatever the caller's process does with its own. 0, or an errno. */
 static int start(const char *program, const char *path, int to, pid_t *pid)
 {
-    char *argv[] = {(char *)(size_t)program, (char *)(size_t)path, NULL};
+    char *argv[] = {(char *)program, (char *)path, NULL};
     posix_spawn_file_actions_t ends;
     posix_spawnattr_t how;
     sigset_t none, usual;

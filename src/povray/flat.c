@@ -1,3 +1,4 @@
+/* Frames of flat parts, and what transforms make of lengths. */
 #include "povray/flat.h"
 
 static bool flat_part_of(const shape_spec *f, int part, flat_part *out)

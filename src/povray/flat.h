@@ -21,7 +21,7 @@ bool pov_is_flat(const shape_spec *f, int part);
  * part. Negative: no disc. */
 double pov_rim(const shape_spec *f, int part);
 
-/* Of an object's displaced disc, which is made as a square, leave what is on the disc. */
+/* Clip an object's displaced disc, which is made as a square, to the disc. */
 void pov_clip_rim(pov_text *t, const object *o, int part);
 
 /* What the object's transform makes of lengths: 1 where it has none, 0 where not all grow alike. */

@@ -1,9 +1,10 @@
-/* Displaced objects as isosurfaces: height over the smooth surface less P is 0 on the rough one.
+/* Displaced objects as isosurfaces of (height over the smooth surface) - P.
  *
- * max_gradient is a bound, not a guess: from P's Lipschitz constants, on a sphere from interval arithmetic. POV-Ray
- * drops a stretch of a ray in which the function could not reach 0 by this bound, so too low a one makes holes.
+ * max_gradient is a proven bound: from P's Lipschitz constants, on a sphere by interval arithmetic. POV-Ray skips an
+ * interval of a ray where by this bound the function can't reach 0, so one that is too low makes holes.
  */
 #include "povray/expr.h"
+#include "math/kmath.h"
 #include "povray/flat.h"
 #include "povray/material.h"
 #include "povray/parts.h"
@@ -39,23 +40,24 @@ static double of_flat(const object *o, int part)
 static double of_zone(const expr *e, double scale, double r, double w0, double w1)
 {
     enum { CELLS = 64 };
-    const double pi = 3.14159265358979323846, sine = fmin(sin(w0), sin(w1));
+    const double sine = fmin(sin(w0), sin(w1));
     double worst = 0;
     for (int i = 0; i < CELLS; i++) {
         expr_bounds b;
-        expr_bound_gradient(e, pi * (2.0 * i / CELLS - 1), pi * (2.0 * (i + 1) / CELLS - 1), w0, w1, &b);
+        expr_bound_gradient(e, KM_PI * (2.0 * i / CELLS - 1), KM_PI * (2.0 * (i + 1) / CELLS - 1), w0, w1, &b);
         double x = fmax(fabs(b.u[0]), fabs(b.u[1])) / (r * sine), z = fmax(fabs(b.w[0]), fabs(b.w[1])) / r;
         worst = fmax(worst, sqrt(1 + scale * scale * (x * x + z * z)));
     }
     return worst;
 }
 
-/* Rays also come to where angles turn without bound: in glass, through a torus' hole, from an eye within. So a round
- * one's function is level from this share of the way on that leads from the nearest rough place to there. */
+/* Angles change without bound near an axis or a centre, and rays do come there: in glass, through a torus's hole, from
+ * an eye inside. So the function of a round shape is cut off at this share of the distance between there and the
+ * displaced surface. */
 #define LEVEL 0.25
 
-/* How far from such a place the rough surface stays: a sphere's centre, a cylinder's axis or a torus' tube; a torus'
- * own axis. */
+/* The least distance of the displaced surface from a sphere's centre, a cylinder's axis, or the circle within a torus's
+ * tube; then from a torus's own axis. */
 static double least_within(const object *o)
 {
     const shape_values f = pov_sized(o);
@@ -68,12 +70,11 @@ static double least_hole(const object *o)
     return f.r[0] - f.r[1] - (double)o->bump->Pmax;
 }
 
-/* u turns about the poles ever faster, and the gradient is infinite there unless P does not depend on u. Zones that
- * narrow towards the poles bound it up to a cap of CAP radians, which is left out: a thousandth of the radius is less
- * than a pixel. */
+/* Near a pole u changes ever faster, and the gradient has no bound if P depends on u. Zones that narrow towards the
+ * poles bound it, except for a cap of CAP radians: a thousandth of the radius is less than a pixel. */
 static double of_sphere(const object *o)
 {
-    const double CAP = 1e-3, GROWTH = 1.05, WIDEST = 0.05, half = 3.14159265358979323846 / 2;
+    const double CAP = 1e-3, GROWTH = 1.05, WIDEST = 0.05, half = KM_PI / 2;
     const double r = (1 - LEVEL) * least_within(o), scale = fabs(o->bump_spec.scale);
     double worst = 0;
     expr_error wrong;
@@ -89,7 +90,7 @@ static double of_sphere(const object *o)
     return worst;
 }
 
-/* How fast P can change with an angle about a place to which the rough surface keeps a distance r. */
+/* How fast P can change with an angle about an axis or centre that the displaced surface keeps a distance r from. */
 static double turning(double slope, double r) { return r > 0 ? slope / ((1 - LEVEL) * r) : HUGE_VAL; }
 
 /* The directions of height, u and w are at right angles. */
@@ -128,7 +129,7 @@ double pov_isosurface_gradient(const object *o, int part)
 
 /* ---- writing ---- */
 
-/* Mirrors and glass multiply what a hit is off. */
+/* Mirrors and glass multiply the error of a hit. */
 static double accuracy(const scene *s, const object *o)
 {
     return (material_sends(&s->material[o->material]) ? 2e-9 : 1e-7) *
@@ -169,7 +170,7 @@ static void put_flat(pov_text *t, const scene *s, const object *o, int part, con
         pov_clip_rim(t, o, part);
 }
 
-/* Its own space into the scene's, but for the size, which pov_sized has. */
+/* From the object's space to the scene's. The size is in the shape already (pov_sized). */
 static void put_motion(pov_text *t, const object *o)
 {
     const double k = 1 / pov_scale(o);
@@ -179,7 +180,7 @@ static void put_motion(pov_text *t, const object *o)
     pov_print(t, " // the object's transform\n");
 }
 
-/* A round one's function begins, and ends. */
+/* The begin and the end of a round shape's function, with its cut-offs. */
 static void begin_function(pov_text *t, const object *o)
 {
     pov_print(t, "isosurface {\n  function {\n    %smax(", o->shape_spec.form == &form_torus ? "min(" : "");

@@ -1,6 +1,5 @@
-/* Materials for the POV-Ray writer. A colour that is not constant becomes a pigment in the surface's own (u,w): on a
- * flat surface in its frame, on a round one by a warp of POV-Ray's, about y, whose x is u/2pi in 0..1, and on a mesh
- * that says them by its vertices' (u,w).
+/* Materials for POV-Ray. A colour that is not constant becomes a pigment in the surface's (u,w): on a flat surface in
+ * its frame; on a round one by a POV-Ray warp about y, whose x is u/2pi in 0..1; on a mesh by its vertices' (u,w).
  */
 #include "povray/material.h"
 
@@ -13,9 +12,9 @@
 
 #define PI 3.14159265358979323846
 
-/* ---- what has to do ---- */
+/* ---- what POV-Ray lacks ---- */
 
-/* Whether all of the surface is on the image. */
+/* Whether the image covers all of the surface. */
 static bool covers(const object *o)
 {
     double u[2], w[2];
@@ -236,7 +235,7 @@ void pov_texture(pov_text *t, const scene *s, const object *o, int part)
         pov_print(t, "  texture { %s }\n", pov_identify("Material", m->name, o->material).text);
         return;
     }
-    /* said of the texture: said of the pigment, shadows would not know */
+    /* uv_mapping in the pigment instead would not reach shadow rays */
     pov_print(t, "  texture {\n%s    pigment { // in (u, w)\n", pov_by_uv(s, o) ? "    uv_mapping\n" : "");
     if (pov_by_uv(s, o))
         put_plane_pigment(t, o, m);
@@ -265,7 +264,7 @@ bool pov_is_patch(const scene *s, const object *o)
 
 bool pov_by_uv(const scene *s, const object *o)
 {
-    /* no warp serves a displaced cone: its w is that of the foot */
+    /* no warp fits a displaced cone: w is that of the closest point on the smooth one */
     const bool cone = o->shape_spec.form == &form_cone && s->displaced && o->bump;
     return s->material[o->material].pattern && (cone || pov_is_patch(s, o) || o->shape_spec.kind == SHAPE_MESH);
 }

@@ -1,6 +1,5 @@
-/* Meshes from files, smooth or displaced, as one mesh2. Its vertices are the triangles' own, those that are the same
- * once. Displaced, each triangle becomes k x k, with the normals of the rough surface at their corners; k is the same
- * for all, so that there are no gaps.
+/* Meshes from files, smooth or displaced, as one mesh2; equal vertices are written once. Displaced, each triangle
+ * becomes k x k triangles with the displaced surface's normals; k is the same for all, so that there are no gaps.
  */
 #include "povray/material.h"
 #include "povray/parts.h"
@@ -65,7 +64,7 @@ static void end(pile *p)
     free(p->table);
 }
 
-/* (u,w), with those that are mirrored folded back. */
+/* (u,w), with mirrored ones reflected back (texture/mirrored_uv.h). */
 static void put_texture(const mesh *f, double u, double w, float to[2])
 {
     const double fold = 2 * f->u[1] - f->u[0];
@@ -139,7 +138,7 @@ static pov_vertex rough_vertex(const mesh *f, const mesh_triangle *x, real u, re
     return v;
 }
 
-/* All places of the lattice, LANES at a time. */
+/* Evaluate all places of the lattice on a triangle, LANES at a time. */
 static void rough_places(const object *o, const mesh *f, int index, int n, pov_vertex *out)
 {
     const mesh_triangle x = mesh_triangle_of(f, index);

@@ -25,7 +25,7 @@ bool pov_mesh(pov_text *t, const scene *s, const object *o, pov_report *report);
 /* An object without a shape of POV-Ray's, smooth or displaced as the scene says, as one mesh. False: out of memory. */
 bool pov_patch(pov_text *t, const scene *s, const object *o);
 
-/* A mesh from a file likewise. */
+/* A mesh from a file, smooth or displaced. False: out of memory. */
 bool pov_triangle_mesh(pov_text *t, const scene *s, const object *o);
 
 #endif

@@ -1,6 +1,6 @@
-/* Surfaces that POV-Ray has no shape for, smooth or displaced: one mesh2 with a vertex at each line of a grid over
- * (u,w), the same on every part, so that parts that join have the same vertices there. Its normals are the surface's
- * own.
+/* Surfaces that POV-Ray has no shape for, smooth or displaced, as one mesh2: the vertices are on a grid over (u,w),
+ * with the surface's own normals. The grid is the same on every part, so that parts that join have the same vertices
+ * there.
  */
 #include "povray/material.h"
 #include "povray/parts.h"
@@ -93,7 +93,8 @@ static void probe(const pov_vertex *a, const pov_vertex *b, const grid *g, doubl
     *most = fmax(*most, fmax(pixels_between(g->s, a->at, b->at) / PIXELS, turn_between(a->normal, b->normal) / TURN));
 }
 
-/* So many cells along u and w that the coarsest of them is fine enough, by a grid of probes on each part. */
+/* The numbers of cells along u and w, so that the largest cell is fine enough: measured on a grid of probes on each
+ * part. */
 static bool measure(grid *g)
 {
     const int parts = g->o->shape->ops->parts;
@@ -122,7 +123,7 @@ static bool measure(grid *g)
     return true;
 }
 
-/* A map's samples are to be on lines of the grid: between them it is bilinear. */
+/* Put a map's samples on lines of the grid: between them the map is bilinear. */
 static void fit_map(grid *g)
 {
     const object *o = g->o;

@@ -198,7 +198,7 @@ static void lay(tessellation *x, int part)
             l->step[a] = m->size[a] / (samples[a] - m->corners);
             l->start[a] = m->offset[a] + (m->corners ? 0 : l->step[a] / 2);
         }
-        /* a line that is at the end but for rounding makes no cell more */
+        /* a line that only rounding keeps from the end makes no further cell */
         double first = (range[a][0] - l->start[a]) / l->step[a], end = (range[a][1] - l->start[a]) / l->step[a];
         x->first[a] = (int64_t)floor(first + 1e-6);
         x->end[a] = (int64_t)ceil(end - 1e-6);

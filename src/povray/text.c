@@ -1,3 +1,4 @@
+/* Writing the text of a POV-Ray file. */
 #include "povray/text.h"
 
 #include <stdarg.h>

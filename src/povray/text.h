@@ -1,4 +1,4 @@
-/* The text of a POV-Ray file as it is written: buffered, the same in every locale, aside until it is whole. */
+/* The text of a POV-Ray file: buffered, the same in every locale, and under another name until it is complete. */
 #ifndef KAGE_POVRAY_TEXT_H
 #define KAGE_POVRAY_TEXT_H
 
@@ -31,7 +31,7 @@ typedef struct pov_digits {
 pov_digits pov_number(double x, int digits); /* significant digits */
 pov_digits pov_exact(double x);              /* as many as give x again */
 
-/* A transformation that puts x, y, z and 0 where these are, or as an affine map does; without a new line. */
+/* POV-Ray's `matrix` that takes the unit vectors to x, y, z and 0 to the origin; that of an affine map. No new line. */
 void pov_matrix(pov_text *t, vec3 x, vec3 y, vec3 z, vec3 origin);
 void pov_affine(pov_text *t, const affine *m);
 

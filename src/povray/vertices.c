@@ -1,3 +1,4 @@
+/* Vertices of meshes: evaluated in groups, each once, and written as a mesh2. */
 #include "povray/vertices.h"
 
 #include "wave/lane.h"
@@ -42,7 +43,7 @@ double pov_lattice_at(const pov_lattice *l, int axis, int64_t i, int s)
     return s == LATTICE ? b : a + (b - a) * s / LATTICE;
 }
 
-/* Q + P n/|n|, and as normal the gradient of height - P, in which the rough surface is 0. */
+/* Q + P n/|n|; its normal is the gradient of height - P, which is 0 on the displaced surface. */
 static void evaluate(pov_vertices *v, int n, const real *u, const real *w, pov_vertex *out)
 {
     partials q;

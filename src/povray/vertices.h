@@ -1,5 +1,5 @@
-/* The vertices of meshes. Those of a displaced one are made each once: places on a lattice of (u,w), with X = Q + P
- * n/|n| and the normal of the rough surface. Private to pov_*.c. */
+/* The vertices of meshes. Those of a displaced surface are on a lattice of (u,w), each made once: X = Q + P n/|n| with
+ * the displaced surface's normal. Private to the POV-Ray writer. */
 #ifndef KAGE_POVRAY_VERTICES_H
 #define KAGE_POVRAY_VERTICES_H
 
@@ -44,7 +44,7 @@ typedef struct pov_vertices {
 bool pov_vertices_get(pov_vertices *v, int n, const int64_t (*cell)[2], const int (*place)[2], int32_t *number,
                       bool *fresh);
 
-/* Begin anew, on another lattice. */
+/* Forget all vertices, to start on another lattice. */
 void pov_vertices_clear(pov_vertices *v);
 void pov_vertices_free(pov_vertices *v);
 

@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* The base name: a file says nothing of the machine that made it. */
+/* Only the scene's base name: an export does not show the folders of the machine that made it. */
 static void put_head(pov_text *t, const scene *s, const pov_options *o)
 {
     const char *slash = strrchr(s->path, '/');
@@ -49,7 +49,7 @@ static void put_camera(pov_text *t, const scene *s)
     pov_print(t, "background { color rgb %v }\n\n", s->background);
 }
 
-/* An area is halved down to each of its samples (`adaptive`), as here none is left out. */
+/* `adaptive 16` makes POV-Ray use every sample of an area, as kage does. */
 static void put_light(pov_text *t, const light *l)
 {
     pov_print(t, "light_source { %v color rgb %v", l->at, l->color);

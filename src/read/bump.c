@@ -36,7 +36,7 @@ static bool read_samples(reader *r, node *at, image *out, map_note *note)
     return good;
 }
 
-/* Scale, zero level and sign: without them a map is no height, so none has a default. */
+/* Scale, zero level and sign have no default: samples are not heights without them. */
 static bump *read_map(reader *r, node *at, const double u[2], const double w[2], map_note *note, bump_spec *spec)
 {
     image samples = {0};
@@ -68,7 +68,7 @@ static bump *read_map(reader *r, node *at, const double u[2], const double w[2],
     return p;
 }
 
-/* All the (u,w) of a surface's parts, on which a function must have its bounds. */
+/* The range of (u,w) over all parts of a surface: a function needs its bounds there. */
 static void widest_extent(const surface *f, double u[2], double w[2])
 {
     f->ops->extent(f, 0, u, w);

@@ -1,3 +1,4 @@
+/* Where maps and images lie on a surface, and meshes whose texture is partly mirrored. */
 #include "read/layout.h"
 
 #include "texture/mirrored_uv.h"

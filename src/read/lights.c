@@ -1,7 +1,7 @@
-/* The scene reader's lights. */
+/* The scene reader's lights: points, spots, parallel light and areas, and how they fade. */
 #include "read/parts.h"
 
-/* Where a spot or a parallel light points. */
+/* The direction of a spot or a parallel light. */
 static void read_aim(reader *r, node *at, const char *what, light *l)
 {
     node *to = yaml_need(r->y, at, "to", what);

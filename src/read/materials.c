@@ -1,4 +1,4 @@
-/* The scene reader's materials, and what is known of their colours on an object. */
+/* The scene reader's materials; and the color texture of an object, which depends on its surface. */
 #include "read/parts.h"
 
 #include <math.h>
@@ -41,7 +41,7 @@ static void read_pixels(reader *r, node *file, image_encoding encoding, material
     free(path);
 }
 
-/* Read with a surface that has ends, so that all mistakes but the lack of a size are told here, and once. */
+/* The layout is checked here, once, on a surface that has ends: only the lack of a size depends on the object. */
 static void read_image(reader *r, node *at, material *m)
 {
     const double whole[2] = {0, 1};
@@ -91,7 +91,7 @@ static void read_reflection(reader *r, node *at, material *m)
         m->reflection = yaml_is_list(at) ? (vec3){x[0], x[1], x[2]} : (vec3){x[0], x[0], x[0]};
 }
 
-/* The light from behind, in shares of all light. */
+/* How much of the light from behind comes through. */
 static void read_clear(reader *r, node *v, material *m)
 {
     bool good = reader_number(r, v, "filter", 0, false, 1,
@@ -125,8 +125,9 @@ void reader_materials(reader *r)
         reader_number(r, v, "phong", 0, false, BIG, "a share of light, 0 or more", &m->phong);
         reader_number(r, v, "phong_size", 0, true, BIG, "an exponent above 0", &m->phong_size);
         reader_number(r, v, "specular", 0, false, BIG, "a share of light, 0 or more", &m->specular);
-        reader_number(r, v, "roughness", SMALL, false, BIG, "a number of 1e-6 or more; small is sharp",
-                      &m->roughness); /* the cosine may be a few ulp above 1, which float bears to the power 1e6 */
+        reader_number(
+            r, v, "roughness", SMALL, false, BIG, "a number of 1e-6 or more; small is sharp",
+            &m->roughness); /* the least: a cosine a few ulp above 1 to the power 1e6 is still finite in float */
         if ((k = yaml_get(v, "reflection")))
             read_reflection(r, k, m);
         read_clear(r, v, m);
@@ -135,17 +136,17 @@ void reader_materials(reader *r)
 
 /* ---- on an object ---- */
 
-/* The image's layout on this surface. */
+/* The layout of the material's image on the object's surface. */
 static bool lay_image(reader *r, node *at, const material *m, const object *o, map_layout *l)
 {
     double u[2], w[2];
-    node *said = yaml_get(yaml_get(yaml_get(yaml_get(yaml_root(r->y), "materials"), m->name), "color"), "image");
+    node *layout = yaml_get(yaml_get(yaml_get(yaml_get(yaml_root(r->y), "materials"), m->name), "color"), "image");
     reader_extent(o->shape, &o->shape_spec, u, w);
-    if (!yaml_get(said, "size") && !(u[1] - u[0] < HUGE_VAL && w[1] - w[0] < HUGE_VAL))
+    if (!yaml_get(layout, "size") && !(u[1] - u[0] < HUGE_VAL && w[1] - w[0] < HUGE_VAL))
         return yaml_error(r->y, at, "the image of '%s' has no 'size', expected one for a surface without ends",
                           m->name);
     *l = (map_layout){.size = {1, 1}};
-    return reader_layout(r, said, u, w, l);
+    return reader_layout(r, layout, u, w, l);
 }
 
 void reader_color_texture(reader *r, node *at, object *o)

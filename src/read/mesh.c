@@ -1,4 +1,4 @@
-/* The scene reader's meshes. */
+/* The scene reader's meshes: a model file, how its normals are made, and whether it can be used. */
 #include "read/parts.h"
 
 #include "mesh/mesh.h"

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The number of the thing whose name is at the node, of those that begin with their name; -1: an error is told. */
+/* The index of the thing that the node names. Each thing is a struct that begins with its name. -1 with an error. */
 static int find(reader *r, node *at, const char *what, const char *among, const void *things, size_t size, int n)
 {
     const char *name = yaml_text(r->y, at, what), *thing = strrchr(what, ' ') + 1;
@@ -37,14 +37,14 @@ static int find(reader *r, node *at, const char *what, const char *among, const 
 static int find_material(reader *r, node *at)
 {
     const scene *s = r->s;
-    /* without materials that alone is told */
+    /* no materials at all is an error already */
     int k = s->material
                 ? find(r, at, "the name of a material", "materials", s->material, sizeof *s->material, s->materials)
                 : 0;
     return k < 0 ? 0 : k;
 }
 
-/* Objects are read in order, but what is copied before its copies. */
+/* Objects are read in order, except that what is copied is read before its copies. */
 typedef struct queue {
     node *at;
     char *state; /* of each object */
@@ -54,7 +54,7 @@ enum { WAITING, BEGUN, DONE };
 
 static void read_object(reader *r, const queue *q, int i);
 
-/* What object i copies, read; NULL: an error is told. */
+/* What object i copies, after reading it. NULL with an error. */
 static const object *read_original(reader *r, const queue *q, node *copy, int i)
 {
     const scene *s = r->s;
@@ -71,7 +71,7 @@ static const object *read_original(reader *r, const queue *q, node *copy, int i)
     return &s->object[k];
 }
 
-/* Shape, material and bump of another object; what it says itself comes on top. */
+/* Shape, material and bump of another object. The copy's own keys then replace them. */
 static void take(object *o, const object *from)
 {
     char *name = o->name;
@@ -83,7 +83,7 @@ static void take(object *o, const object *from)
     o->shares_bump = true;
 }
 
-/* By its transform; or where true hits need another surface than the one that there is. */
+/* Make the shape again where a transform, or true displacement, needs another surface than the object's own. */
 static void place(reader *r, node *v, object *o)
 {
     node *transform = yaml_get(v, "transform"), *copy = yaml_get(v, "copy");

@@ -9,8 +9,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* An end of a range: a number, or an expression without u and w, such as 2*pi, so that what closes does so to the last
- * digit. */
+/* An end of a range: a number, or an expression without u and w, such as 2*pi. So a surface that closes does so
+ * exactly.
+ */
 static bool read_end(reader *r, node *at, double *x)
 {
     const double u[2] = {0.3, 0.7}, w[2] = {0.6, 0.2};
@@ -42,7 +43,7 @@ static bool read_range(reader *r, node *at, const char *key, double x[2])
     return good;
 }
 
-/* The tree of leaves, or why there is none. */
+/* The patch as a surface; takes the patch. NULL with an error, `what` where the patch has no bounds or no size. */
 static surface *search(reader *r, node *at, patch *q, const char *what)
 {
     if (q)
@@ -84,7 +85,7 @@ surface *reader_parametric(reader *r, node *at, shape_spec *spec)
 
 /* ---- patches ---- */
 
-/* Four by four points, or sixteen in a row. */
+/* The 16 control points of a patch. */
 static bool read_patch(reader *r, node *at, vec3 p[16])
 {
     static const char expected[] = "a patch: a list of 16 control points [x, y, z]";

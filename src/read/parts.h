@@ -7,7 +7,7 @@
 
 #include "read/layout.h"
 
-/* The map the scene's picture is made for: image, camera and render. */
+/* The keys image, camera and render. */
 void reader_view(reader *r);
 
 void reader_lights(reader *r);
@@ -17,14 +17,14 @@ void reader_lights(reader *r);
 void reader_materials(reader *r);
 void reader_color_texture(reader *r, node *at, object *o);
 
-/* A list of steps: *m becomes what *m is already, followed by them. */
+/* A list of steps: *m becomes *m followed by them. */
 bool reader_transform(reader *r, node *at, affine *m);
 
-/* Make the object's shape: the image of its own by `placed`, or, where true hits are asked for and no foot is known, a
- * surface that is searched for them. The bump must have been read. Errors are told at the node. */
+/* Make the object's shape: the image of its own by `placed`; where true displacement needs it, as a patch. The bump
+ * must have been read. Errors are at the node. */
 bool reader_place(reader *r, node *at, object *o);
 
-/* The surface of an object, by the one key of all shapes that it has; *spec: what the file says of it. */
+/* The surface of an object, from the one shape key that it has; *spec: what the file says of it. */
 #define READER_SHAPES CLOSED_FORM_NAMES "parametric patches mesh"
 surface *reader_shape(reader *r, node *at, shape_spec *spec);
 bool reader_no_shape(reader *r, node *at); /* whether it has none; otherwise an error */

@@ -1,3 +1,4 @@
+/* Reading files of Bezier patches, with the place of what is wrong. */
 #include "read/patch_file.h"
 
 #include "yaml/text.h"
@@ -48,7 +49,7 @@ static const char *skip(const char *at)
     }
 }
 
-/* The number at *at, which then is behind it. */
+/* Read the number at *at and move *at behind it. */
 static bool number(const char *name, const char *text, const char **at, double most, double *x, errors *e)
 {
     char message[160];
@@ -70,7 +71,7 @@ static bool number(const char *name, const char *text, const char **at, double m
     return true;
 }
 
-/* All numbers of the text; how many, or -1. */
+/* Read all numbers of the text. Returns how many; -1 with an error. */
 static int numbers(const char *name, const char *text, double most, double *v, errors *e)
 {
     int n = 0;

@@ -1,5 +1,5 @@
-/* A file of Bezier patches: a text with the control points, three numbers each, sixteen in turn a patch, the first four
- * along u. Blanks, commas and lines part them; # begins a remark.
+/* A file of Bezier patches: a text of control points, three numbers each. 16 points are a patch, the first four of them
+ * along u. Blanks, commas and ends of lines separate numbers; # begins a comment.
  */
 #ifndef KAGE_READ_PATCH_FILE_H
 #define KAGE_READ_PATCH_FILE_H
@@ -9,8 +9,8 @@
 
 enum { PATCHES_MAX = 4096 };
 
-/* The control points, 16 * *patches of them; owned by the caller. NULL, and what is wrong in *e, as `name:line:col:
- * ...`; name: as the scene has it. */
+/* Read the control points, 16 * *patches of them; owned by the caller. Coordinates are within +-most. NULL with an
+ * error in *e, as `name:line:col: ...`; name: the file as the scene has it. */
 vec3 *patch_file_read(const char *path, const char *name, double most, int *patches, errors *e);
 
 #endif

@@ -1,19 +1,20 @@
-/* Where an object's shape is: its image by the object's transform, and whether that is of a size, and in a place, that
- * float bears. For true displacement a shape needs to know the foot of a perpendicular; one that does not is made a
- * patch, if it has a formula, which is searched without.
+/* The image of an object's shape by its transform, and whether its size and place keep enough digits in float.
+ *
+ * True displacement needs closest points in closed form, or a patch. A shape without closed forms for them that has a
+ * formula becomes a patch.
  */
 #include "displaced/displaced.h"
 #include "mesh/mesh.h"
 #include "patch/surface.h"
 #include "read/parts.h"
 
-/* By how much one direction may be stretched more than another: float has 7 digits, and needs 3 for the hits. */
+/* How much more one direction may be stretched than another: float has 7 digits, and hits need 3 of them. */
 #define STRETCH 1e4
 
-/* Between what is allowed for keys, 1e-6 to 1e6, and this: numbers that a transform rounds. */
+/* A transform rounds lengths, so those at the limits for keys, 1e-6 and 1e6, may pass them by this factor. */
 #define ROUNDED 4
 
-static double length(const vec3s *v) { return vec3_length((vec3){(double)v->x[0], (double)v->y[0], (double)v->z[0]}); }
+static double length(const vec3s *v) { return vec3_length(vec3s_get(v, 0)); }
 
 static bool is_size(double x) { return x >= SMALL / ROUNDED && x <= BIG * ROUNDED; }
 
@@ -91,7 +92,7 @@ bool reader_place(reader *r, node *at, object *o)
     affine whole = affine_identity();
     shape_values values = {.open = false};
     double wrong = 0;
-    /* closed forms about the origin: float would lose digits where a shape is far from it before the transform */
+    /* closed forms are mapped from the origin: far from it float would lose digits before the transform */
     if (o->shape_spec.kind == SHAPE_CLOSED)
         values = shape_centred(o->shape_spec.form, &o->shape_spec.values, &whole.o);
     const vec3 to = affine_point(m, is_mesh ? ((const mesh *)o->own)->space.centre : whole.o);

@@ -1,12 +1,12 @@
-/* The scene reader: docs/scene.md, from YAML to a scene. Every value is checked here, with the place of what is wrong;
- * what comes after can rely on it.
+/* The scene reader: a YAML file (docs/scene.md) becomes a scene. Every value is checked here, and every error has its
+ * place in the file; the tracer can rely on the scene.
  */
 #include "read/parts.h"
 #include "scene/object_bvh.h"
 
 #include <stdlib.h>
 
-/* Once all objects are good: each has a material. */
+/* Whether any object sends rays on, or lets light through. All objects are good: each has a material. */
 static void note_secondary(scene *s)
 {
     for (int k = 0; k < s->objects; k++) {
@@ -16,8 +16,7 @@ static void note_secondary(scene *s)
     }
 }
 
-/* Likewise. */
-static void note_bvh(reader *r)
+static void make_bvh(reader *r)
 {
     bool good = true;
     r->s->object_bvh = object_bvh_new(r->s, &good);
@@ -43,7 +42,7 @@ scene *scene_read(const scene_source *from, errors *e)
             reader_objects(&r);
             if (e->count == before) {
                 note_secondary(r.s);
-                note_bvh(&r);
+                make_bvh(&r);
             }
         }
         yaml_close(r.y);

@@ -1,4 +1,4 @@
-/* The scene reader's transforms, as POV-Ray has them: one step after the other, about the scene's origin and axes. */
+/* The scene reader's transforms: steps one after the other, each about the scene's origin and axes, as in POV-Ray. */
 #include "math/kmath.h"
 #include "read/parts.h"
 
@@ -8,15 +8,14 @@
 /* Cosine and sine of an angle in degrees, exact for right angles. */
 static void circle(double degrees, double *c, double *s)
 {
-    const double quarter = km_floor(degrees / 90 + 0.5),
-                 rest = (degrees - 90 * quarter) * (3.14159265358979323846 / 180);
+    const double quarter = km_floor(degrees / 90 + 0.5), rest = (degrees - 90 * quarter) * (KM_PI / 180);
     const int k = (int)(quarter - 4 * km_floor(quarter / 4));
     const double x = km_cos(rest), y = km_sin(rest);
     *c = k == 0 ? x : k == 1 ? -y : k == 2 ? -x : y;
     *s = k == 0 ? y : k == 1 ? x : k == 2 ? -y : -x;
 }
 
-/* About x, then y, then z; the left hand's thumb along the axis, its fingers show the way. */
+/* About x, then y, then z. With the left thumb along the axis, the fingers show the direction. */
 static bool rotate(reader *r, node *at, affine *m)
 {
     double a[3], c[3], s[3];
@@ -42,7 +41,7 @@ static bool translate(reader *r, node *at, affine *m)
     return true;
 }
 
-/* One number for all three, or three. */
+/* One factor for all axes, or one for each. */
 static bool scale(reader *r, node *at, affine *m)
 {
     const bool three = yaml_is_list(at);
@@ -59,7 +58,7 @@ static bool scale(reader *r, node *at, affine *m)
     return true;
 }
 
-/* As a camera stands: the origin goes to `from`, +z towards `at`, +y as far up as it can. */
+/* Place the object as a camera: the origin goes to `from`, +z points to `at`, and +y as far up as it can. */
 static bool look(reader *r, node *at, affine *m)
 {
     vec3 from = {0, 0, 0}, to = {0, 0, 0}, up = {0, 1, 0};

@@ -1,4 +1,4 @@
-/* The scene reader's image, camera and render: what the picture is to be, apart from what is in it. */
+/* The scene reader's image, camera and render: the picture's size, its view, and how it is rendered. */
 #include "image/image.h"
 #include "read/parts.h"
 

@@ -104,7 +104,7 @@ STAGE static void dim(hit_group *restrict g, const double *restrict share)
 void lighting_fade(const light *l, hit_group *g)
 {
     double distance[LANES], cosine[LANES], share[LANES];
-    const double degree = 3.14159265358979323846 / 180;
+    const double degree = KM_PI / 180;
     if (l->kind != LIGHT_SPOT && l->fade_distance == 0)
         return;
     for (int i = 0; i < g->n; i++)

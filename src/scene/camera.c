@@ -22,7 +22,7 @@ static bool look(camera *c, vec3 from, vec3 at, vec3 up, double half, int width,
 bool camera_look(camera *c, vec3 from, vec3 at, vec3 up, double fov, int width, int height)
 {
     c->orthographic = false;
-    return look(c, from, at, up, km_tan(fov * (3.14159265358979323846 / 360)), width, height);
+    return look(c, from, at, up, km_tan(fov * (KM_PI / 360)), width, height);
 }
 
 bool camera_orthographic(camera *c, vec3 from, vec3 at, vec3 up, double across, int width, int height)

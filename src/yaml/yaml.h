@@ -21,9 +21,10 @@ typedef struct yaml yaml;
 
 enum { YAML_MAX_BYTES = 1 << 22 };
 
-/* Read the file at `path`, or the text of that name where `text` is not NULL, and make the changes PATH=VALUE (PATH: keys and indices with dots between them; VALUE: YAML).
- * A change may go into the maps at the top named in `optional` also where the file has none. Errors go to e, from now
- * on. NULL where there is no document to go on with. */
+/* Read the file at `path`, or the text of that name and of `size` bytes where `text` is not NULL, and make the changes
+ * PATH=VALUE (PATH: keys and indices with dots between them; VALUE: YAML). A change may go into the maps at the top
+ * named in `optional` also where the file has none. Errors go to e, from now on. NULL where there is no document to go
+ * on with. */
 yaml *yaml_open(const char *path, const char *text, size_t size, int sets, const char *const *set, const char *optional,
                 errors *e);
 void yaml_close(yaml *y);

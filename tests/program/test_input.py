@@ -6,6 +6,7 @@ the caret below it must be those of the place it names.
 
 from __future__ import annotations
 
+import itertools
 import re
 import subprocess
 import sys
@@ -615,8 +616,8 @@ def test_syntax(bench: Kage, text: str, line: int) -> None:
 
 #: Aliases are refused, so nothing grows from them; much of the same is refused in seconds.
 HOSTILE = [
-    ("billion-laughs", "a: &a [x, x]\n" + "".join(f"{b}: &{b} [*{a}, *{a}]\n" for a,
-                                                  b in zip("abcdefghij", "bcdefghijk"))),
+    ("billion-laughs", "a: &a [x, x]\n" + "".join(
+        f"{b}: &{b} [*{a}, *{a}]\n" for a, b in itertools.pairwise("abcdefghijk"))),
     ("cycle", "camera: &a {from: *a, at: *a}\nlights: *a\nmaterials: *a\nobjects: *a\n"),
     ("many-keys", "".join(f"k{i}: 1\n" for i in range(100000))),
     ("many-times-one-key", "camera: 1\n" * 100000),

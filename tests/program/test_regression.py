@@ -72,7 +72,7 @@ def kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def test_accept_asks(kept: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
-    import accept
+    from tests.regression import accept
 
     before = (kept / "cube-0.exr").read_bytes()
     monkeypatch.delenv("ACCEPT", raising=False)

@@ -6,7 +6,6 @@ they would call, which write down their arguments.
 
 from __future__ import annotations
 
-import os
 import shutil
 import subprocess
 import sys
@@ -387,4 +386,4 @@ def test_sheet_refuses(pictures: list[Path], tmp_path: Path, arguments: list[str
     result = run_python("contact_sheet.py", "-o", tmp_path / "sheet.png", *arguments, pictures[0])
     assert result.returncode == status
     assert message in result.stderr and "Traceback" not in result.stderr
-    assert os.listdir(tmp_path).count("sheet.png") == 0
+    assert not (tmp_path / "sheet.png").exists()

@@ -56,5 +56,5 @@ def test_counts_on_made_up_code(tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
     class Output:
         stdout = code
 
-    monkeypatch.setattr(vectorised.subprocess, "run", lambda *a, **k: Output)
+    monkeypatch.setattr(vectorised.subprocess, "run", lambda *_, **__: Output)
     assert vectorised.stages(tmp_path) == {("good", "AVX2"): (256, 2, 1), ("bad", "AVX2"): (0, 0, 2)}

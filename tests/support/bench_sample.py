@@ -90,7 +90,7 @@ def make_cost() -> dict:
 
 
 def make_quality() -> dict:
-    scenes = {}
+    scenes: dict = {}
     for scene in SCENES:
         scenes[scene] = {}
         for method, wrong in zip(METHODS, WRONG[scene], strict=True):

@@ -154,7 +154,7 @@ def check_slider(driver: Chrome) -> None:
     drag_mouse(driver, 0.8, 0.3)
     assert abs(split_of(driver) - 30) <= 1, f"dragged to 30 %, the slider is at {split_of(driver)}"
 
-    def sources(side: str) -> list[str]:
+    def sources(side: str) -> list[str | None]:
         return [i.get_attribute("src") for i in form.find_elements(By.CSS_SELECTOR, f".side.{side} img")]
 
     for name in ("left", "right", "scene"):

@@ -24,7 +24,7 @@ OUTSIDE = {"png.h": "image/png.c", "openexr.h": "image/exr_", "libfyaml.h": "yam
 #: What a library leaves to its caller: the streams, the process, its signals and settings.
 FORBIDDEN = {
     "printf", "vprintf", "puts", "putchar", "perror", "stdout", "stderr", "exit", "_exit", "_Exit", "quick_exit", "abort",
-    "atexit", "fork", "vfork", "system", "popen", "signal", "__sysv_signal", "sigaction", "raise", "kill", "setrlimit",
+    "atexit", "fork", "vfork", "system", "popen", "signal", "__sysv_signal", "sigaction", "raise", "setrlimit",
     "setlocale", "chdir", "umask", "setenv", "putenv", "srand", "rand", "strtok", "omp_set_num_threads",
 }
 
@@ -212,7 +212,10 @@ def lines_are_short(house: House) -> Iterator[str]:
 
 
 def functions_are_short(house: House) -> Iterator[str]:
+    """The yardsticks of the bench are left out: each is one long loop, as that is what they measure."""
     for path, text in house.texts.items():
+        if path.startswith("bench/limits/"):
+            continue
         for name, line, length in (functions_in_python if path.endswith(".py") else functions_in_c)(path, text):
             if length > LINES_OF_FUNCTION:
                 yield f"{path}:{line}: {name} has {length} lines"

@@ -5,7 +5,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "read/values.h"
 #include "support/check.h"
@@ -15,6 +14,7 @@ typedef struct reading {
     reader r;
     scene s;
     errors e;
+    scene_source from;
     char path[32];
 } reading;
 
@@ -22,13 +22,11 @@ static inline reading *reading_of(const char *text)
 {
     reading *t = calloc(1, sizeof *t);
     assert_non_null(t);
-    strcpy(t->path, "/tmp/kage-reading-XXXXXX");
-    const int file = mkstemp(t->path);
-    assert_true(file >= 0);
-    assert_int_equal(write(file, text, strlen(text)), (int)strlen(text));
-    close(file);
+    strcpy(t->path, "/scenes/test.yaml");
     t->s.path = t->path;
-    t->r = (reader){.y = yaml_open(t->path, 0, NULL, "", &t->e), .s = &t->s, .e = &t->e};
+    t->from = (scene_source){.path = t->path, .text = text, .size = strlen(text)};
+    t->r = (reader){
+        .y = yaml_open(t->path, text, strlen(text), 0, NULL, "", &t->e), .s = &t->s, .e = &t->e, .from = &t->from};
     assert_non_null(t->r.y);
     return t;
 }
@@ -49,7 +47,6 @@ static inline void reading_end(reading *t)
     yaml_close(t->r.y);
     errors_free(&t->e);
     files_free(&t->s.made_from);
-    unlink(t->path);
     free(t);
 }
 

@@ -6,6 +6,7 @@
 
 #include "base/frame.h"
 #include "geometry/surface.h"
+#include "support/odd_rays.h"
 #include "support/properties.h"
 #include "support/random_rays.h"
 #include "wave/lane.h"
@@ -340,6 +341,7 @@ static void own_rays_meet_what_is_ahead(void **state)
 static void own_hits_are_on_the_surface(void **state)
 {
     const int kind = *(const int *)*state;
+    const double within = (kind == HAT || kind == THIN ? 300 : 60) * EPS; /* a tip, and a tube of radius 0.05 */
     surface *f = make(kind);
     for (int round = 0; round < 40; round++) {
         static points p;
@@ -362,7 +364,7 @@ static void own_hits_are_on_the_surface(void **state)
             if (h.id[i] != 7)
                 continue;
             const bs_vec3 s = lane_get(&out.s, i), n = bs_normal(lane_get(&q.Qu, i), lane_get(&q.Qw, i));
-            NEAR(distance(lane_get(&q.Q, i), lane_at(&out, i, h.t[i])), 0, (kind == HAT ? 300 : 60) * EPS); /* a tip */
+            NEAR(distance(lane_get(&q.Q, i), lane_at(&out, i, h.t[i])), 0, within);
             if (is_closed(kind))
                 CHECK(bs_dot(s, n) > 0, ==, bs_dot(s, p.normal[i]) < 0);
             if (kind == BOX)
@@ -413,8 +415,6 @@ static void from_inside(void **state)
     surface_free(f);
 }
 
-/* Rays along faces and edges, through corners and poles, of length 0, NaN or infinite: a hit or none, but never a t
- * that is not finite and positive, nor a lane beside it that is touched. */
 static void odd_rays(void **state)
 {
     const double nan = (double)NAN, inf = (double)INFINITY;
@@ -446,39 +446,8 @@ static void odd_rays(void **state)
         {0.2, -0.9, 0.2, -0.3, 1.5, -0.1},
         {-2.4, 0.3, 0.5, 1.6, -0.2, -0.3},
     };
-    enum { ODD = sizeof odd / sizeof *odd };
-    const int kind = *(const int *)*state;
-    surface *f = make(kind);
-    static rays x;
-    static hits h;
-    static partials q;
-    static ray_origins from;
-    int32_t part[LANES];
-    real u[LANES], w[LANES], lit[LANES];
-    for (int i = 0; i < ODD; i++) {
-        x.r.x[i] = (real)odd[i][0], x.r.y[i] = (real)odd[i][1], x.r.z[i] = (real)odd[i][2];
-        x.s.x[i] = (real)odd[i][3], x.s.y[i] = (real)odd[i][4], x.s.z[i] = (real)odd[i][5];
-        lit[i] = 1;
-    }
-    no_hits(&h, ODD + 1);
-    f->ops->hit(f, ODD, &x, 0, &h);
-    f->ops->occlude(f, ODD, &x, lit);
-    from.at = x.r;
-    for (int i = 0; i < ODD; i++) {
-        from.id[i] = i % 2;
-        from.part[i] = i % f->ops->parts;
-    }
-    f->ops->hit_own(f, ODD, &x, &from, 0, &h);
-    f->ops->locate(f, ODD, &x, h.t, part, u, w);
-    f->ops->eval(f, ODD, part, u, w, 2, &q);
-    assert_int_equal(h.id[ODD], -1);
-    for (int i = 0; i < ODD; i++) {
-        BETWEEN(-1, h.id[i], 0);
-        CHECK(h.t[i], >, 0);
-        CHECK(h.t[i], <=, REAL_FAR);
-        BETWEEN(0, lit[i], 1);
-        BETWEEN(0, part[i], f->ops->parts - 1);
-    }
+    surface *f = make(*(const int *)*state);
+    check_odd_rays(f, sizeof odd / sizeof *odd, odd);
     surface_free(f);
 }
 

@@ -2,9 +2,9 @@
  * mapped; n points outward also where the map mirrors; rough ones are met where heights divided by the scale are met in
  * the surface's own space.
  */
-#include "support/displace.h"
 #include "wave/lane.h"
 #include "support/properties.h"
+#include "support/displace.h"
 #include "support/random_rays.h"
 #include "geometry/surface.h"
 
@@ -209,7 +209,7 @@ static void own_shadow_alike(int kind, int map, const surface *own, const surfac
     real u[LANES], w[LANES], lit[LANES], dark[LANES];
     int n = 0, differ = 0;
     (void)map;
-    assert_true(!f->ops->occlude_own == !own->ops->occlude_own);
+    CHECK(!f->ops->occlude_own, ==, !own->ops->occlude_own);
     if (!own->ops->occlude_own)
         return;
     for (int i = 0; i < LANES; i++)
@@ -254,7 +254,7 @@ static void own_shadow_alike(int kind, int map, const surface *own, const surfac
         differ +=
             again.id[i] != want.id[i] || (want.id[i] == 7 && fabs((double)(again.t[i] - want.t[i])) * s > 1e4 * EPS);
     }
-    assert_true(differ <= (kind == TORUS ? 4 : 2));
+    CHECK(differ, <=, (kind == TORUS ? 4 : 2));
 }
 
 static void own_shadows(void **state) { for_pair(state, own_shadow_alike); }
@@ -401,7 +401,7 @@ static void rough_box(void **state)
             f->ops->eval(f, 1, &g.part[i], &g.u[i], &g.w[i], 1, &q);
             const bs_vec3 Q = lane_get(&q.Q, 0), n = lane_unit(bs_normal(lane_get(&q.Qu, 0), lane_get(&q.Qw, 0)));
             const vec3 X = vec3_add(widen(Q), vec3_scale(widen(n), (double)g.bump.P[i]));
-            assert_true(apart(lane_at(&g.x, i, h.t[i]), X) < 100 * EPS);
+            CHECK(apart(lane_at(&g.x, i, h.t[i]), X), <, 100 * EPS);
         }
         CHECK(met, >, 40);
         assert_int_equal(counts.uncertain, 0);

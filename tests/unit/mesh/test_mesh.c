@@ -1,24 +1,15 @@
 /* Triangle meshes: hits against brute force, edges and corners that no ray passes between, places and partials, shadows
- * on the mesh itself, images by maps, true displacement against closed forms, and what becomes of the data that a file
- * may hold.
+ * on the mesh itself, images by maps, true displacement against closed forms, and textures without sense.
  */
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
-#include "support/displace.h"
-#include "wave/lane.h"
 #include "displaced/prism.h"
 #include "mesh/mesh.h"
 #include "support/check.h"
-#include "support/random_in.h"
+#include "support/displace.h"
+#include "support/random_rays.h"
+#include "wave/lane.h"
 
 static const double pi = 3.14159265358979323846;
 
@@ -96,24 +87,6 @@ static mesh *object_bvh(int n)
 
 /* ---- rays ---- */
 
-static void random_ray(rays *x, int i)
-{
-    double a = random_in(0, 6.283), z = random_in(-1, 1), l = 4 * sqrt(1 - z * z), k = random_in(0.2, 3);
-    double r[3] = {l * cos(a), 4 * z, l * sin(a)}, to[3] = {random_in(-1, 1), random_in(-1, 1), random_in(-1, 1)};
-    x->r.x[i] = (real)r[0], x->r.y[i] = (real)r[1], x->r.z[i] = (real)r[2];
-    x->s.x[i] = (real)(k * (to[0] - r[0])), x->s.y[i] = (real)(k * (to[1] - r[1])),
-    x->s.z[i] = (real)(k * (to[2] - r[2]));
-}
-
-static void no_hits(hits *h, int n)
-{
-    for (int i = 0; i < n; i++) {
-        h->t[i] = REAL_FAR;
-        h->id[i] = -1;
-        h->part[i] = 0;
-    }
-}
-
 static vec3 wide(bs_vec3 v) { return (vec3){(double)v.x, (double)v.y, (double)v.z}; }
 static double apart(bs_vec3 a, bs_vec3 b) { return vec3_length(vec3_sub(wide(a), wide(b))); }
 
@@ -157,7 +130,7 @@ static void hits_as_by_brute_force(void **state)
         static partials q;
         real lit[LANES], u[LANES], w[LANES];
         for (int i = 0; i < LANES; i++) {
-            random_ray(&x, i);
+            random_ray(&x, i, 1);
             if (round % 3 == 1) { /* from among them */
                 x.r.x[i] *= R(0.2), x.r.y[i] *= R(0.2), x.r.z[i] *= R(0.2);
             }
@@ -357,7 +330,7 @@ static void images(void **state)
         real u[2][LANES], w[2][LANES];
         int met = 0;
         for (int i = 0; i < LANES; i++)
-            random_ray(&x, i);
+            random_ray(&x, i, 1);
         no_hits(&a, LANES);
         no_hits(&b, LANES);
         g->ops->hit(g, LANES, &x, 0, &a);
@@ -414,7 +387,7 @@ static void displaced_as(const char *name, mesh *f, surface *g, const char *text
         static hit_group g_a, g_b;
         real lit_a[LANES], lit_b[LANES];
         for (int i = 0; i < LANES; i++) {
-            random_ray(&x, i);
+            random_ray(&x, i, 1);
             lit_a[i] = lit_b[i] = 1;
         }
         no_hits(&a, LANES);
@@ -453,8 +426,11 @@ static void displaced_as(const char *name, mesh *f, surface *g, const char *text
     }
     print_message("%-6s %3d hits, %d beyond, %d missed by one, %d of %d shadows differ, %ld not sure\n", name, met, far,
                   differ, darker, dark, c.uncertain);
-    assert_true(met > 150 && dark > 100);
-    assert_true(far <= share * met && differ <= share * met && darker <= share * dark);
+    CHECK(met, >, 150);
+    CHECK(dark, >, 100);
+    CHECK(far, <=, share * met);
+    CHECK(differ, <=, share * met);
+    CHECK(darker, <=, share * dark);
     surface_free(over_mesh);
     surface_free(over_closed);
     bump_free(P);
@@ -504,7 +480,7 @@ static double error_of(mesh *f, double A, int order)
     surface *d = displace(&f->base, P, &c);
     for (int round = 0; round < 4; round++) {
         for (int i = 0; i < LANES; i++)
-            random_ray(&x, i);
+            random_ray(&x, i, 1);
         no_hits(&h, LANES);
         no_hits(&rough, LANES);
         f->base.ops->hit(&f->base, LANES, &x, 0, &h);
@@ -570,78 +546,6 @@ static mesh_data one(const float at[3][3], int n)
     return d;
 }
 
-static void cleaning(void **state)
-{
-    (void)state;
-    static const float good[3][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
-    char why[MESH_WHY];
-    /* numbers */
-    mesh_data d = one(good, 3);
-    d.at[1][2][1] = NAN;
-    assert_false(mesh_clean(&d, MESH_NORMALS_FILE, 40, 1e6, why));
-    assert_string_equal(why, "a vertex has the coordinate nan, expected -1e+06 to 1e+06");
-    d.at[1][2][1] = 2e6f;
-    assert_false(mesh_clean(&d, MESH_NORMALS_FILE, 40, 1e6, why));
-    d.at[1][2][1] = 1;
-    d.skin[2].uv[1][0] = INFINITY;
-    assert_false(mesh_clean(&d, MESH_NORMALS_FILE, 40, 1e6, why));
-    assert_string_equal(why, "a texture coordinate is inf, expected -1e+06 to 1e+06");
-    /* without an area: a line, a point */
-    d.skin[2].uv[1][0] = 0;
-    memcpy(d.at[0][2], d.at[0][1], sizeof d.at[0][2]);
-    memset(d.at[1], 0, sizeof d.at[1]);
-    assert_true(mesh_clean(&d, MESH_NORMALS_FILE, 40, 1e6, why));
-    assert_int_equal(d.n, 1);
-    assert_int_equal(d.notes.flat, 2);
-    mesh_data_free(&d);
-    d = one(good, 1);
-    memset(d.at[0], 0, sizeof d.at[0]);
-    assert_false(mesh_clean(&d, MESH_NORMALS_FILE, 40, 1e6, why));
-    assert_string_equal(why, "no triangles with an area, expected at least one");
-    mesh_data_free(&d);
-    /* normals: of no use, the other way, turned away */
-    d = one(good, 4);
-    for (int i = 0; i < 3; i++) {
-        d.skin[0].normal[i][0] = NAN;
-        d.skin[1].normal[i][2] = -3;
-        d.skin[2].normal[i][i] = 1;
-    }
-    assert_true(mesh_clean(&d, MESH_NORMALS_FILE, 40, 1e6, why));
-    assert_int_equal(d.notes.turned, 1);
-    assert_int_equal(d.notes.bent, 2); /* x and y lie in the triangle */
-    for (int k = 0; k < d.n; k++)
-        for (int i = 0; i < 3; i++)
-            assert_true(d.skin[k].normal[i][2] == (k == 1 ? -1.0f : 1.0f));
-    mesh_data_free(&d);
-}
-
-/* A box of 12 triangles: edges are sharp up to a crease of 90 degrees, and the corners' normals the diagonals beyond
- * it. */
-static void creases(void **state)
-{
-    (void)state;
-    for (int smooth = 0; smooth < 2; smooth++) {
-        mesh_data d = {12, malloc(sizeof *d.at * 12), calloc(12, sizeof *d.skin), {0}};
-        char why[MESH_WHY];
-        for (int k = 0; k < 12; k++)
-            for (int i = 0; i < 3; i++) {
-                static const int square[2][3] = {{0, 1, 2}, {0, 2, 3}};
-                const int axis = k / 4, high = k / 2 % 2, at = square[k % 2][i], b = at == 1 || at == 2, c = at >= 2;
-                d.at[k][i][axis] = (float)(2 * high - 1);
-                d.at[k][i][(axis + 1) % 3] = (float)(2 * (high ? b : c) - 1);
-                d.at[k][i][(axis + 2) % 3] = (float)(2 * (high ? c : b) - 1);
-            }
-        assert_true(mesh_clean(&d, MESH_NORMALS_FILE, smooth ? 91 : 89, 1e6, why));
-        for (int k = 0; k < 12; k++)
-            for (int i = 0; i < 3; i++)
-                for (int a = 0; a < 3; a++) {
-                    const double n = (double)d.skin[k].normal[i][a], along = a == k / 4, p = (double)d.at[k][i][a];
-                    assert_true(fabs(n - (smooth ? p / sqrt(3) : along * p)) < 1e-6);
-                }
-        mesh_data_free(&d);
-    }
-}
-
 /* Textures without an area, and mirrored ones: all that is asked for is finite, n outward, and the place found again.
  */
 static void odd_textures(void **state)
@@ -689,8 +593,6 @@ int main(void)
         cmocka_unit_test(images),
         cmocka_unit_test(displaced_plane),
         cmocka_unit_test(displaced_ball),
-        cmocka_unit_test(cleaning),
-        cmocka_unit_test(creases),
         cmocka_unit_test(odd_textures),
 #ifdef KAGE_DOUBLE
         cmocka_unit_test(error_slopes),

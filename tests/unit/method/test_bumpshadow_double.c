@@ -1,4 +1,4 @@
-/* The tests of bumpshadow.h in double. */
+/* bumpshadow.h in double. */
 #define BS_DOUBLE
 #define BUMPSHADOW_NAME "bumpshadow.h in double"
 #include "bumpshadow_cases.h"

@@ -1,3 +1,3 @@
-/* The tests of bumpshadow.h in float. */
+/* bumpshadow.h in float. */
 #define BUMPSHADOW_NAME "bumpshadow.h in float"
 #include "bumpshadow_cases.h"

@@ -1,16 +1,18 @@
 /* Patch surfaces: partials against golden vectors, hits against closed forms and against
  * brute force, seams, silhouettes, corners and degenerate edges, shadows on themselves.
  */
+#include <stdlib.h>
 #include <string.h>
 
 #include "displaced/form.h"
-#include "support/displace.h"
 #include "support/golden_json.h"
 #include "wave/lane.h"
 #include "displaced/offset.h"
 #include "displaced/offset_patch.h"
 #include "read/patch_file.h"
+#include "support/odd_rays.h"
 #include "support/properties.h"
+#include "support/displace.h"
 #include "support/random_rays.h"
 #include "patch/surface.h"
 #include "geometry/surface.h"
@@ -405,7 +407,7 @@ static void no_cracks(void **state)
         for (int i = 0; i < LANES; i++) {
             random_ray(&x, i, 1.3);
             const bs_vec3 n = lane_unit(bs_normal(lane_get(&q.Qu, i), lane_get(&q.Qw, i))), Q = lane_get(&q.Q, i);
-            assert_true(bs_dot(n, n) > R(0.9)); /* none is NaN, not even where Qu is 0 */
+            CHECK(bs_dot(n, n), >, R(0.9)); /* none is NaN, not even where Qu is 0 */
             /* from 0.05 above, up to 0.2 aside, straight to the place and on by as much */
             const double aside = kind == ROOF ? 0.01 : 0.1; /* flatter than the roof a ray passes under its edge */
             const bs_vec3 d = {n.x * R(0.05) + (real)random_in(-aside, aside),
@@ -442,7 +444,7 @@ static void degenerate_edges(void **state)
         const real u = (real)random_in(-3, 3), w = (real)(i % 2 ? pi : 0);
         f->ops->eval(f, 1, &part, &u, &w, 2, &q);
         const bs_vec3 Qu = lane_get(&q.Qu, 0), Qw = lane_get(&q.Qw, 0), N = bs_normal(Qu, Qw), n = lane_unit(N);
-        assert_true(fabs((double)n.y - (i % 2 ? -1 : 1)) < 1e-5);
+        CHECK(fabs((double)n.y - (i % 2 ? -1 : 1)), <, 1e-5);
         assert_false(bs_regular(N, Qu, Qw));
     }
     /* the middle of the teapot's lid and of its bottom: the first rows of patches 12 to 15, 20 to 23 */
@@ -470,33 +472,8 @@ static void odd_rays(void **state)
         {1.5, -0.2, 0.1, 0, 1, 0},   {-5, 0, 0, 1, 0, 0},
         {0, 0, -5, 0, 0, 1},         {0.04, 5, 0, 0, -1, 0},
     };
-    enum { ODD = sizeof odd / sizeof *odd };
-    const int kind = *(const int *)*state;
-    surface *f = surface_of(kind);
-    static rays x;
-    static hits h;
-    static partials q;
-    int32_t part[LANES];
-    real u[LANES], w[LANES], lit[LANES];
-    for (int i = 0; i < ODD; i++) {
-        x.r.x[i] = (real)odd[i][0], x.r.y[i] = (real)odd[i][1], x.r.z[i] = (real)odd[i][2];
-        x.s.x[i] = (real)odd[i][3], x.s.y[i] = (real)odd[i][4], x.s.z[i] = (real)odd[i][5];
-        lit[i] = 1;
-    }
-    no_hits(&h, ODD + 1);
-    f->ops->hit(f, ODD, &x, 0, &h);
-    f->ops->occlude(f, ODD, &x, lit);
-    f->ops->locate(f, ODD, &x, h.t, part, u, w);
-    f->ops->eval(f, ODD, part, u, w, 2, &q);
-    f->ops->occlude_own(f, ODD, &x, part, lit);
-    assert_int_equal(h.id[ODD], -1);
-    for (int i = 0; i < ODD; i++) {
-        BETWEEN(-1, h.id[i], 0);
-        CHECK(h.t[i], >, 0);
-        CHECK(h.t[i], <=, REAL_FAR);
-        BETWEEN(0, lit[i], 1);
-        BETWEEN(0, part[i], f->ops->parts - 1);
-    }
+    surface *f = surface_of(*(const int *)*state);
+    check_odd_rays(f, sizeof odd / sizeof *odd, odd);
 }
 
 /* A hit does not know what other rays were in the wave, nor how many. */
@@ -634,7 +611,9 @@ static void displaced_as_closed_forms(void **state)
         }
     }
     print_message("displaced: %d hits, %d unlike the closed form's, %ld uncertain\n", met, differ, c.uncertain);
-    assert_true(met > 300 && differ <= 1 && c.uncertain <= 1);
+    CHECK(met, >, 300);
+    CHECK(differ, <=, 1);
+    CHECK(c.uncertain, <=, 1);
     surface_free(over_patch);
     surface_free(over_closed);
     bump_free(P);
