@@ -200,7 +200,7 @@ static void box_closest(const surface *base, int part, int n, const rays *x, con
 }
 
 static void box_lipschitz(const surface *base, int part, int n, const rays *x, const closest_points *p, real Pu_max,
-                      real Pw_max, real *rate, real *reach)
+                          real Pw_max, real *rate, real *reach)
 {
     const box *f = (const box *)base;
     const face c = box_face(f, part);

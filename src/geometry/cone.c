@@ -210,7 +210,7 @@ static void cone_bound(const surface *base, int part, int n, const rays *x, cons
 }
 
 STAGE static void cone_side_closest(const cone *restrict base, int n, const rays *restrict x, const real *restrict t,
-                                 closest_points *restrict p)
+                                    closest_points *restrict p)
 {
     const cone f = *base;
     for (int i = 0; i < n; i++) {
@@ -240,7 +240,7 @@ static void cone_closest(const surface *base, int part, int n, const rays *x, co
 /* The directions of h, of w and around the axis are at right angles, so that the ray's way is shared between them
  * (Cauchy and Schwarz); |grad u| is 1/(distance to the axis), within half of which it at most doubles. */
 STAGE static void cone_side_lipschitz(int n, const rays *restrict x, const closest_points *restrict p, real Pu_max,
-                                  real Pw_max, real *restrict rate, real *restrict reach)
+                                      real Pw_max, real *restrict rate, real *restrict reach)
 {
     for (int i = 0; i < n; i++) {
         real sx = x->s.x[i], sy = x->s.y[i], sz = x->s.z[i], s = real_sqrt(sx * sx + sy * sy + sz * sz);
@@ -251,7 +251,7 @@ STAGE static void cone_side_lipschitz(int n, const rays *restrict x, const close
 }
 
 static void cone_lipschitz(const surface *base, int part, int n, const rays *x, const closest_points *p, real Pu_max,
-                       real Pw_max, real *rate, real *reach)
+                           real Pw_max, real *rate, real *reach)
 {
     if (part == 0)
         cone_side_lipschitz(n, x, p, Pu_max, Pw_max, rate, reach);
@@ -266,8 +266,8 @@ static void cone_lipschitz(const surface *base, int part, int n, const rays *x, 
     {                                                                                                                  \
         .kind = name, .hit = cone_##form##_hit, .hit_own = cone_##form##_hit_own, .locate = cone_locate,               \
         .eval = cone_eval, .occlude = cone_##form##_occlude, .occlude_own = cone_##form##_occlude_own,                 \
-        .extent = cone_extent, .box = cone_box, .parts = number, .bound = cone_bound, .closest = cone_closest,            \
-        .lipschitz = cone_lipschitz, .unclamped = is_cone                                                                  \
+        .extent = cone_extent, .box = cone_box, .parts = number, .bound = cone_bound, .closest = cone_closest,         \
+        .lipschitz = cone_lipschitz, .unclamped = is_cone                                                              \
     }
 
 static const surface_ops cone_methods[2][2] = {

@@ -154,7 +154,7 @@ STAGE static void sphere_bound(const surface *base, int part, int n, const rays 
 }
 
 STAGE static void sphere_closest(const surface *base, int part, int n, const rays *x, const real *restrict t,
-                              closest_points *restrict p)
+                                 closest_points *restrict p)
 {
     const sphere f = *(const sphere *)base;
     (void)part;
@@ -182,7 +182,7 @@ STAGE static void sphere_closest(const surface *base, int part, int n, const ray
 /* |grad u| is 1/(distance to the axis), |grad w| 1/(distance to the centre): within half of either they at most double.
  */
 STAGE static void sphere_lipschitz(const surface *base, int part, int n, const rays *x, const closest_points *p,
-                               real Pu_max, real Pw_max, real *restrict rate, real *restrict reach)
+                                   real Pu_max, real Pw_max, real *restrict rate, real *restrict reach)
 {
     (void)base;
     (void)part;

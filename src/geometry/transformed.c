@@ -203,7 +203,7 @@ static void similar_closest(const surface *base, int part, int n, const rays *x,
 }
 
 static void similar_lipschitz(const surface *base, int part, int n, const rays *x, const closest_points *p, real Pu_max,
-                          real Pw_max, real *rate, real *reach)
+                              real Pw_max, real *rate, real *reach)
 {
     const transformed *f = of(base);
     rays y;
@@ -236,7 +236,7 @@ static void faces_closest(const surface *base, int part, int n, const rays *x, c
 }
 
 static void faces_lipschitz(const surface *base, int part, int n, const rays *x, const closest_points *p, real Pu_max,
-                        real Pw_max, real *rate, real *reach)
+                            real Pw_max, real *rate, real *reach)
 {
     const surface *face = &of(base)->face[part].base;
     face->ops->lipschitz(face, 0, n, x, p, Pu_max, Pw_max, rate, reach);

@@ -257,6 +257,16 @@ static void random_ray(rays *x, int i, wide r[3], wide s[3])
     s[0] = (wide)S.x, s[1] = (wide)S.y, s[2] = (wide)S.z;
 }
 
+/* All lanes, with no hit before t = 3. */
+static void random_rays(rays *x, hits *h, wide r[LANES][3], wide s[LANES][3])
+{
+    for (int i = 0; i < LANES; i++) {
+        random_ray(x, i, r[i], s[i]);
+        h->t[i] = R(3);
+        h->id[i] = -1;
+    }
+}
+
 static void hits_agree_with_bisection(void **state)
 {
     (void)state;
@@ -387,11 +397,7 @@ static void own_shadows(void **state)
         int32_t on[LANES];
         wide r[LANES][3], s[LANES][3];
         real lit[LANES];
-        for (int i = 0; i < LANES; i++) {
-            random_ray(&x, i, r[i], s[i]);
-            h.t[i] = R(3);
-            h.id[i] = -1;
-        }
+        random_rays(&x, &h, r, s);
         bumpy->ops->hit(bumpy, LANES, &x, 0, &h);
         for (int i = 0; i < LANES; i++)
             if (h.id[i] == 0) {
@@ -491,6 +497,18 @@ static wide next_crossing(int kind, int bumped, int own, const wide r[3], const 
     return best;
 }
 
+/* Ray n of y begins where ray i of x hits, to any side. */
+static void leave(const rays *x, const hits *h, int i, rays *y, ray_origins *from, int n)
+{
+    double c = random_in(-1, 1), a = random_in(0, 6.283), l = sqrt(1 - c * c);
+    bs_vec3 X = lane_at(x, i, h->t[i]);
+    lane_set(&y->r, n, X);
+    lane_set(&y->s, n, (bs_vec3){(real)(4 * l * cos(a)), (real)(4 * c), (real)(4 * l * sin(a))});
+    lane_set(&from->at, n, X);
+    from->part[n] = h->part[i];
+    from->id[n] = 5;
+}
+
 /* From hits to all sides: away from what was met, as mirrored rays go, and into it, as refracted ones do. Each meets
  * what bisection does, and not the place that it has left. */
 static void leaving(void **state)
@@ -509,25 +527,14 @@ static void leaving(void **state)
             int met = 0, passed = 0, doubts = 0, wrong = 0, n = 0;
             wide r[LANES][3], s[LANES][3];
             real lit[LANES];
-            for (int i = 0; i < LANES; i++) {
-                random_ray(&x, i, r[i], s[i]);
-                h.t[i] = R(3);
-                h.id[i] = -1;
-            }
+            random_rays(&x, &h, r, s);
             bumpy->ops->hit(bumpy, LANES, &x, 5, &h);
             for (int i = 0; i < LANES; i++)
                 if (h.id[i] == 5) {
-                    double c = random_in(-1, 1), a = random_in(0, 6.283), l = sqrt(1 - c * c);
-                    bs_vec3 X = lane_at(&x, i, h.t[i]),
-                            d = {(real)(4 * l * cos(a)), (real)(4 * c), (real)(4 * l * sin(a))};
-                    lane_set(&y.r, n, X);
-                    lane_set(&y.s, n, d);
-                    lane_set(&from.at, n, X);
-                    from.part[n] = h.part[i];
-                    from.id[n] = 5;
+                    leave(&x, &h, i, &y, &from, n);
                     again.id[n] = -1;
-                    lit[n] = 1;
-                    again.t[n++] = 1;
+                    again.t[n] = lit[n] = 1;
+                    n++;
                 }
             bumpy->ops->hit_own(bumpy, n, &y, &from, 5, &again);
             bumpy->ops->occlude_own(bumpy, n, &y, from.part, lit);

@@ -53,56 +53,58 @@ static inline uint32_t draw(uint32_t n)
 
 static inline double draw_in(double lo, double hi) { return lo + (hi - lo) * draw(1u << 30) / (double)(1u << 30); }
 
+/* Forms of expressions, % for one in its place; the first 24 are smooth everywhere. */
+static const char *const expr_forms[] = {"(%+%)",
+                                         "(%-%)",
+                                         "%*%",
+                                         "%/(2+%^2)",
+                                         "sin(%)",
+                                         "cos(%)",
+                                         "-(%)",
+                                         "(%)^2",
+                                         "(%)^3",
+                                         "exp(sin(%))",
+                                         "tanh(%)",
+                                         "atan(%)",
+                                         "sqrt(1+(%)^2)",
+                                         "log(2+sin(%))",
+                                         "sinh(sin(%))",
+                                         "cosh(cos(%))",
+                                         "noise(%,%)",
+                                         "atan2(%,3+sin(%))",
+                                         "asin(0.9*sin(%))",
+                                         "acos(0.9*cos(%))",
+                                         "tan(cos(%))",
+                                         "(1.5+cos(%))^sin(%)",
+                                         "(2+sin(%))^-1.5",
+                                         "(1+(%)^2)^-2",
+                                         "abs(%)",
+                                         "floor(%)",
+                                         "min(%,%,%)",
+                                         "max(%,%)",
+                                         "mod(%,2+sin(%))",
+                                         "clamp(%,-1,sin(%))",
+                                         "select(%,%,%)",
+                                         "select(%,%,%,%)",
+                                         "sqrt(%)",
+                                         "log(%)",
+                                         "%/%",
+                                         "(%)^(%)",
+                                         "asin(%)",
+                                         "acos(%)",
+                                         "tan(%)",
+                                         "exp(%)",
+                                         "(%)^-3",
+                                         "(%)^0.7",
+                                         "atan2(%,%)",
+                                         "mod(%,%)",
+                                         "smoothstep(%,%,%)",
+                                         "cosh(%)",
+                                         "sinh(%)"};
+
 /* Append a random expression to `text`; smooth ones leave out what has edges. */
 static inline void random_expr(char *text, size_t size, int depth, bool smooth)
 {
-    static const char *const forms[] = {"(%+%)",
-                                        "(%-%)",
-                                        "%*%",
-                                        "%/(2+%^2)",
-                                        "sin(%)",
-                                        "cos(%)",
-                                        "-(%)",
-                                        "(%)^2",
-                                        "(%)^3",
-                                        "exp(sin(%))",
-                                        "tanh(%)",
-                                        "atan(%)",
-                                        "sqrt(1+(%)^2)",
-                                        "log(2+sin(%))",
-                                        "sinh(sin(%))",
-                                        "cosh(cos(%))",
-                                        "noise(%,%)",
-                                        "atan2(%,3+sin(%))",
-                                        "asin(0.9*sin(%))",
-                                        "acos(0.9*cos(%))",
-                                        "tan(cos(%))",
-                                        "(1.5+cos(%))^sin(%)",
-                                        "(2+sin(%))^-1.5",
-                                        "(1+(%)^2)^-2",
-                                        "abs(%)",
-                                        "floor(%)",
-                                        "min(%,%,%)",
-                                        "max(%,%)",
-                                        "mod(%,2+sin(%))",
-                                        "clamp(%,-1,sin(%))",
-                                        "select(%,%,%)",
-                                        "select(%,%,%,%)",
-                                        "sqrt(%)",
-                                        "log(%)",
-                                        "%/%",
-                                        "(%)^(%)",
-                                        "asin(%)",
-                                        "acos(%)",
-                                        "tan(%)",
-                                        "exp(%)",
-                                        "(%)^-3",
-                                        "(%)^0.7",
-                                        "atan2(%,%)",
-                                        "mod(%,%)",
-                                        "smoothstep(%,%,%)",
-                                        "cosh(%)",
-                                        "sinh(%)"};
     size_t n = strlen(text);
     if (depth == 0 || n > 1500) {
         static const char *const pieces[] = {"u", "w", "u", "w", "(u-w)"};
@@ -112,7 +114,7 @@ static inline void random_expr(char *text, size_t size, int depth, bool smooth)
             snprintf(text + n, size - n, "%s", pieces[draw(5)]);
         return;
     }
-    const char *form = forms[draw(smooth ? 24 : (uint32_t)(sizeof forms / sizeof forms[0]))];
+    const char *form = expr_forms[draw(smooth ? 24 : (uint32_t)(sizeof expr_forms / sizeof *expr_forms))];
     for (const char *f = form; *f; f++)
         if (*f == '%')
             random_expr(text, size, depth - 1, smooth);
