@@ -192,6 +192,40 @@ static void first_hits(void **state)
     }
 }
 
+enum { DOUBT = 9, FREE = -1, INSIDE = -2 }; /* beside the t of a crossing, which is 0 .. 1 */
+
+/* Is the shadow ray i lit, and where does it meet the surface again, as bisection has it? The t of the crossing. */
+static wide judge(const shape *f, const rays *away, int i, real lit, real again, double *worst)
+{
+    wide r[3], s[3];
+    bool doubt, c;
+    widen(away, i, r, s);
+    /* from a little way off: where the gap still is small there, or has turned, nothing is said */
+    wide off = 0.002L / sqrtl(dot(s, s)), g = gap(f, r, s, off, &c), slope = gap(f, r, s, off * 1.01L, &c) - g;
+    wide found = first_crossing(f, r, s, off, 1, &doubt), beyond, beside = outside(f, r, &beyond);
+    bool rim = fabsl(beside) < 0.003L && fabsl(beyond) < 0.003L;
+    if (doubt || rim || fabsl(g) < 3e-5L || (slope > 0) != (g > 0))
+        return DOUBT;
+    if (!f->open && g < 0 && found < 0)
+        return INSIDE; /* the light is inside */
+    if (lit != (found < 0 ? R(1) : R(0))) {
+        print_error("%s: from %g %g %g along %g %g %g: %g, crossing at %g\n", f->name, (double)r[0], (double)r[1],
+                    (double)r[2], (double)s[0], (double)s[1], (double)s[2], (double)lit, (double)found);
+        fail();
+    }
+    if (found >= 0) {
+        const wide speed = sqrtl(dot(s, s));
+        const wide rate = fabsl(gap(f, r, s, found + 1e-7L, &c) - gap(f, r, s, found - 1e-7L, &c)) / 2e-7L / speed;
+        const double far = fabs((double)(((wide)again - found) * speed * rate * fminl(1, fabsl(g) * 500)));
+        *worst = fmax(*worst, far);
+        if (!(far <= 60 * EPS * (1 + (double)(speed * found)))) {
+            print_error("%s: met again %g off (t %.9g, bisection %.9g)\n", f->name, far, (double)again, (double)found);
+            fail();
+        }
+    }
+    return found >= 0 ? found : FREE;
+}
+
 /* From hits outward and inward: the surface's shadow on itself, and where it is met again, by the crossings after the
  * start. */
 static void own_shadows(void **state)
@@ -236,42 +270,11 @@ static void own_shadows(void **state)
             vec3s_fill(&nowhere.r, n, 9, 9, 9); /* it does not matter */
             q->ops->hit_own(q, n, &nowhere, &from, 7, &again);
             for (int i = 0; i < n; i++) {
-                wide r[3], s[3];
-                CHECK((again.id[i] == 7), ==, (lit[i] == 0));
-                bool doubt, c;
-                widen(&away, i, r, s);
-                /* from a little way off: where the gap still is small there, or has turned, nothing is said */
-                wide off = 0.002L / sqrtl(dot(s, s)), g = gap(f, r, s, off, &c),
-                     slope = gap(f, r, s, off * 1.01L, &c) - g;
-                wide found = first_crossing(f, r, s, off, 1, &doubt), beyond, beside = outside(f, r, &beyond);
-                bool rim = fabsl(beside) < 0.003L && fabsl(beyond) < 0.003L;
-                if (doubt || rim || fabsl(g) < 3e-5L || (slope > 0) != (g > 0)) {
-                    doubts++;
-                    continue;
-                }
-                if (!f->open && g < 0 && found < 0)
-                    continue; /* the light is inside */
-                if (lit[i] != (found < 0 ? R(1) : R(0))) {
-                    print_error("%s: from %g %g %g along %g %g %g: %g, crossing at %g\n", f->name, (double)r[0],
-                                (double)r[1], (double)r[2], (double)s[0], (double)s[1], (double)s[2], (double)lit[i],
-                                (double)found);
-                    fail();
-                }
-                if (found >= 0) {
-                    const wide speed = sqrtl(dot(s, s));
-                    const wide rate =
-                        fabsl(gap(f, r, s, found + 1e-7L, &c) - gap(f, r, s, found - 1e-7L, &c)) / 2e-7L / speed;
-                    const double far =
-                        fabs((double)(((wide)again.t[i] - found) * speed * rate * fminl(1, fabsl(g) * 500)));
-                    worst = fmax(worst, far);
-                    if (!(far <= 60 * EPS * (1 + (double)(speed * found)))) {
-                        print_error("%s: met again %g off (t %.9g, bisection %.9g)\n", f->name, far, (double)again.t[i],
-                                    (double)found);
-                        fail();
-                    }
-                }
-                dark += found >= 0;
-                free += found < 0;
+                CHECK(again.id[i] == 7, ==, lit[i] == 0);
+                const wide found = judge(f, &away, i, lit[i], again.t[i], &worst);
+                dark += found >= 0 && found < DOUBT;
+                free += found == FREE;
+                doubts += found == DOUBT;
             }
         }
         print_message("%s: %d dark, met again at most %.2g off, %d lit, %d left out\n", f->name, dark, worst, free,
