@@ -58,7 +58,7 @@ typedef struct expr_hessians {
 /* The same, and bounds of the second partials: Lipschitz bounds of the first ones likewise, so infinite where a slope
  * may jump. */
 void expr_bound_hessian(const expr *e, double u0, double u1, double w0, double w1, expr_bounds *out,
-                        expr_hessians *second);
+                        expr_hessians *hessian);
 
 void expr_free(expr *e);
 

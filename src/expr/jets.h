@@ -56,7 +56,7 @@ void jets_shift(int n, expr_view z, expr_view x, double k);
 void jets_scale(int n, expr_view z, expr_view x, double k);
 void jets_add(int n, expr_view z, expr_view x, expr_view y);
 void jets_subtract(int n, expr_view z, expr_view x, expr_view y);
-void jets_multiply(int n, expr_view z, expr_view x, expr_view y);
+void jets_multiply(int n, expr_view z, expr_view a, expr_view b);
 
 /* The chain rule: the partials of z = f(x[0], x[1], ...). curved: which f_ij can differ from 0. */
 void jets_chain(int n, expr_view z, int operands, const expr_view *x, const expr_partials *f, int curved);

@@ -9,6 +9,6 @@ typedef struct noise_bounds {
 } noise_bounds;
 
 /* Close where the rectangle is small, the bounds of the whole plane where its sides add up to 2 or more. */
-noise_bounds noise_bounds_over(interval x, interval y);
+noise_bounds noise_bounds_over(interval a, interval b);
 
 #endif

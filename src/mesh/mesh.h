@@ -32,7 +32,7 @@ surface *mesh_new(mesh_data *d, const progress *w);
 
 /* The image of a mesh by an affine map, with arrays of its own (an image by surface_transformed has no true
  * displacement). Where the map mirrors, u runs the other way in its range, as there. NULL: out of memory. */
-surface *mesh_moved(const surface *from, const affine *m);
+surface *mesh_moved(const surface *base, const affine *m);
 
 /* Whether a surface is one. */
 bool mesh_is(const surface *f);

@@ -29,7 +29,7 @@ surface *patch_surface_new_bounded(patch *q, bool *bounded);
 /* The image of such a surface by an affine map, in pieces of its own: what surface_transformed makes of it has no true
  * displacement. `from` must outlive it; as there, where the map mirrors u runs the other way. NULL: as
  * patch_surface_new. */
-surface *patch_surface_affine(const surface *from, const affine *m);
+surface *patch_surface_affine(const surface *base, const affine *m);
 
 /* A closed form's formula as a patch surface (formula.c); kind: a constant. threads: as patch.threads. NULL: out of
  * memory. */

@@ -20,7 +20,7 @@ typedef struct property {
 static inline int run_properties(const char *group, const property *p, int properties, const char *const *things,
                                  int count, CMFixtureFunction setup, CMFixtureFunction end)
 {
-    const size_t most = (size_t)(properties * count);
+    const size_t most = (size_t)properties * (size_t)count;
     struct CMUnitTest *tests = calloc(most, sizeof *tests);
     char(*names)[80] = calloc(most, sizeof *names);
     int *number = calloc((size_t)count, sizeof *number), failed = -1;
