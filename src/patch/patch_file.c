@@ -1,5 +1,5 @@
 /* Reading files of Bezier patches, with the place of what is wrong. */
-#include "read/patch_file.h"
+#include "patch/patch_file.h"
 
 #include "yaml/text.h"
 

@@ -1,8 +1,8 @@
 /* A file of Bezier patches: a text of control points, three numbers each. 16 points are a patch, the first four of them
  * along u. Blanks, commas and ends of lines separate numbers; # begins a comment.
  */
-#ifndef KAGE_READ_PATCH_FILE_H
-#define KAGE_READ_PATCH_FILE_H
+#ifndef KAGE_PATCH_PATCH_FILE_H
+#define KAGE_PATCH_PATCH_FILE_H
 
 #include "base/errors.h"
 #include "base/vec3.h"
