@@ -20,6 +20,7 @@ from pathlib import Path
 
 TOP = Path(__file__).resolve().parent.parent
 DESIGN, PICTURE = Path("docs/design.md"), Path("docs/rooms.svg")
+FACE = ("kage.h",)  # what the room api/ shows of itself in include/
 BEGIN, END = "<!-- rooms -->", "<!-- /rooms -->"
 
 #: Each room's rank and purpose.
@@ -74,7 +75,8 @@ def rooms_below(sources: Mapping[str, str]) -> dict[str, set[str]]:
     """The rooms that each room includes."""
     found: dict[str, set[str]] = {room_of(path): set() for path in sources}
     for path, text in sources.items():
-        found[room_of(path)] |= {room_of(other) for other in includes(text) if "/" in other} - {room_of(path)}
+        others = {"api" if other == "kage.h" else room_of(other) for other in includes(text) if other in FACE or "/" in other}
+        found[room_of(path)] |= others - {room_of(path)}
     return found
 
 
@@ -96,7 +98,8 @@ def table(sources: Mapping[str, str]) -> str:
 
 def block(sources: Mapping[str, str]) -> str:
     return (f"{BEGIN}\n\n{table(sources)}\n![The rooms and what they include]({PICTURE.name})\n\n"
-            "An arrow goes from a room to one that it includes, where no longer way of arrows leads there.\n\n"
+            "A room may include any room with a lower rank. The last column lists those that it does include. An arrow of\n"
+            "the picture goes from a room to one that it includes, unless a longer way of arrows leads there.\n\n"
             f"{END}")
 
 
