@@ -20,7 +20,7 @@ from pathlib import Path
 
 TOP = Path(__file__).resolve().parent.parent
 DESIGN, PICTURE = Path("docs/design.md"), Path("docs/rooms.svg")
-FACE = ("kage.h",)  # what the room api/ shows of itself in include/
+FACE = "kage.h"  # what the room api/ shows of itself in include/
 BEGIN, END = "<!-- rooms -->", "<!-- /rooms -->"
 
 #: Each room's rank and purpose.
@@ -75,8 +75,10 @@ def rooms_below(sources: Mapping[str, str]) -> dict[str, set[str]]:
     """The rooms that each room includes."""
     found: dict[str, set[str]] = {room_of(path): set() for path in sources}
     for path, text in sources.items():
-        others = {"api" if other == "kage.h" else room_of(other) for other in includes(text) if other in FACE or "/" in other}
-        found[room_of(path)] |= others - {room_of(path)}
+        for other in includes(text):
+            room = "api" if other == FACE else room_of(other)
+            if room in ROOMS and room != room_of(path):
+                found[room_of(path)].add(room)
     return found
 
 
