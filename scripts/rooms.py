@@ -100,8 +100,8 @@ def table(sources: Mapping[str, str]) -> str:
 
 def block(sources: Mapping[str, str]) -> str:
     return (f"{BEGIN}\n\n{table(sources)}\n![The rooms and what they include]({PICTURE.name})\n\n"
-            "A room may include any room with a lower rank. The last column lists those that it does include. An arrow of\n"
-            "the picture goes from a room to one that it includes, unless a longer way of arrows leads there.\n\n"
+            "A room may include any room with a lower rank. The last column lists those that it does include. In the\n"
+            "picture an arrow goes to an included room, unless a longer way of arrows leads there.\n\n"
             f"{END}")
 
 
