@@ -85,16 +85,6 @@ static inline void mesh_keep_inside(double *b, double *c)
     *c *= k;
 }
 
-/* The offset point Q + h N at b and c of a triangle, N there, and the point's partials by b and by c. */
-typedef struct mesh_prism {
-    vec3 place, N, Xb, Xc;
-} mesh_prism;
-
-mesh_prism mesh_prism_at(const mesh_triangle *x, double b, double c, double h);
-
-/* The gradients of u and w in space there. det: Xb x Xc . N, or a substitute where that is 0 as normals meet. */
-void mesh_gradients(const mesh_triangle *x, const mesh_prism *p, double det, vec3 *gu, vec3 *gw);
-
 /* In intersect.c; as the members of surface_ops of the same names. */
 void mesh_hit(const surface *base, int n, const rays *x, int32_t id, hits *h);
 void mesh_hit_own(const surface *base, int n, const rays *x, const ray_origins *from, int32_t id, hits *h);

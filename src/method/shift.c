@@ -95,64 +95,64 @@ static by_order_stage *const by_orders[2][4] = {
 };
 
 /* For the methods that evaluate P again along the ray: its way past the surface, and the places where it is now. */
-typedef struct walk {
+typedef struct ray_walk {
     real sn[LANES], a[LANES], b[LANES], curvature[LANES];
     real tau[LANES], u[LANES], w[LANES];
     bump_values h;
-} walk;
+} ray_walk;
 
-STAGE static void walk_start(const hit_group *restrict g, walk *restrict k)
+STAGE static void walk_start(const hit_group *restrict g, ray_walk *restrict walk)
 {
     for (int i = 0; i < g->n; i++) {
         bs_view v = view(g, i);
-        k->sn[i] = v.sn;
-        k->a[i] = v.a;
-        k->b[i] = v.b;
+        walk->sn[i] = v.sn;
+        walk->a[i] = v.a;
+        walk->b[i] = v.b;
     }
 }
 
-STAGE static void walk_curvature(const hit_group *restrict g, walk *restrict k)
+STAGE static void walk_curvature(const hit_group *restrict g, ray_walk *restrict walk)
 {
     for (int i = 0; i < g->n; i++) {
-        bs_view v = {k->sn[i], k->a[i], k->b[i]};
-        k->curvature[i] = curvature(g, i, v);
+        bs_view v = {walk->sn[i], walk->a[i], walk->b[i]};
+        walk->curvature[i] = curvature(g, i, v);
     }
 }
 
 /* P at (u0 + a tau, w0 + b tau). */
-STAGE static void walk_place(const hit_group *restrict g, walk *restrict k)
+STAGE static void walk_place(const hit_group *restrict g, ray_walk *restrict walk)
 {
     for (int i = 0; i < g->n; i++) {
-        k->u[i] = g->u[i] + k->a[i] * k->tau[i];
-        k->w[i] = g->w[i] + k->b[i] * k->tau[i];
+        walk->u[i] = g->u[i] + walk->a[i] * walk->tau[i];
+        walk->w[i] = g->w[i] + walk->b[i] * walk->tau[i];
     }
 }
 
-static void walk_evaluate(const hit_group *g, walk *k, const bump *P)
+static void walk_evaluate(const hit_group *g, ray_walk *walk, const bump *P)
 {
-    walk_place(g, k);
-    P->ops->eval(P, g->n, k->u, k->w, 0, &k->h);
+    walk_place(g, walk);
+    P->ops->eval(P, g->n, walk->u, walk->w, 0, &walk->h);
 }
 
-STAGE static void iter_step(int n, walk *restrict k, const real *restrict P)
+STAGE static void iter_step(int n, ray_walk *restrict walk, const real *restrict P)
 {
     for (int i = 0; i < n; i++) {
-        bs_view v = {k->sn[i], 0, 0};
-        k->tau[i] = bs_tau0(v, P[i]);
+        bs_view v = {walk->sn[i], 0, 0};
+        walk->tau[i] = bs_tau0(v, P[i]);
     }
 }
 
 static long iterate(hit_group *g, const bump *P, method m)
 {
-    walk k;
-    walk_start(g, &k);
-    iter_step(g->n, &k, g->bump.P); /* P at the smooth hit is known */
+    ray_walk walk;
+    walk_start(g, &walk);
+    iter_step(g->n, &walk, g->bump.P); /* P at the smooth hit is known */
     for (int step = 1; step < m.n; step++) {
-        walk_evaluate(g, &k, P);
-        iter_step(g->n, &k, k.h.P);
+        walk_evaluate(g, &walk, P);
+        iter_step(g->n, &walk, walk.h.P);
     }
     for (int i = 0; i < g->n; i++) {
-        g->tau[i] = k.tau[i];
+        g->tau[i] = walk.tau[i];
         g->order[i] = method_code(m);
     }
     return (long)(m.n - 1) * g->n;
@@ -163,10 +163,10 @@ typedef struct march_lanes {
     int32_t found[LANES];
 } march_lanes;
 
-STAGE static void march_start(int n, const walk *restrict k, real Pmin, real Pmax, march_lanes *restrict m)
+STAGE static void march_start(int n, const ray_walk *restrict walk, real Pmin, real Pmax, march_lanes *restrict m)
 {
     for (int i = 0; i < n; i++) {
-        bs_view v = {k->sn[i], k->a[i], k->b[i]};
+        bs_view v = {walk->sn[i], walk->a[i], walk->b[i]};
         bs_march s = bs_march_start(bs_slab_of(v, Pmin, Pmax));
         m->tau[i] = s.tau;
         m->gap[i] = s.gap;
@@ -174,20 +174,20 @@ STAGE static void march_start(int n, const walk *restrict k, real Pmin, real Pma
     }
 }
 
-STAGE static void march_place(int n, walk *restrict k, real Pmin, real Pmax, int step, int steps)
+STAGE static void march_place(int n, ray_walk *restrict walk, real Pmin, real Pmax, int step, int steps)
 {
     for (int i = 0; i < n; i++) {
-        bs_view v = {k->sn[i], k->a[i], k->b[i]};
-        k->tau[i] = bs_march_tau(bs_slab_of(v, Pmin, Pmax), step, steps);
+        bs_view v = {walk->sn[i], walk->a[i], walk->b[i]};
+        walk->tau[i] = bs_march_tau(bs_slab_of(v, Pmin, Pmax), step, steps);
     }
 }
 
-STAGE static void march_step(int n, const walk *restrict k, march_lanes *restrict m)
+STAGE static void march_step(int n, const ray_walk *restrict walk, march_lanes *restrict m)
 {
     for (int i = 0; i < n; i++) {
-        bs_view v = {k->sn[i], k->a[i], k->b[i]};
+        bs_view v = {walk->sn[i], walk->a[i], walk->b[i]};
         bs_march s = {m->tau[i], m->gap[i], m->found[i]};
-        s = bs_march_step(s, k->tau[i], bs_gap(v, k->curvature[i], k->tau[i], k->h.P[i]), v);
+        s = bs_march_step(s, walk->tau[i], bs_gap(v, walk->curvature[i], walk->tau[i], walk->h.P[i]), v);
         m->tau[i] = s.tau;
         m->gap[i] = s.gap;
         m->found[i] = s.found;
@@ -196,18 +196,18 @@ STAGE static void march_step(int n, const walk *restrict k, march_lanes *restric
 
 static long march(hit_group *g, const bump *P, method m)
 {
-    walk k;
+    ray_walk walk;
     march_lanes x;
-    walk_start(g, &k);
-    walk_curvature(g, &k);
-    march_start(g->n, &k, P->Pmin, P->Pmax, &x);
+    walk_start(g, &walk);
+    walk_curvature(g, &walk);
+    march_start(g->n, &walk, P->Pmin, P->Pmax, &x);
     for (int step = 0; step <= m.n; step++) {
-        march_place(g->n, &k, P->Pmin, P->Pmax, step, m.n);
-        walk_evaluate(g, &k, P);
-        march_step(g->n, &k, &x);
+        march_place(g->n, &walk, P->Pmin, P->Pmax, step, m.n);
+        walk_evaluate(g, &walk, P);
+        march_step(g->n, &walk, &x);
     }
     for (int i = 0; i < g->n; i++) {
-        bs_view v = {k.sn[i], 0, 0};
+        bs_view v = {walk.sn[i], 0, 0};
         g->tau[i] = x.found[i] ? x.tau[i] : bs_tau0(v, g->bump.P[i]);
         g->order[i] = x.found[i] ? method_code(m) : 0;
     }

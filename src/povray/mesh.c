@@ -4,7 +4,7 @@
 #include "povray/material.h"
 #include "povray/parts.h"
 
-#include "mesh/mesh.h"
+#include "displaced/prism.h"
 #include "povray/vertices.h"
 
 #include <stdlib.h>
@@ -130,8 +130,8 @@ static pov_vertex rough_vertex(const mesh *f, const mesh_triangle *x, real u, re
     vec3 gu, gw;
     pov_vertex v;
     mesh_shares(x, (double)u, (double)w, &b, &c);
-    const mesh_prism p = mesh_prism_at(x, b, c, (double)P);
-    mesh_gradients(x, &p, vec3_dot(vec3_cross(p.Xb, p.Xc), p.N), &gu, &gw);
+    const prism_point p = prism_at(x, b, c, (double)P);
+    prism_gradients(x, &p, vec3_dot(vec3_cross(p.Xb, p.Xc), p.N), &gu, &gw);
     put_wide(v.at, p.place);
     put_wide(v.normal, vec3_unit(vec3_sub(p.N, vec3_add(vec3_scale(gu, (double)Pu), vec3_scale(gw, (double)Pw)))));
     put_texture(f, (double)u, (double)w, v.uv);

@@ -60,12 +60,18 @@ bool reader_need_all(reader *r, node *map, const char *keys, const char *what)
 
 char *reader_beside(reader *r, const char *file)
 {
-    const char *given = r->from->folder, *folder = given ? given : r->s->path, *slash = strrchr(folder, '/');
-    const size_t n = *file == '/' ? 0 : given ? strlen(given) : slash ? (size_t)(slash - folder) + 1 : 0;
+    const char *folder = r->from->folder ? r->from->folder : r->s->path;
+    size_t n = strlen(folder); /* of the folder, with its slash where it has one */
+    if (!r->from->folder)
+        while (n > 0 && folder[n - 1] != '/')
+            n--;
+    if (*file == '/')
+        n = 0;
+    const char *slash = n > 0 && folder[n - 1] != '/' ? "/" : "";
     const size_t size = n + strlen(file) + 2;
     char *path = malloc(size);
     if (path)
-        snprintf(path, size, "%.*s%s%s", (int)n, folder, given && n > 0 && given[n - 1] != '/' ? "/" : "", file);
+        snprintf(path, size, "%.*s%s%s", (int)n, folder, slash, file);
     if (!path || !files_add_path(&r->s->made_from, path))
         errors_add(r->e, "out of memory");
     return path;

@@ -138,15 +138,6 @@ static void send(const hit_group *g, int i, int id, real t0, bs_vec3 s, bs_vec3 
     copy_media(in, j, &b->in, to);
 }
 
-STAGE static void through_plain(int n, real kr, real kg, real kb, vec3s *restrict w)
-{
-    for (int i = 0; i < n; i++) {
-        w->x[i] = kr;
-        w->y[i] = kg;
-        w->z[i] = kb;
-    }
-}
-
 STAGE static void through_pattern(const hit_group *restrict g, real filter, real transmit, vec3s *restrict w)
 {
     for (int i = 0; i < g->n; i++) {
@@ -165,8 +156,8 @@ static void send_clear(const scene *sc, int32_t id, workspace *v, ways *y)
     media in;
     for (int i = 0; i < g->n; i++) {
         copy_media(before, hit_group_place(g, i), &in, i);
-        /* what has been entered is left, as in POV-Ray, also through a gap between rough parts; the eye may be in what
-         * it has not entered */
+        /* what has been entered is left, as in POV-Ray, also through a gap between displaced parts; the eye may be in
+         * what it has not entered */
         bool out = is_in(&in, i, id) || bs_dot(lane_get(&g->x.s, i), lane_get(&g->n_smooth, i)) > 0;
         y->ratio[i] = (real)cross(sc, id, out, &in, i);
     }
@@ -174,8 +165,8 @@ static void send_clear(const scene *sc, int32_t id, workspace *v, ways *y)
     if (m->pattern)
         through_pattern(g, (real)m->filter, (real)m->transmit, &y->through);
     else
-        through_plain(g->n, (real)(m->color.x * m->filter + m->transmit), (real)(m->color.y * m->filter + m->transmit),
-                      (real)(m->color.z * m->filter + m->transmit), &y->through);
+        vec3s_fill(&y->through, g->n, (real)(m->color.x * m->filter + m->transmit),
+                   (real)(m->color.y * m->filter + m->transmit), (real)(m->color.z * m->filter + m->transmit));
     for (int i = 0; i < g->n; i++) {
         bs_vec3 through = lane_get(&y->through, i);
         const bool total = y->ratio[i] != 1 && y->total[i] && !is_zero(through);

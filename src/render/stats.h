@@ -25,10 +25,10 @@ extern const char *const stage_names[STAGES];
 
 /* The parts of one thread are added up in the end. */
 typedef struct stats {
-    long rays, shadow_rays, evaluations; /* camera rays, shadow rays, looks at a P but for those in searches */
+    long rays, shadow_rays, evaluations; /* camera rays, shadow rays, evaluations of P outside searches */
     long secondary_rays;                 /* reflected, refracted, straight through */
     long orders[ORDER_CODES];            /* bumped samples by the order really used, from none on */
-    displaced_counts displaced;          /* searches of true hits */
+    displaced_counts displaced;          /* hits of displaced surfaces */
     long bumped, fell_back;              /* bumped samples, and those among them with another order than asked for */
     double seconds[STAGES];              /* in the tiles that were timed */
     bool timing;                         /* this tile is */

@@ -16,7 +16,9 @@
 #include "render/shadow.h"
 #include "wave/gather.h"
 
-/* Where a group's lanes are on the smooth surface f, P there, n and n', and tau. */
+/* The smooth hit Q and its partials; P and its partials, a map's by bilinear interpolation of differences
+ * (texture/bump_map.c); n' (bs_perturbed_normal); and tau (method/shift.c by bs_tau0, bs_tau1, bs_tau2), which is kept
+ * within the slab of P (bs_slab_of). */
 static void shape_and_shift(const tracer *tr, int32_t id, workspace *v)
 {
     const surface *f = v->surface[id];

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "render/intersect.h"
+#include "wave/gather.h"
 #include "wave/lane.h"
 
 enum { CROSSINGS = 64 }; /* of a rough surface; what crosses it more often is dark */
@@ -25,16 +26,15 @@ void transmittance_begin(hit_group *g) { vec3s_fill(&g->tint, g->n, 1, 1, 1); }
 static void begin(const hit_group *g, int32_t id, bool own, segments *a)
 {
     a->n = 0;
-    for (int i = 0; i < g->n; i++) {
-        if (!(g->lit[i] > 0))
-            continue;
-        const int to = a->n++;
-        a->lane[to] = i;
-        lane_set(&a->x.r, to, lane_get(&g->to_light.r, i));
-        lane_set(&a->x.s, to, lane_get(&g->to_light.s, i));
-        lane_set(&a->from.at, to, lane_get(&g->to_light.r, i));
-        a->from.id[to] = own ? id : -1;
-        a->from.part[to] = g->part[i];
+    for (int i = 0; i < g->n; i++) { /* without a branch */
+        a->lane[a->n] = i;
+        a->n += g->lit[i] > 0;
+    }
+    gather_rays(a->n, a->lane, &g->to_light, &a->x);
+    a->from.at = a->x.r;
+    for (int i = 0; i < a->n; i++) {
+        a->from.id[i] = own ? id : -1;
+        a->from.part[i] = g->part[a->lane[i]];
     }
 }
 

@@ -17,9 +17,9 @@
 
 typedef struct object {
     char *name;
-    surface *shape;
-    surface *displaced;  /* shape by the bump, where the scene wants it (scene_wants_truth); else NULL */
-    surface *own;        /* the shape before its transform: the same where it has none */
+    surface *shape;      /* Q(u,w) */
+    surface *displaced;  /* Q + P n/|n|, where scene_wants_truth; else NULL */
+    surface *own;        /* the shape before its transform; without one the same */
     surface *centred;    /* what a moved shape is the image of: the same about the origin */
     const char *copy_of; /* the object whose `own` it is; NULL: its own */
     bool moved;          /* it has a transform, or what it copies has: `placed` */
@@ -44,7 +44,7 @@ typedef struct scene {
     camera_view view;
     method shadow;
     bool guard;
-    bool displaced;   /* render.surface: bumped objects as what they stand for */
+    bool displaced;   /* render.surface: rays meet the displaced surfaces */
     bool self_shadow; /* bumped objects cast shadows */
     int aa;
     double aa_threshold; /* < 0: none */
@@ -56,13 +56,13 @@ typedef struct scene {
     int materials;
     object *object;
     int objects;
-    struct object_bvh *object_bvh; /* where there are many (crowd.h); NULL: few */
+    struct object_bvh *object_bvh; /* where there are many (object_bvh.h); NULL: few */
 } scene;
 
-/* Whether true hits of bumped objects are asked for (displace.h). */
+/* Whether bumped objects need their displaced surfaces. */
 static inline bool scene_wants_truth(const scene *s) { return s->displaced || s->shadow.kind == METHOD_EXACT; }
 
-/* The number of threads, lights and so on that a scene can have at most. */
+/* Limits: pixels along a side; lights, materials, objects; samples along a pixel's side; rays in a row. */
 enum { SCENE_MAX_SIDE = 32768, SCENE_MAX_ITEMS = 4096, SCENE_MAX_AA = 16, SCENE_MAX_DEPTH = 32 };
 
 /* Where a scene is read from. All but `path` may be zero. */

@@ -56,7 +56,7 @@ typedef struct rays {
 typedef struct hits {
     real t[LANES];
     int32_t id[LANES];   /* index of the object in the scene */
-    int32_t part[LANES]; /* of its surface; set by displaced surfaces and meshes, found by `locate` of the others */
+    int32_t part[LANES]; /* of its surface; set by displaced surfaces and meshes, others find it in `locate` */
 } hits;
 
 /* Where `take`, ray i has met object `id` at t. */

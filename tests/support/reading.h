@@ -14,6 +14,7 @@ typedef struct reading {
     reader r;
     scene s;
     errors e;
+    scene_source from;
     char path[32];
 } reading;
 
@@ -21,9 +22,11 @@ static inline reading *reading_of(const char *text)
 {
     reading *t = calloc(1, sizeof *t);
     assert_non_null(t);
-    strcpy(t->path, "test.yaml");
+    strcpy(t->path, "/scenes/test.yaml");
     t->s.path = t->path;
-    t->r = (reader){.y = yaml_open(t->path, text, strlen(text), 0, NULL, "", &t->e), .s = &t->s, .e = &t->e};
+    t->from = (scene_source){.path = t->path, .text = text, .size = strlen(text)};
+    t->r = (reader){
+        .y = yaml_open(t->path, text, strlen(text), 0, NULL, "", &t->e), .s = &t->s, .e = &t->e, .from = &t->from};
     assert_non_null(t->r.y);
     return t;
 }

@@ -2,6 +2,7 @@
 #ifndef KAGE_TESTS_SCENE_TEXT_H
 #define KAGE_TESTS_SCENE_TEXT_H
 
+#include <stdio.h>
 #include <string.h>
 
 #include "render/trace.h"

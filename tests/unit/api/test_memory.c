@@ -9,6 +9,8 @@
 #include <errno.h>
 #include <unistd.h>
 
+/* The linker makes these names. */
+/* NOLINTBEGIN(bugprone-reserved-identifier) */
 void *__real_malloc(size_t size);
 void *__real_calloc(size_t n, size_t size);
 void *__real_realloc(void *p, size_t size);
@@ -94,6 +96,8 @@ struct fy_node *__wrap_fy_node_build_from_malloc_string(struct fy_document *to, 
     take(text);
     return __real_fy_node_build_from_malloc_string(to, text, size);
 }
+
+/* NOLINTEND(bugprone-reserved-identifier) */
 
 static const char *work_on(const char *text, const kage_render_options *o, const char *path, kage_status *status)
 {

@@ -257,8 +257,7 @@ static void random_ray(rays *x, int i, wide r[3], wide s[3])
     s[0] = (wide)S.x, s[1] = (wide)S.y, s[2] = (wide)S.z;
 }
 
-/* All lanes, with no hit before t = 3. */
-static void random_rays(rays *x, hits *h, wide r[LANES][3], wide s[LANES][3])
+static void random_wave(rays *x, hits *h, wide r[LANES][3], wide s[LANES][3])
 {
     for (int i = 0; i < LANES; i++) {
         random_ray(x, i, r[i], s[i]);
@@ -283,11 +282,7 @@ static void hits_agree_with_bisection(void **state)
                 static rays x;
                 static hits h;
                 wide r[LANES][3], s[LANES][3];
-                for (int i = 0; i < LANES; i++) {
-                    random_ray(&x, i, r[i], s[i]);
-                    h.t[i] = R(3);
-                    h.id[i] = -1;
-                }
+                random_wave(&x, &h, r, s);
                 bumpy->ops->hit(bumpy, LANES, &x, 5, &h);
                 for (int i = 0; i < LANES; i++) {
                     int doubt;
@@ -342,11 +337,7 @@ static void normals_are_gradients(void **state)
         displaced_counts counts = {0};
         surface *bumpy = displace(f, P, &counts);
         wide r[LANES][3], s[LANES][3];
-        for (int i = 0; i < LANES; i++) {
-            random_ray(&g.x, i, r[i], s[i]);
-            h.t[i] = R(3);
-            h.id[i] = -1;
-        }
+        random_wave(&g.x, &h, r, s);
         bumpy->ops->hit(bumpy, LANES, &g.x, 0, &h);
         g.n = LANES;
         for (int i = 0; i < LANES; i++) {
@@ -397,7 +388,7 @@ static void own_shadows(void **state)
         int32_t on[LANES];
         wide r[LANES][3], s[LANES][3];
         real lit[LANES];
-        random_rays(&x, &h, r, s);
+        random_wave(&x, &h, r, s);
         bumpy->ops->hit(bumpy, LANES, &x, 0, &h);
         for (int i = 0; i < LANES; i++)
             if (h.id[i] == 0) {
@@ -497,16 +488,25 @@ static wide next_crossing(int kind, int bumped, int own, const wide r[3], const 
     return best;
 }
 
-/* Ray n of y begins where ray i of x hits, to any side. */
-static void leave(const rays *x, const hits *h, int i, rays *y, ray_origins *from, int n)
+/* From the hits with object 5 on in random directions, 4 long. Returns how many they are. */
+static int leave(const rays *x, const hits *h, rays *y, ray_origins *from, hits *again, real *lit)
 {
-    double c = random_in(-1, 1), a = random_in(0, 6.283), l = sqrt(1 - c * c);
-    bs_vec3 X = lane_at(x, i, h->t[i]);
-    lane_set(&y->r, n, X);
-    lane_set(&y->s, n, (bs_vec3){(real)(4 * l * cos(a)), (real)(4 * c), (real)(4 * l * sin(a))});
-    lane_set(&from->at, n, X);
-    from->part[n] = h->part[i];
-    from->id[n] = 5;
+    int n = 0;
+    for (int i = 0; i < LANES; i++) {
+        if (h->id[i] != 5)
+            continue;
+        double c = random_in(-1, 1), a = random_in(0, 6.283), l = sqrt(1 - c * c);
+        bs_vec3 X = lane_at(x, i, h->t[i]), d = {(real)(4 * l * cos(a)), (real)(4 * c), (real)(4 * l * sin(a))};
+        lane_set(&y->r, n, X);
+        lane_set(&y->s, n, d);
+        lane_set(&from->at, n, X);
+        from->part[n] = h->part[i];
+        from->id[n] = 5;
+        again->id[n] = -1;
+        lit[n] = 1;
+        again->t[n++] = 1;
+    }
+    return n;
 }
 
 /* From hits to all sides: away from what was met, as mirrored rays go, and into it, as refracted ones do. Each meets
@@ -527,15 +527,9 @@ static void leaving(void **state)
             int met = 0, passed = 0, doubts = 0, wrong = 0, n = 0;
             wide r[LANES][3], s[LANES][3];
             real lit[LANES];
-            random_rays(&x, &h, r, s);
+            random_wave(&x, &h, r, s);
             bumpy->ops->hit(bumpy, LANES, &x, 5, &h);
-            for (int i = 0; i < LANES; i++)
-                if (h.id[i] == 5) {
-                    leave(&x, &h, i, &y, &from, n);
-                    again.id[n] = -1;
-                    again.t[n] = lit[n] = 1;
-                    n++;
-                }
+            n = leave(&x, &h, &y, &from, &again, lit);
             bumpy->ops->hit_own(bumpy, n, &y, &from, 5, &again);
             bumpy->ops->occlude_own(bumpy, n, &y, from.part, lit);
             for (int i = 0; i < n; i++) {

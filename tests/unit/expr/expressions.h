@@ -53,54 +53,18 @@ static inline uint32_t draw(uint32_t n)
 
 static inline double draw_in(double lo, double hi) { return lo + (hi - lo) * draw(1u << 30) / (double)(1u << 30); }
 
-/* Forms of expressions, % for one in its place; the first 24 are smooth everywhere. */
-static const char *const expr_forms[] = {"(%+%)",
-                                         "(%-%)",
-                                         "%*%",
-                                         "%/(2+%^2)",
-                                         "sin(%)",
-                                         "cos(%)",
-                                         "-(%)",
-                                         "(%)^2",
-                                         "(%)^3",
-                                         "exp(sin(%))",
-                                         "tanh(%)",
-                                         "atan(%)",
-                                         "sqrt(1+(%)^2)",
-                                         "log(2+sin(%))",
-                                         "sinh(sin(%))",
-                                         "cosh(cos(%))",
-                                         "noise(%,%)",
-                                         "atan2(%,3+sin(%))",
-                                         "asin(0.9*sin(%))",
-                                         "acos(0.9*cos(%))",
-                                         "tan(cos(%))",
-                                         "(1.5+cos(%))^sin(%)",
-                                         "(2+sin(%))^-1.5",
-                                         "(1+(%)^2)^-2",
-                                         "abs(%)",
-                                         "floor(%)",
-                                         "min(%,%,%)",
-                                         "max(%,%)",
-                                         "mod(%,2+sin(%))",
-                                         "clamp(%,-1,sin(%))",
-                                         "select(%,%,%)",
-                                         "select(%,%,%,%)",
-                                         "sqrt(%)",
-                                         "log(%)",
-                                         "%/%",
-                                         "(%)^(%)",
-                                         "asin(%)",
-                                         "acos(%)",
-                                         "tan(%)",
-                                         "exp(%)",
-                                         "(%)^-3",
-                                         "(%)^0.7",
-                                         "atan2(%,%)",
-                                         "mod(%,%)",
-                                         "smoothstep(%,%,%)",
-                                         "cosh(%)",
-                                         "sinh(%)"};
+/* What random expressions are made of: % is another. The first SMOOTH have continuous derivatives. */
+enum { SMOOTH = 24 };
+/* clang-format off */
+static const char *const forms[] = {
+    "(%+%)", "(%-%)", "%*%", "%/(2+%^2)", "sin(%)", "cos(%)", "-(%)", "(%)^2", "(%)^3", "exp(sin(%))", "tanh(%)",
+    "atan(%)", "sqrt(1+(%)^2)", "log(2+sin(%))", "sinh(sin(%))", "cosh(cos(%))", "noise(%,%)", "atan2(%,3+sin(%))",
+    "asin(0.9*sin(%))", "acos(0.9*cos(%))", "tan(cos(%))", "(1.5+cos(%))^sin(%)", "(2+sin(%))^-1.5", "(1+(%)^2)^-2",
+    "abs(%)", "floor(%)", "min(%,%,%)", "max(%,%)", "mod(%,2+sin(%))", "clamp(%,-1,sin(%))", "select(%,%,%)",
+    "select(%,%,%,%)", "sqrt(%)", "log(%)", "%/%", "(%)^(%)", "asin(%)", "acos(%)", "tan(%)", "exp(%)", "(%)^-3",
+    "(%)^0.7", "atan2(%,%)", "mod(%,%)", "smoothstep(%,%,%)", "cosh(%)", "sinh(%)",
+};
+/* clang-format on */
 
 /* Append a random expression to `text`; smooth ones leave out what has edges. */
 static inline void random_expr(char *text, size_t size, int depth, bool smooth)
@@ -114,7 +78,7 @@ static inline void random_expr(char *text, size_t size, int depth, bool smooth)
             snprintf(text + n, size - n, "%s", pieces[draw(5)]);
         return;
     }
-    const char *form = expr_forms[draw(smooth ? 24 : (uint32_t)(sizeof expr_forms / sizeof *expr_forms))];
+    const char *form = forms[draw(smooth ? SMOOTH : (uint32_t)(sizeof forms / sizeof forms[0]))];
     for (const char *f = form; *f; f++)
         if (*f == '%')
             random_expr(text, size, depth - 1, smooth);

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "displaced/prism.h"
 #include "mesh/mesh.h"
 #include "support/check.h"
 #include "support/displace.h"
@@ -260,8 +261,8 @@ static void the_way_past(void **state)
             f->base.ops->eval(&f->base, 1, &part, &u, &w, 2, &q);
             const bs_vec3 Qu = lane_get(&q.Qu, 0), Qw = lane_get(&q.Qw, 0);
             const bs_view v = bs_view_of(s, bs_normal(Qu, Qw), Qu, Qw);
-            const mesh_prism p = mesh_prism_at(&x, b, c, 0);
-            mesh_gradients(&x, &p, vec3_dot(vec3_cross(p.Xb, p.Xc), p.N), &gu, &gw);
+            const prism_point p = prism_at(&x, b, c, 0);
+            prism_gradients(&x, &p, vec3_dot(vec3_cross(p.Xb, p.Xc), p.N), &gu, &gw);
             /* (u,w), which are reals here, tell b and c to 1e3 roundings on these triangles, of 1/24 and more of 2 pi
              */
             NEAR((double)v.a, vec3_dot(gu, wide(s)), 1e3 * EPS * (1 + vec3_length(gu)));

@@ -268,18 +268,24 @@ static void pole(void **state)
     surface_free(f);
 }
 
+/* Second partials of Q cost; only 2+ and march use the curvature. */
+static void curvature_is_asked_for(void **state)
+{
+    (void)state;
+    for (int k = 0; k < EVERY; k++) {
+        const bool uses = every[k].kind == METHOD_MARCH || (every[k].kind == METHOD_ORDER && every[k].n == 3);
+        assert_int_equal(method_bends(every[k]), uses);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(no_bump_no_shift),
-        cmocka_unit_test(constant_is_exact_for_all),
-        cmocka_unit_test(linear_is_exact_from_order_1),
-        cmocka_unit_test(quadratic_is_exact_for_order_2),
-        cmocka_unit_test(lower_orders_are_not_exact),
-        cmocka_unit_test(march_and_iter_come_near),
-        cmocka_unit_test(counts),
-        cmocka_unit_test(guarded_shifts_stay_in_the_slab),
-        cmocka_unit_test(pole),
+        cmocka_unit_test(curvature_is_asked_for),          cmocka_unit_test(no_bump_no_shift),
+        cmocka_unit_test(constant_is_exact_for_all),       cmocka_unit_test(linear_is_exact_from_order_1),
+        cmocka_unit_test(quadratic_is_exact_for_order_2),  cmocka_unit_test(lower_orders_are_not_exact),
+        cmocka_unit_test(march_and_iter_come_near),        cmocka_unit_test(counts),
+        cmocka_unit_test(guarded_shifts_stay_in_the_slab), cmocka_unit_test(pole),
     };
     return cmocka_run_group_tests_name("the method over waves", tests, NULL, NULL);
 }

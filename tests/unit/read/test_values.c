@@ -127,15 +127,37 @@ static void named_things_are_counted(void **state)
     reading_end(t);
 }
 
+static void assert_beside(reading *t, const char *file, const char *path)
+{
+    char *got = reader_beside(&t->r, file);
+    assert_string_equal(got, path);
+    free(got);
+}
+
 static void files_are_beside_the_scene(void **state)
 {
     reading *t = reading_of("x: 1\n");
     (void)state;
-    char *beside = reader_beside(&t->r, "maps/hill.png"), *absolute = reader_beside(&t->r, "/maps/hill.png");
-    assert_string_equal(beside, "/tmp/maps/hill.png");
-    assert_string_equal(absolute, "/maps/hill.png");
-    free(beside);
-    free(absolute);
+    assert_beside(t, "maps/hill.png", "/scenes/maps/hill.png");
+    reading_end(t);
+}
+
+static void files_are_in_the_folder_that_is_given(void **state)
+{
+    reading *t = reading_of("x: 1\n");
+    (void)state;
+    t->from.folder = "/other";
+    assert_beside(t, "hill.png", "/other/hill.png");
+    t->from.folder = "/other/";
+    assert_beside(t, "hill.png", "/other/hill.png");
+    reading_end(t);
+}
+
+static void a_full_path_stays_as_it_is(void **state)
+{
+    reading *t = reading_of("x: 1\n");
+    (void)state;
+    assert_beside(t, "/maps/hill.png", "/maps/hill.png");
     reading_end(t);
 }
 
@@ -165,6 +187,8 @@ int main(void)
         cmocka_unit_test(a_name_is_letters_digits_and_two_signs),
         cmocka_unit_test(named_things_are_counted),
         cmocka_unit_test(files_are_beside_the_scene),
+        cmocka_unit_test(files_are_in_the_folder_that_is_given),
+        cmocka_unit_test(a_full_path_stays_as_it_is),
         cmocka_unit_test(a_wrong_function_is_told_where_it_is_wrong),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
