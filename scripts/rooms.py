@@ -24,12 +24,16 @@ BEGIN, END = "<!-- rooms -->", "<!-- /rooms -->"
 
 #: Each room's rank and purpose.
 ROOMS = {
-    "cli": (11, "the program `kage`: commands, options, progress"),
-    "import": (11, "the program that reads model files, apart as they may crash their reader"),
-    "api": (10, "the library's interface, `include/kage.h`"),
-    "read": (9, "YAML to a scene"),
-    "povray": (9, "a scene to POV-Ray's language"),
-    "render": (8, "from camera rays to a film: tracing, shadows, shading, tiles, sampling"),
+    "cli": (13, "the program `kage`: commands, options, progress"),
+    "import": (13, "the program that reads model files, apart as they may crash their reader"),
+    "api": (12, "the library's interface, `include/kage.h`"),
+    "read": (11, "YAML to a scene"),
+    "povray": (11, "a scene to POV-Ray's language: materials, shapes, meshes"),
+    "tessellate": (10, "displaced surfaces as triangles that are as fine as the picture needs"),
+    "pov_text": (9, "POV-Ray's text: numbers, expressions, frames of flat surfaces"),
+    "film": (10, "the picture: tiles, threads, adaptive samples, layers"),
+    "render": (9, "the way of a ray: intersection, the method's shadows, secondary rays"),
+    "light": (8, "lights and materials over waves: falloff, shading"),
     "scene": (7, "camera, lights, materials, objects and the hierarchy over them"),
     "displaced": (6, "true displacement, for comparison"),
     "patch": (5, "parametric patches: pieces with proven bounds, intersection, projection"),

@@ -6,7 +6,7 @@
 #include <pthread.h>
 
 #include "kage.h"
-#include "render/film.h"
+#include "film/film.h"
 #include "scene/scene.h"
 
 /* Numbers are read and written as the C locale has them, whatever the process has set: for this thread, meanwhile. */

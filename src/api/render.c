@@ -2,7 +2,7 @@
 #include "api/api.h"
 
 #include "image/image.h"
-#include "render/render.h"
+#include "film/render.h"
 
 #include <stdarg.h>
 #include <stdio.h>

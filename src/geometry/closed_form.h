@@ -4,6 +4,8 @@
 #ifndef KAGE_GEOMETRY_CLOSED_FORM_H
 #define KAGE_GEOMETRY_CLOSED_FORM_H
 
+#include <stdio.h>
+
 #include "base/frame.h"
 #include "geometry/surface.h"
 
@@ -100,8 +102,14 @@ extern const closed_form *const closed_forms[CLOSED_FORM_COUNT];
 /* The shape moved so that the middle of its places is in the origin; *middle: where it was. */
 shape_values shape_centred(const closed_form *form, const shape_values *v, vec3 *middle);
 
-/* (formula.c) The formula of what turns about the frame's y: rho and y are functions of w alone, u is the angle from x
- * to z. */
-void formula_revolve(form_formula *f, frame axes, const char *rho, const char *y);
+/* The texts of what turns about the frame's y: rho and y are functions of w alone, u is the angle from x to z. */
+static inline void formula_revolve(form_formula *f, frame axes, const char *rho, const char *y)
+{
+    const double X[3] = {axes.x.x, axes.x.y, axes.x.z}, Y[3] = {axes.y.x, axes.y.y, axes.y.z};
+    const double Z[3] = {axes.z.x, axes.z.y, axes.z.z};
+    for (int k = 0; k < 3; k++)
+        snprintf(f->xyz[k], sizeof f->xyz[k], "(%s)*(%.17g*cos(u) + %.17g*sin(u)) + %.17g*(%s)", rho, X[k], Z[k], Y[k],
+                 y);
+}
 
 #endif

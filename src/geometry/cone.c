@@ -367,6 +367,8 @@ static bool side_formula(const shape_values *v, double to_radius, form_formula *
     char rho[64], y[64];
     snprintf(rho, sizeof rho, "%.17g + %.17g*w", to_radius, slope / side);
     snprintf(y, sizeof y, "%.17g - %.17g*w", 0.5 * length, length / side);
+    out->u[0] = -KM_PI;
+    out->u[1] = KM_PI;
     out->w[0] = 0;
     out->w[1] = side;
     formula_revolve(out, frame_about(axis), rho, y);

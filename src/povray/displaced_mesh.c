@@ -5,10 +5,10 @@
  * the camera sees, and what casts shadows there, is made; far away cells are joined. Where that would be too many
  * triangles, a ladder of coarser rules is tried.
  */
-#include "povray/flat.h"
+#include "pov_text/flat.h"
 #include "povray/material.h"
 #include "povray/parts.h"
-#include "povray/tessellation.h"
+#include "tessellate/tessellation.h"
 
 #include <stdlib.h>
 

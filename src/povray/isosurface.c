@@ -3,9 +3,9 @@
  * max_gradient is a proven bound: from P's Lipschitz constants, on a sphere by interval arithmetic. POV-Ray skips an
  * interval of a ray where by this bound the function can't reach 0, so one that is too low makes holes.
  */
-#include "povray/expr.h"
+#include "pov_text/expr.h"
 #include "math/kmath.h"
-#include "povray/flat.h"
+#include "pov_text/flat.h"
 #include "povray/material.h"
 #include "povray/parts.h"
 

@@ -4,7 +4,7 @@
 #include "povray/material.h"
 
 #include "patch/surface.h"
-#include "povray/flat.h"
+#include "pov_text/flat.h"
 #include "povray/povray.h"
 
 #include <stdio.h>

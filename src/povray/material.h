@@ -2,7 +2,7 @@
 #ifndef KAGE_POVRAY_MATERIAL_H
 #define KAGE_POVRAY_MATERIAL_H
 
-#include "povray/text.h"
+#include "pov_text/text.h"
 #include "scene/scene.h"
 
 /* Declare all materials. */

@@ -5,7 +5,7 @@
 #include "povray/parts.h"
 
 #include "displaced/prism.h"
-#include "povray/vertices.h"
+#include "tessellate/vertices.h"
 
 #include <stdlib.h>
 #include <string.h>

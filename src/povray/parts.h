@@ -4,7 +4,7 @@
 #define KAGE_POVRAY_PARTS_H
 
 #include "povray/povray.h"
-#include "povray/text.h"
+#include "pov_text/text.h"
 
 /* A closed form without bumps, in POV-Ray's own shapes, as its form says (closed_form.h). In that text, $ and the name
  * of a parameter stands for its value; $open for nothing or the word; $plane for a plane's normal and distance;

@@ -6,7 +6,7 @@
 #include "povray/parts.h"
 
 #include "displaced/offset.h"
-#include "povray/vertices.h"
+#include "tessellate/vertices.h"
 
 #include <stdlib.h>
 #include <string.h>

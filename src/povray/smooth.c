@@ -1,5 +1,5 @@
 /* Closed forms without bumps, in POV-Ray's own shapes. */
-#include "povray/flat.h"
+#include "pov_text/flat.h"
 #include "povray/material.h"
 #include "povray/parts.h"
 

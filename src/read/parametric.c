@@ -1,7 +1,7 @@
 /* The scene reader's surfaces without closed forms: three functions of u and w, Bezier patches. */
 #include "read/parts.h"
 
-#include "read/patch_file.h"
+#include "patch/patch_file.h"
 #include "patch/surface.h"
 
 #include <errno.h>

@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "render/intersect.h"
-#include "render/lighting.h"
+#include "light/lighting.h"
 #include "render/transmittance.h"
 #include "wave/gather.h"
 #include "wave/lane.h"

@@ -11,8 +11,8 @@
 
 #include "method/shift.h"
 #include "render/intersect.h"
-#include "render/lighting.h"
-#include "render/shade.h"
+#include "light/lighting.h"
+#include "light/shade.h"
 #include "render/shadow.h"
 #include "wave/gather.h"
 

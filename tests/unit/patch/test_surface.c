@@ -9,7 +9,7 @@
 #include "wave/lane.h"
 #include "displaced/offset.h"
 #include "displaced/offset_patch.h"
-#include "read/patch_file.h"
+#include "patch/patch_file.h"
 #include "support/odd_rays.h"
 #include "support/properties.h"
 #include "support/displace.h"

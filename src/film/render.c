@@ -1,0 +1,274 @@
+/* The picture in tiles of 16 x 8 pixels, which the threads take as they come. */
+#include "film/render.h"
+
+#include "base/threads.h"
+#include "film/adaptive.h"
+#include "render/trace.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { TILE = 16, TILE_ROWS = LANES / TILE, TIMED_TILES = 8 };
+
+/* A tile of the picture. */
+typedef struct tile {
+    int x0, y0, width, height;
+} tile;
+
+static void tile_rays(const scene *s, const tile *b, int aa, int i, int j, workspace *v)
+{
+    real x[LANES], y[LANES], column[TILE];
+    for (int c = 0; c < b->width; c++)
+        column[c] = camera_screen(b->x0 + c + (i + 0.5) / aa, s->width);
+    for (int k = 0; k < b->height; k++) {
+        real row = -camera_screen(b->y0 + k + (j + 0.5) / aa, s->height);
+        for (int c = 0; c < b->width; c++) {
+            x[k * b->width + c] = column[c];
+            y[k * b->width + c] = row;
+        }
+    }
+    camera_rays(&s->camera, b->width * b->height, x, y, &v->x);
+}
+
+/* Put the values of a tile's lanes on a plane, or add them to what is there. With a constant width the rows are a few
+ * vectors; most tiles have it. */
+static inline void lay_rows(float *restrict to, size_t stride, int width, int height, const real *restrict v,
+                            float weight, bool add)
+{
+    for (int k = 0; k < height; k++)
+        for (int c = 0; c < width; c++) {
+            float x = (float)v[k * width + c] * weight, *p = &to[(size_t)k * stride + (size_t)c];
+            *p = add ? *p + x : x;
+        }
+}
+
+STAGE static void lay_first(float *restrict to, size_t stride, int width, int height, const real *restrict v,
+                            float weight)
+{
+    if (width == TILE)
+        lay_rows(to, stride, TILE, height, v, weight, false);
+    else
+        lay_rows(to, stride, width, height, v, weight, false);
+}
+
+STAGE static void lay_more(float *restrict to, size_t stride, int width, int height, const real *restrict v,
+                           float weight)
+{
+    lay_rows(to, stride, width, height, v, weight, true);
+}
+
+static void lay(film *f, int plane, const tile *b, const real *v, float weight, bool add)
+{
+    const size_t stride = (size_t)(f->part.x1 - f->part.x0);
+    float *to = f->plane[plane] + (size_t)(b->y0 - f->part.y0) * stride + (size_t)(b->x0 - f->part.x0);
+    (add ? lay_more : lay_first)(to, stride, b->width, b->height, v, weight);
+}
+
+static void lay_layers(film *f, const tile *b, const workspace *v)
+{
+    const samples *o = &v->out;
+    const real *const plane[] = {o->depth,    o->position.x, o->position.y, o->position.z, o->normal.x, o->normal.y,
+                                 o->normal.z, o->u,          o->w,          o->height,     o->tau};
+    for (int k = FILM_Z; k <= FILM_TAU; k++)
+        lay(f, k, b, plane[k - FILM_Z], 1, false);
+    real order[LANES];
+    for (int i = 0; i < b->width * b->height; i++)
+        order[i] = (real)o->order[i];
+    lay(f, FILM_ORDER, b, order, 1, false);
+}
+
+/* The lines of the picture that a tile will write are far apart and in no cache; ask for them before they are needed.
+ */
+static void fetch(const film *f, const tile *b)
+{
+#if defined(__GNUC__)
+    const size_t stride = (size_t)(f->part.x1 - f->part.x0);
+    const size_t at = (size_t)(b->y0 - f->part.y0) * stride + (size_t)(b->x0 - f->part.x0);
+    for (int p = FILM_R; p <= FILM_B; p++)
+        for (int k = 0; k < b->height; k++)
+            __builtin_prefetch(&f->plane[p][at + (size_t)k * stride], 1);
+#else
+    (void)f, (void)b;
+#endif
+}
+
+static void render_tile(const tracer *tr, int aa, const tile *b, film *f, workspace *v)
+{
+    const float weight = 1.0f / (float)(aa * aa);
+    fetch(f, b);
+    for (int j = 0; j < aa; j++)
+        for (int i = 0; i < aa; i++) {
+            const bool add = i + j > 0;
+            tile_rays(tr->scene, b, aa, i, j, v);
+            stats_stage(v->stats, STAGE_CAMERA);
+            trace(tr, b->width * b->height, v);
+            lay(f, FILM_R, b, v->out.rgb.x, weight, add);
+            lay(f, FILM_G, b, v->out.rgb.y, weight, add);
+            lay(f, FILM_B, b, v->out.rgb.z, weight, add);
+            if (tr->layers) {
+                for (int l = 0; l < tr->scene->lights; l++)
+                    lay(f, FILM_LIGHTS + l, b, v->visibility[l], weight, add);
+                if (i == aa / 2 && j == aa / 2)
+                    lay_layers(f, b, v);
+            }
+            stats_stage(v->stats, STAGE_FILM);
+        }
+}
+
+/* The pixels of a tile that are marked. */
+typedef struct selection {
+    int count, x[LANES], y[LANES];
+    size_t place[LANES]; /* on the film */
+} selection;
+
+static void select_marked(const tile *b, const film *f, const unsigned char *marked, selection *p)
+{
+    const size_t stride = (size_t)(f->part.x1 - f->part.x0);
+    p->count = 0;
+    for (int y = b->y0; y < b->y0 + b->height; y++)
+        for (int x = b->x0; x < b->x0 + b->width; x++) {
+            const size_t at = (size_t)(y - f->part.y0) * stride + (size_t)(x - f->part.x0);
+            p->x[p->count] = x;
+            p->y[p->count] = y;
+            p->place[p->count] = at;
+            p->count += marked[at];
+        }
+}
+
+/* Add the wave's samples, which are numbers `first` and so on of all that the pixels have, to these. */
+static void add_samples(film *f, const selection *p, int each, int first, int n, int plane, const real *v)
+{
+    const float weight = 1.0f / (float)each;
+    for (int i = 0; i < n; i++) {
+        float *to = &f->plane[plane][p->place[(first + i) / each]], x = (float)v[i] * weight;
+        *to = (first + i) % each > 0 ? *to + x : x;
+    }
+}
+
+/* The marked pixels anew with aa x aa samples each: side by side in waves, pixel by pixel, so that each sums up its
+ * samples in the same order as in render_tile, to the same bytes. */
+static void refine_tile(const tracer *tr, int aa, const tile *b, const unsigned char *marked, film *f, workspace *v)
+{
+    const scene *s = tr->scene;
+    const int each = aa * aa;
+    selection p;
+    select_marked(b, f, marked, &p);
+    for (int first = 0; first < p.count * each; first += LANES) {
+        const int n = p.count * each - first < LANES ? p.count * each - first : LANES;
+        real x[LANES], y[LANES];
+        for (int i = 0; i < n; i++) {
+            const int pixel = (first + i) / each, sample = (first + i) % each;
+            x[i] = camera_screen(p.x[pixel] + (sample % aa + 0.5) / aa, s->width);
+            y[i] = -camera_screen(p.y[pixel] + (sample / aa + 0.5) / aa, s->height);
+        }
+        camera_rays(&s->camera, n, x, y, &v->x);
+        stats_stage(v->stats, STAGE_CAMERA);
+        trace(tr, n, v);
+        add_samples(f, &p, each, first, n, FILM_R, v->out.rgb.x);
+        add_samples(f, &p, each, first, n, FILM_G, v->out.rgb.y);
+        add_samples(f, &p, each, first, n, FILM_B, v->out.rgb.z);
+        for (int l = 0; tr->layers && l < s->lights; l++)
+            add_samples(f, &p, each, first, n, FILM_LIGHTS + l, v->visibility[l]);
+        stats_stage(v->stats, STAGE_FILM);
+    }
+}
+
+/* A pass over the film: every pixel with aa x aa samples, or the marked ones anew. */
+typedef struct pass {
+    int aa;
+    const unsigned char *marked; /* NULL: all */
+    long done, all;              /* tiles, of this pass and of those before and after it */
+    bool stop;                   /* the caller wants no more */
+} pass;
+
+static long tiles(window w)
+{
+    return (long)((w.x1 - w.x0 + TILE - 1) / TILE) * ((w.y1 - w.y0 + TILE_ROWS - 1) / TILE_ROWS);
+}
+
+/* One more tile is done. Only the caller's own thread shows it, so that a callback needs no lock. */
+static void note_tile(const render_options *o, pass *p)
+{
+    long done;
+#pragma omp atomic capture
+    done = ++p->done;
+    if (is_callers_thread() && !progress_show(o->progress, "rendering", (double)done / (double)p->all)) {
+#pragma omp atomic write
+        p->stop = true;
+    }
+}
+
+static bool run(const tracer *tr, const render_options *o, pass *p, film *f, stats *sum, errors *e)
+{
+    const window part = f->part;
+    const int columns = (part.x1 - part.x0 + TILE - 1) / TILE;
+    const long count = tiles(part);
+    bool good = true;
+    const int threads = threads_of(o->threads);
+    (void)threads; /* without OpenMP */
+#pragma omp parallel num_threads(threads)
+    {
+        workspace *v = workspace_new(tr);
+        if (v)
+            camera_common(&tr->scene->camera, LANES, &v->x); /* no stage writes there, so once is enough */
+        else {
+#pragma omp atomic write
+            good = false;
+        }
+#pragma omp for schedule(dynamic, 4)
+        for (long n = 0; n < count; n++) {
+            bool stop;
+#pragma omp atomic read
+            stop = p->stop;
+            if (!v || stop)
+                continue;
+            tile b = {part.x0 + (int)(n % columns) * TILE, part.y0 + (int)(n / columns) * TILE_ROWS, TILE, TILE_ROWS};
+            b.width = b.x0 + TILE > part.x1 ? part.x1 - b.x0 : TILE;
+            b.height = b.y0 + TILE_ROWS > part.y1 ? part.y1 - b.y0 : TILE_ROWS;
+            v->stats->timing = o->timing && n % TIMED_TILES == 0;
+            if (v->stats->timing)
+                v->stats->clock = stats_clock();
+            if (p->marked)
+                refine_tile(tr, p->aa, &b, p->marked, f, v);
+            else
+                render_tile(tr, p->aa, &b, f, v);
+            note_tile(o, p);
+        }
+        if (v) {
+#pragma omp critical /* without a name, which would be a global variable */
+            stats_add(sum, v->stats);
+        }
+        workspace_free(v);
+    }
+    if (!good)
+        return errors_add(e, "out of memory for the threads' waves");
+    return !p->stop || errors_add(e, "cancelled");
+}
+
+/* One sample a pixel, then more where neighbours differ. Those of the pixels at a crop's edge are beyond it, so the
+ * first pass goes a pixel farther: what is in a picture does not depend on the crop. */
+static bool render_adaptive(const tracer *tr, const render_options *o, film *f, stats *sum, errors *e)
+{
+    const window part = f->part,
+                 wide = {part.x0 - (part.x0 > 0), part.y0 - (part.y0 > 0), part.x1 + (part.x1 < tr->scene->width),
+                         part.y1 + (part.y1 < tr->scene->height)};
+    pass first = {1, NULL, 0, tiles(wide) + tiles(part), false}, second = {o->aa, NULL, tiles(wide), first.all, false};
+    film *margin = memcmp(&wide, &part, sizeof wide) ? film_new(tr->scene, wide, tr->layers, e) : f;
+    bool good = margin && run(tr, o, &first, margin, sum, e);
+    if (good && margin != f)
+        film_copy(f, margin);
+    unsigned char *marked = good ? adaptive_find(margin, part, o->threshold, o->threads, e) : NULL;
+    second.marked = marked;
+    good = marked && run(tr, o, &second, f, sum, e);
+    free(marked);
+    if (margin != f)
+        film_free(margin);
+    return good;
+}
+
+bool render(const tracer *tr, const render_options *o, film *f, stats *sum, errors *e)
+{
+    pass all = {o->aa, NULL, 0, tiles(f->part), false};
+    *sum = (stats){0};
+    return o->aa > 1 && o->threshold >= 0 ? render_adaptive(tr, o, f, sum, e) : run(tr, o, &all, f, sum, e);
+}

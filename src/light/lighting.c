@@ -1,0 +1,118 @@
+/* Light on its way to a group, as POV-Ray 3.7 has it: the segments of shadow rays, and how spots and distance dim it.
+ */
+#include "light/lighting.h"
+
+#include "math/kmath.h"
+#include "wave/lane.h"
+
+#define SHORT 1e-6 /* scene units */
+
+STAGE static void aim_at_place(hit_group *restrict g, const light *l, const real *restrict t)
+{
+    const real lx = (real)l->at.x, ly = (real)l->at.y, lz = (real)l->at.z;
+    for (int i = 0; i < g->n; i++) {
+        bs_vec3 o = lane_at(&g->x, i, t[i]), d = {lx - o.x, ly - o.y, lz - o.z};
+        lane_set(&g->to_light.r, i, o);
+        lane_set(&g->to_light.s, i, d);
+    }
+}
+
+/* Up to the light's plane. Beyond it there is light and no shadow, as in POV-Ray: the segment is too SHORT to meet
+ * anything there, and still has its direction. */
+STAGE static void aim_along(hit_group *restrict g, const light *l, const real *restrict t)
+{
+    const real lx = (real)l->at.x, ly = (real)l->at.y, lz = (real)l->at.z;
+    const real ax = (real)l->axis.x, ay = (real)l->axis.y, az = (real)l->axis.z;
+    for (int i = 0; i < g->n; i++) {
+        bs_vec3 o = lane_at(&g->x, i, t[i]);
+        real depth = real_max((o.x - lx) * ax + (o.y - ly) * ay + (o.z - lz) * az, R(SHORT));
+        bs_vec3 d = {-depth * ax, -depth * ay, -depth * az};
+        lane_set(&g->to_light.r, i, o);
+        lane_set(&g->to_light.s, i, d);
+    }
+}
+
+void lighting_aim(const light *l, const real *t, hit_group *g)
+{
+    (l->kind == LIGHT_PARALLEL ? aim_along : aim_at_place)(g, l, t);
+}
+
+STAGE static void add(const hit_group *restrict g, real share, real *restrict sum)
+{
+    for (int i = 0; i < g->n; i++)
+        sum[i] += share * g->lit[i];
+}
+
+void lighting_add(const hit_group *g, real share, real *sum) { add(g, share, sum); }
+
+STAGE static void add_tint(const hit_group *restrict g, real share, vec3s *restrict sum)
+{
+    for (int i = 0; i < g->n; i++) {
+        real x = share * g->lit[i];
+        sum->x[i] += x * g->tint.x[i];
+        sum->y[i] += x * g->tint.y[i];
+        sum->z[i] += x * g->tint.z[i];
+    }
+}
+
+void lighting_add_tint(const hit_group *g, real share, vec3s *sum) { add_tint(g, share, sum); }
+
+/* How far p1 is from the light, or from its plane, and the cosine between the way there and its axis. */
+STAGE static void place(const hit_group *restrict g, const light *l, double *restrict distance, double *restrict cosine)
+{
+    const real lx = (real)l->at.x, ly = (real)l->at.y, lz = (real)l->at.z;
+    const real ax = (real)l->axis.x, ay = (real)l->axis.y, az = (real)l->axis.z, flat = l->kind == LIGHT_PARALLEL;
+    for (int i = 0; i < g->n; i++) {
+        bs_vec3 p = lane_at(&g->x, i, g->t[i]);
+        real x = p.x - lx, y = p.y - ly, z = p.z - lz;
+        real far = real_sqrt(x * x + y * y + z * z), deep = x * ax + y * ay + z * az;
+        distance[i] = (double)(far + flat * (real_abs(deep) - far));
+        cosine[i] = (double)(deep / real_max(far, R(1e-30)));
+    }
+}
+
+/* cos^tightness, and a cubic from `falloff` (0) to `radius` (1). */
+STAGE static void spot(int n, double outer, double inner, double tightness, const double *restrict cosine,
+                       double *restrict share)
+{
+    const double width = inner > outer ? inner - outer : 1e-300;
+    for (int i = 0; i < n; i++) {
+        double c = cosine[i], x = (c - outer) / width;
+        x = x < 1 ? x : 1;
+        x = x > 0 ? x : 0;
+        c = c < 1 ? c : 1;
+        c = c > 1e-300 ? c : 1e-300;
+        share[i] *= x * x * (3 - 2 * x) * km_exp(tightness * km_log(c));
+    }
+}
+
+/* 2/(1 + (d/fade_distance)^power) */
+STAGE static void fade(int n, double reach, double power, const double *restrict distance, double *restrict share)
+{
+    for (int i = 0; i < n; i++) {
+        double d = distance[i] / reach;
+        share[i] *= 2 / (1 + km_exp(power * km_log(d > 1e-300 ? d : 1e-300)));
+    }
+}
+
+STAGE static void dim(hit_group *restrict g, const double *restrict share)
+{
+    for (int i = 0; i < g->n; i++)
+        g->lit[i] = (real)((double)g->lit[i] * share[i]);
+}
+
+void lighting_fade(const light *l, hit_group *g)
+{
+    double distance[LANES], cosine[LANES], share[LANES];
+    const double degree = KM_PI / 180;
+    if (l->kind != LIGHT_SPOT && l->fade_distance == 0)
+        return;
+    for (int i = 0; i < g->n; i++)
+        share[i] = 1;
+    place(g, l, distance, cosine);
+    if (l->kind == LIGHT_SPOT)
+        spot(g->n, km_cos(l->falloff * degree), km_cos(l->radius * degree), l->tightness, cosine, share);
+    if (l->fade_distance > 0)
+        fade(g->n, l->fade_distance, l->fade_power, distance, share);
+    dim(g, share);
+}
