@@ -71,10 +71,11 @@ def includes(text: str) -> list[str]:
 
 
 def rooms_below(sources: Mapping[str, str]) -> dict[str, set[str]]:
-    """The rooms that each room includes."""
+    """The rooms that each room includes; the public header kage.h is of api/."""
     found: dict[str, set[str]] = {room_of(path): set() for path in sources}
     for path, text in sources.items():
-        found[room_of(path)] |= {room_of(other) for other in includes(text) if "/" in other} - {room_of(path)}
+        others = {"api" if other == "kage.h" else room_of(other) for other in includes(text)}
+        found[room_of(path)] |= (others & ROOMS.keys()) - {room_of(path)}
     return found
 
 
