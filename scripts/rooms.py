@@ -20,7 +20,6 @@ from pathlib import Path
 
 TOP = Path(__file__).resolve().parent.parent
 DESIGN, PICTURE = Path("docs/design.md"), Path("docs/rooms.svg")
-FACE = "kage.h"  # what the room api/ shows of itself in include/
 BEGIN, END = "<!-- rooms -->", "<!-- /rooms -->"
 
 #: Each room's rank and purpose.
@@ -72,13 +71,11 @@ def includes(text: str) -> list[str]:
 
 
 def rooms_below(sources: Mapping[str, str]) -> dict[str, set[str]]:
-    """The rooms that each room includes."""
+    """The rooms that each room includes; the public header kage.h is of api/."""
     found: dict[str, set[str]] = {room_of(path): set() for path in sources}
     for path, text in sources.items():
-        for other in includes(text):
-            room = "api" if other == FACE else room_of(other)
-            if room in ROOMS and room != room_of(path):
-                found[room_of(path)].add(room)
+        others = {"api" if other == "kage.h" else room_of(other) for other in includes(text)}
+        found[room_of(path)] |= (others & ROOMS.keys()) - {room_of(path)}
     return found
 
 

@@ -50,7 +50,7 @@ typedef void expr_rule2(int n, int order, const double *restrict a, const double
 typedef void expr_rule3(int n, int order, const double *restrict a, const double *restrict b, const double *restrict c,
                         double *restrict f, expr_partials *restrict p);
 
-/* z = k, x + k, k x, x + y, x - y, x y; all parts that z has. */
+/* z = k, x + k, k x, x + y, x - y, a b; all parts that z has. */
 void jets_fill(int n, expr_view z, double k);
 void jets_shift(int n, expr_view z, expr_view x, double k);
 void jets_scale(int n, expr_view z, expr_view x, double k);

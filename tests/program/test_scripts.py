@@ -16,6 +16,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from scripts import same
 from tests.conftest import TOP
 
 SCRIPTS = TOP / "scripts"
@@ -387,3 +388,25 @@ def test_sheet_refuses(pictures: list[Path], tmp_path: Path, arguments: list[str
     assert result.returncode == status
     assert message in result.stderr and "Traceback" not in result.stderr
     assert not (tmp_path / "sheet.png").exists()
+
+
+# same ----------------------------------------------------------------------------------------------
+
+
+def test_same_has_each_command_once() -> None:
+    commands = same.commands()
+    assert len({name for name, _ in commands}) == len({words for _, words in commands}) == len(commands)
+    assert all(any(word.startswith("{}") for word in words) for _, words in commands)
+
+
+def test_same_compares_what_is_written(tmp_path: Path) -> None:
+    """Two stand-ins for kage: one writes other bytes than the other, and one fails."""
+    programs = {}
+    for name, body in (("a", 'echo a >"$1"'), ("b", 'echo b >"$1"'), ("fails", "exit 2")):
+        programs[name] = tmp_path / name
+        programs[name].write_text(f"#!/bin/sh\n{body}\n")
+        programs[name].chmod(0o755)
+    job = ("a job", ("{}.png",))
+    assert same.compare(programs["a"], programs["a"], job) == ("a job", [])
+    assert same.compare(programs["a"], programs["b"], job) == ("a job", [".png"])
+    assert same.compare(programs["a"], programs["fails"], job)[1][0].startswith("status None -> 2")
