@@ -88,18 +88,18 @@ all: bootstrap
 programs: $(BUILD)/kage $(BUILD)/kage-import $(BUILD)/libkage.a $(BUILD)/libkage.so
 
 help:
-	@echo 'make            build the tracer, $(BUILD)/kage'
+	@echo 'make            build the program, $(BUILD)/kage, and the library'
 	@echo 'make render     the pictures of the paper and the gallery, into out/'
-	@echo 'make bench      what each method costs and what it buys, BENCH=quick|normal|full, into out/bench/index.html'
-	@echo 'make readme     the same, then what the README tells of it'
+	@echo 'make bench      measure cost and accuracy of each method, BENCH=quick|normal|full, into out/bench/index.html'
+	@echo 'make readme     the same, then update the tables of README and docs'
 	@echo 'make test       all tests'
-	@echo 'make accept     look at pictures that have changed, and keep them (tests/regression/)'
-	@echo 'make reference  what POV-Ray makes of the scenes, where that is stale, into reference/'
-	@echo 'make sanitize   the tests in C and some of the others, with checks of memory and arithmetic'
-	@echo 'make lint       layout, likely mistakes and types; make format mends the layout'
-	@echo 'make same       are all pictures those of another commit? REV=COMMIT ONLY=TEXT'
-	@echo 'make install    to PREFIX ($(PREFIX)), under DESTDIR: the program, libkage, kage.h and bumpshadow.h'
-	@echo 'make uninstall  what install has put there'
+	@echo 'make accept     show regression pictures that have changed, and keep them if you confirm'
+	@echo 'make reference  render stale reference pictures with POV-Ray, into reference/'
+	@echo 'make sanitize   unit tests, and some program tests, under ASan, UBSan and TSan'
+	@echo 'make lint       check style, likely mistakes and types; make format applies the style'
+	@echo 'make same       compare all pictures with another commit, REV=COMMIT, ONLY=TEXT in their names'
+	@echo 'make install    install program, library and headers to PREFIX ($(PREFIX)), under DESTDIR'
+	@echo 'make uninstall  remove what install has put there'
 	@echo 'make clean      remove build/ and out/'
 	@echo 'Settings: REAL=float|double CC=gcc|clang CLONES=no SANITIZE=address,undefined BOOTSTRAP=no V=1'
 
