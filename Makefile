@@ -274,7 +274,8 @@ TSAN      = $(SANE) OPENMP=no BUILD=build/tsan SANITIZE=thread
 
 sanitize: all
 	@CC='$(CC)' scripts/bootstrap test python
-	@$(MAKE) --no-print-directory $(JOBS) $(SANE) BUILD=build/asan SANITIZE=address,undefined unit-tests build/asan/kage
+	@LSAN_OPTIONS=suppressions=tests/support/lsan.supp:print_suppressions=0 $(MAKE) --no-print-directory $(JOBS) \
+	    $(SANE) BUILD=build/asan SANITIZE=address,undefined unit-tests build/asan/kage
 	@TSAN_OPTIONS=suppressions=tests/support/tsan.supp \
 	    $(MAKE) --no-print-directory $(JOBS) $(TSAN) run-unit/api/test_threads
 	KAGE=build/asan/kage scripts/venv python -m pytest -q -n auto --dist loadfile $(SANE_TESTS)

@@ -91,7 +91,8 @@ bvh *bvh_new_with_progress(int n, const bvh_box *box, bvh_progress *progress, vo
         bvh_free(b);
         return NULL;
     }
-    memcpy(b->box, box, sizeof *box * (size_t)n);
+    if (n > 0)
+        memcpy(b->box, box, sizeof *box * (size_t)n);
     rtcSetGeometryUserPrimitiveCount(g, (unsigned)n);
     rtcSetGeometryUserData(g, b);
     rtcSetGeometryBoundsFunction(g, bounds, NULL);

@@ -186,16 +186,21 @@ static long tiles(window w)
     return (long)((w.x1 - w.x0 + TILE - 1) / TILE) * ((w.y1 - w.y0 + TILE_ROWS - 1) / TILE_ROWS);
 }
 
-/* One more tile is done. Only the caller's own thread shows it, so that a callback needs no lock. */
+/* Only the caller's own thread shows progress, so that a callback needs no lock. */
+static void show(const render_options *o, pass *p, long done)
+{
+    if (is_callers_thread() && !progress_show(o->progress, "rendering", (double)done / (double)p->all)) {
+#pragma omp atomic write
+        p->stop = true;
+    }
+}
+
 static void note_tile(const render_options *o, pass *p)
 {
     long done;
 #pragma omp atomic capture
     done = ++p->done;
-    if (is_callers_thread() && !progress_show(o->progress, "rendering", (double)done / (double)p->all)) {
-#pragma omp atomic write
-        p->stop = true;
-    }
+    show(o, p, done);
 }
 
 static bool run(const tracer *tr, const render_options *o, pass *p, film *f, stats *sum, errors *e)
@@ -206,6 +211,7 @@ static bool run(const tracer *tr, const render_options *o, pass *p, film *f, sta
     bool good = true;
     const int threads = threads_of(o->threads);
     (void)threads; /* without OpenMP */
+    show(o, p, p->done); /* here and at the end, as other threads may take all the tiles of a small picture */
 #pragma omp parallel num_threads(threads)
     {
         workspace *v = workspace_new(tr);
@@ -242,6 +248,8 @@ static bool run(const tracer *tr, const render_options *o, pass *p, film *f, sta
     }
     if (!good)
         return errors_add(e, "out of memory for the threads' waves");
+    if (!p->stop)
+        show(o, p, p->done);
     return !p->stop || errors_add(e, "cancelled");
 }
 
