@@ -90,7 +90,7 @@ bool yaml_add_error(yaml *y, const origin *o, int line, int column, const char *
     return text_error(y->errors, set ? "--set" : y->path, set ? o->set : y->text, line, column, message);
 }
 
-static bool error_at(yaml *y, node *at, size_t offset, const char *fmt, va_list args)
+bool yaml_error_in(yaml *y, node *at, size_t offset, const char *fmt, ...)
 {
     char message[1024];
     int line = 1, column = 1;
@@ -98,7 +98,10 @@ static bool error_at(yaml *y, node *at, size_t offset, const char *fmt, va_list 
         y->errors->count++;
         return false;
     }
+    va_list args;
+    va_start(args, fmt);
     vsnprintf(message, sizeof message, fmt, args);
+    va_end(args);
     const origin *o = yaml_origin(at);
     struct fy_token *token = offset && fy_node_is_scalar(at) ? fy_node_get_scalar_token(at) : NULL;
     const struct fy_mark *mark = token ? fy_token_start_mark(token) : NULL;
@@ -109,24 +112,6 @@ static bool error_at(yaml *y, node *at, size_t offset, const char *fmt, va_list 
         text_place(text, text_offset(text, mark->input_pos, style_of(token), offset), &line, &column);
     }
     return yaml_add_error(y, o, line, column, message);
-}
-
-bool yaml_error_in(yaml *y, node *at, size_t offset, const char *fmt, ...)
-{
-    va_list args;
-    va_start(args, fmt);
-    error_at(y, at, offset, fmt, args);
-    va_end(args);
-    return false;
-}
-
-bool yaml_error(yaml *y, node *at, const char *fmt, ...)
-{
-    va_list args;
-    va_start(args, fmt);
-    error_at(y, at, 0, fmt, args);
-    va_end(args);
-    return false;
 }
 
 /* ---- syntax ---- */
@@ -150,12 +135,14 @@ static const char *reworded(const char *message)
 
 bool yaml_syntax_errors(yaml *y, const origin *o)
 {
-    struct fy_diag_error *k;
-    bool added = false;
-    while ((k = yaml_report(y)))
-        if (k->line >= 1 && !added) {
-            yaml_add_error(y, o, k->line, k->column, reworded(k->msg));
-            added = true;
-        }
-    return added ? false : yaml_add_error(y, o, 1, 1, o ? "no value here" : "no scene here, only comments");
+    struct fy_diag_error *k = yaml_report(y);
+    while (k && k->line < 1)
+        k = yaml_report(y);
+    yaml_add_error(y, o, k ? k->line : 1, k ? k->column : 1,
+                   k   ? reworded(k->msg)
+                   : o ? "no value here"
+                       : "no scene here, only comments");
+    while (k)
+        k = yaml_report(y);
+    return false;
 }

@@ -70,7 +70,7 @@ void text_place(const char *text, size_t at, int *line, int *column)
 bool text_error(errors *e, const char *name, const char *text, int line, int column, const char *message)
 {
     enum { BEFORE = 60, SHOWN = 150, BYTES = 4 };
-    char shown_message[1024], excerpt[SHOWN * BYTES + 1], blank[SHOWN + 1];
+    char shown_message[1024], shown[SHOWN * BYTES + 1], blank[SHOWN + 1], excerpt[sizeof shown + sizeof blank + 32];
     const char *from = text;
     copy_shown(shown_message, sizeof shown_message, message, strlen(message));
     for (int k = 1; k < line; k++) {
@@ -101,8 +101,9 @@ bool text_error(errors *e, const char *name, const char *text, int line, int col
         if (!is_tail(*c))
             blank[pad++] = *c == '\t' ? '\t' : ' ';
     blank[pad] = 0;
-    copy_shown(excerpt, sizeof excerpt, from, length);
-    return errors_add_at(e, name, line, column, shown_message, "\n%5d | %s\n      | %s^", line, excerpt, blank);
+    copy_shown(shown, sizeof shown, from, length);
+    snprintf(excerpt, sizeof excerpt, "\n%5d | %s\n      | %s^", line, shown, blank);
+    return errors_add_at(e, name, line, column, shown_message, excerpt);
 }
 
 /* ---- scalars ---- */

@@ -32,8 +32,8 @@ void yaml_close(yaml *y);
 node *yaml_root(const yaml *y);
 const char *yaml_source(const yaml *y); /* the file's text; the yaml's */
 
-/* Add an error about a node. `offset`: characters into its text. Always false. */
-bool yaml_error(yaml *y, node *at, const char *fmt, ...) KAGE_PRINTF(3, 4);
+/* Add an error about a node, or about the byte `offset` of its text. Always false. */
+#define yaml_error(y, at, ...) yaml_error_in(y, at, 0, __VA_ARGS__)
 bool yaml_error_in(yaml *y, node *at, size_t offset, const char *fmt, ...) KAGE_PRINTF(4, 5);
 
 /* Maps. `yaml_map` checks that the node is one with no other keys than `keys` (separated by spaces, any where NULL). */
