@@ -5,7 +5,6 @@
 #include "expr/operation.h"
 #include "expr/rule.h"
 #include "math/noise.h"
-#include "math/noise_bounds.h"
 
 /* ---- noise ---- */
 
