@@ -1,4 +1,4 @@
-/* Errors with their places: where in the file, or in a --set, a node is; and errors of syntax, which libfyaml finds. */
+/* Errors at nodes: finds the line and column of a node in the file or in a --set. Rewords libfyaml's syntax errors. */
 #include "yaml/document.h"
 
 #include <libfyaml.h>
@@ -17,7 +17,7 @@ struct fy_diag_error *yaml_report(yaml *y)
     return k;
 }
 
-/* libfyaml knows where a node begins; it is asked by letting it collect a report about the node. */
+/* The only way to get a node's place from libfyaml is a report about the node. */
 static bool own_place(yaml *y, node *at, int *line, int *column)
 {
     struct fy_diag_error *k;
@@ -55,7 +55,7 @@ static node *key_of(node *map, node *value)
     return NULL;
 }
 
-/* An empty value has no place, nor has a map that begins with one: it is that of its key, or of what is around it. */
+/* An empty value has no place, nor has a map that begins with one. It gets that of its key, or of its parent. */
 void yaml_place(yaml *y, node *at, int *line, int *column)
 {
     *line = *column = 1;
