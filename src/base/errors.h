@@ -15,30 +15,29 @@
 
 enum { ERRORS_SHOWN = 50 }; /* more than that are only counted */
 
-/* Where one message stands in errors.text, and the place in a file that it is about. */
+/* A message in errors.text, and the place in a file that it points to. */
 typedef struct error_item {
-    size_t start, end; /* of the whole message, without the newline at its end */
-    size_t file;       /* bytes of the file's name, with which the message begins; 0: it is about no place in a file */
+    size_t start, end; /* bytes in errors.text, without the newline */
+    size_t file;       /* length of the file's name at the start of the message; 0: the message has no place */
     int line, column;  /* from 1 */
-    size_t what;       /* bytes of `file:line:column: `, before what is wrong */
+    size_t what;       /* length of `file:line:column: ` */
 } error_item;
 
-/* Zero-initialise; errors_free when done. */
+/* Zero-initialise; errors_free when done. Not for several threads at once. */
 typedef struct errors {
     char *text;  /* all messages, each ended by a newline; NULL: none */
     size_t size; /* bytes in text, without the final 0 */
-    int count;   /* messages, those not in text with them */
+    int count;   /* messages, including those that are not in text */
     int items;   /* messages in text */
     error_item item[ERRORS_SHOWN];
 } errors;
 
-/* Add one message, formatted as by printf, with no newline at its end. Messages may hold several
- * lines. Always returns false, so that a function can end with `return errors_add(...)`. */
+/* Add a message, formatted as by printf, of one or several lines, without a newline at its end. Always returns false,
+ * so that a function can end with `return errors_add(...)`. */
 bool errors_add(errors *e, const char *fmt, ...) KAGE_PRINTF(2, 3);
 
-/* Add `file:line:column: what`, and behind it, as printf would write it, what shows the place. Always false. */
-bool errors_add_at(errors *e, const char *file, int line, int column, const char *what, const char *fmt, ...)
-    KAGE_PRINTF(6, 7);
+/* Add `file:line:column: what` and the lines that show the place. Always false. */
+bool errors_add_at(errors *e, const char *file, int line, int column, const char *what, const char *excerpt);
 
 void errors_free(errors *e);
 

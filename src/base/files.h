@@ -18,11 +18,7 @@ typedef struct files {
     int count;
 } files;
 
-static inline file_id file_id_of(const struct stat *about)
-{
-    file_id id = {about->st_dev, about->st_ino};
-    return id;
-}
+static inline file_id file_id_of(const struct stat *about) { return (file_id){about->st_dev, about->st_ino}; }
 
 /* Add a file, once. False: out of memory. */
 bool files_add(files *f, file_id id);

@@ -1,5 +1,5 @@
-/* Embree's hierarchy over boxes as user geometry: Embree walks, and the callbacks here note which boxes it comes to.
- * Nothing that Embree computes reaches a picture, since its roundings differ between processors. */
+/* Boxes as user geometry of Embree. Embree traverses its hierarchy and calls the functions here for each box that it
+ * reaches. No number that Embree computes reaches a picture, since its rounding differs between processors. */
 #include "bvh/bvh.h"
 
 #if KAGE_EMBREE == 4
@@ -17,7 +17,7 @@ struct bvh {
     bvh_box *box;
 };
 
-/* What a walk is for, behind Embree's own context. */
+/* What the callbacks need during one traversal. Embree's context comes first, so that a pointer to it points here. */
 typedef struct walk {
 #if KAGE_EMBREE == 4
     struct RTCRayQueryContext context;
@@ -37,7 +37,7 @@ static void bounds(const struct RTCBoundsFunctionArguments *a)
     o->upper_x = b->hi[0], o->upper_y = b->hi[1], o->upper_z = b->hi[2];
 }
 
-/* A box is met: it is noted, but not reported to Embree as a hit, so that Embree goes on to all others. */
+/* Visits the box without reporting a hit, so that Embree continues with all others. */
 static void met(const struct RTCOccludedFunctionNArguments *a)
 {
     const walk *k = (const walk *)(const void *)a->context;
@@ -45,7 +45,7 @@ static void met(const struct RTCOccludedFunctionNArguments *a)
         k->visit(k->user, (int32_t)a->primID);
 }
 
-/* On a walk whose end can come nearer: no hit is reported either, only the new end of the ray. */
+/* For bvh_toward: no hit is reported either, only the new end of the ray. */
 static void met_toward(const struct RTCIntersectFunctionNArguments *a)
 {
     const walk *k = (const walk *)(const void *)a->context;
@@ -61,29 +61,20 @@ static bool near_one(struct RTCPointQueryFunctionArguments *a)
     return false; /* the radius stays */
 }
 
-/* For the calls that Embree makes while it builds. */
-typedef struct monitor {
-    bvh_progress *progress;
-    void *user;
-} monitor;
-
 static bool report_progress(void *user, double share)
 {
-    const monitor *k = user;
-    k->progress(k->user, share);
+    progress_show(user, "building", share);
     return true;
 }
 
-bvh *bvh_new(int n, const bvh_box *box) { return bvh_new_with_progress(n, box, NULL, NULL); }
-
-bvh *bvh_new_with_progress(int n, const bvh_box *box, bvh_progress *progress, void *user)
+bvh *bvh_new(int n, const bvh_box *box, const progress *w)
 {
-    monitor k = {progress, user};
+    progress to = w ? *w : (progress){0};
     bvh *b = calloc(1, sizeof *b);
     if (!b)
         return NULL;
     b->box = malloc(sizeof *box * (size_t)(n > 0 ? n : 1));
-    /* without threads of its own: kage's are enough, and a scene builds in a moment */
+    /* without threads of its own: kage has enough, and building takes little time */
     b->device = b->box ? rtcNewDevice("threads=1") : NULL;
     b->scene = b->device ? rtcNewScene(b->device) : NULL;
     RTCGeometry g = b->scene ? rtcNewGeometry(b->device, RTC_GEOMETRY_TYPE_USER) : NULL;
@@ -102,8 +93,8 @@ bvh *bvh_new_with_progress(int n, const bvh_box *box, bvh_progress *progress, vo
     rtcAttachGeometry(b->scene, g);
     rtcReleaseGeometry(g);
     rtcSetSceneFlags(b->scene, RTC_SCENE_FLAG_ROBUST);
-    if (progress)
-        rtcSetSceneProgressMonitorFunction(b->scene, report_progress, &k);
+    if (w)
+        rtcSetSceneProgressMonitorFunction(b->scene, report_progress, &to);
     rtcCommitScene(b->scene);
     rtcSetSceneProgressMonitorFunction(b->scene, NULL, NULL);
     if (rtcGetDeviceError(b->device) != RTC_ERROR_NONE) {
@@ -125,12 +116,22 @@ void bvh_free(bvh *b)
     free(b);
 }
 
+static struct RTCRay ray_of(const float r[3], const float s[3], float end)
+{
+    return (struct RTCRay){.org_x = r[0],
+                           .org_y = r[1],
+                           .org_z = r[2],
+                           .dir_x = s[0],
+                           .dir_y = s[1],
+                           .dir_z = s[2],
+                           .tfar = end,
+                           .mask = ~0u};
+}
+
 void bvh_along(const bvh *b, const float r[3], const float s[3], float end, bvh_visit *visit, void *user)
 {
     walk k = {.visit = visit, .user = user};
-    struct RTCRay x = {.org_x = r[0], .org_y = r[1], .org_z = r[2], .dir_x = s[0], .dir_y = s[1], .dir_z = s[2]};
-    x.tfar = end;
-    x.mask = ~0u;
+    struct RTCRay x = ray_of(r, s, end);
 #if KAGE_EMBREE == 4
     struct RTCOccludedArguments how;
     rtcInitOccludedArguments(&how);
@@ -146,11 +147,7 @@ void bvh_along(const bvh *b, const float r[3], const float s[3], float end, bvh_
 void bvh_toward(const bvh *b, const float r[3], const float s[3], float end, bvh_shorten *visit, void *user)
 {
     walk k = {.shorten = visit, .user = user};
-    struct RTCRayHit x = {
-        .ray = {.org_x = r[0], .org_y = r[1], .org_z = r[2], .dir_x = s[0], .dir_y = s[1], .dir_z = s[2]}};
-    x.ray.tfar = end;
-    x.ray.mask = ~0u;
-    x.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    struct RTCRayHit x = {.ray = ray_of(r, s, end), .hit = {.geomID = RTC_INVALID_GEOMETRY_ID}};
 #if KAGE_EMBREE == 4
     struct RTCIntersectArguments how;
     rtcInitIntersectArguments(&how);

@@ -1,10 +1,11 @@
-/* The space in which a hierarchy keeps its boxes, and rays brought into it. */
+/* Boxes and rays in the scaled space of a hierarchy. */
 #include "bvh/bvh.h"
 
 #include <math.h>
 
-/* Boxes are widened, and rays prolonged, by this many radii. Coordinates are at most 1, so float rounds each by 6e-8 at
- * the most; a box, a ray's origin and its end, 2 away, make some ten of these, and Embree's own arithmetic as many. */
+/* Boxes are enlarged, and rays lengthened, by this many radii. Coordinates are at most 1, so rounding one to float is
+ * an error of at most 6e-8. A box, a ray's origin and its end add up to some ten of these, and Embree's arithmetic adds
+ * as many. */
 #define MARGIN 4e-6
 
 bvh_space bvh_space_about(const double lo[3], const double hi[3])
@@ -27,8 +28,7 @@ bvh_box bvh_box_in(const bvh_space *p, const double lo[3], const double hi[3])
     return b;
 }
 
-/* A ray without direction, or with NaN, has no part inside. The sphere is a little larger, by more than the rounding.
- */
+/* False also for a ray without direction or with NaN. The sphere is enlarged by more than the rounding. */
 bool bvh_enter(const bvh_space *p, double reach, vec3 r, vec3 s, double *from, double *to, float at[3], float way[3],
                float *end)
 {
@@ -36,7 +36,7 @@ bool bvh_enter(const bvh_space *p, double reach, vec3 r, vec3 s, double *from, d
     const vec3 o = vec3_sub(r, p->centre);
     const double start = -vec3_dot(o, s) / (length * length);
     const vec3 near = vec3_add(o, vec3_scale(s, start));
-    const double half = sqrt(R * R - vec3_dot(near, near)) / length; /* NaN beside it */
+    const double half = sqrt(R * R - vec3_dot(near, near)) / length; /* NaN where the ray misses */
     *from = fmax(*from, start - half);
     *to = fmin(*to, start + half);
     if (!(half >= 0 && half < HUGE_VAL) || !(*from <= *to))

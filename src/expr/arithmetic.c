@@ -2,43 +2,18 @@
 #include "expr/operation.h"
 #include "expr/rule.h"
 
+#define OPERATION(f, n, ...)                                                                                           \
+    {                                                                                                                  \
+        .operands = n, .value = f##_value, .gradient = f##_gradient, __VA_ARGS__                                       \
+    }
+
 /* ---- constants ---- */
 
-static void run_constant(const expr_code *c, int n, int order, expr_view z, const expr_view *x)
-{
-    (void)order, (void)x;
-    jets_fill(n, z, c->k);
-}
-
 static interval constant_value(const expr_ranges *r) { return interval_at(r->k); }
-static expr_gradient constant_gradient(const expr_ranges *r)
-{
-    (void)r;
-    return (expr_gradient){{{0, 0}}};
-}
 
-const expr_op expr_constant = {
-    .steps = true, .run = run_constant, .value = constant_value, .gradient = constant_gradient};
+const expr_op expr_constant = {.steps = true, .run = jets_fill, .value = constant_value};
 
 /* ---- sums ---- */
-
-static void run_add_k(const expr_code *c, int n, int order, expr_view z, const expr_view *x)
-{
-    (void)order;
-    jets_shift(n, z, x[0], c->k);
-}
-
-static void run_add(const expr_code *c, int n, int order, expr_view z, const expr_view *x)
-{
-    (void)c, (void)order;
-    jets_add(n, z, x[0], x[1]);
-}
-
-static void run_subtract(const expr_code *c, int n, int order, expr_view z, const expr_view *x)
-{
-    (void)c, (void)order;
-    jets_subtract(n, z, x[0], x[1]);
-}
 
 static interval add_k_value(const expr_ranges *r) { return interval_add(r->x[0], interval_at(r->k)); }
 static interval add_value(const expr_ranges *r) { return interval_add(r->x[0], r->x[1]); }
@@ -56,29 +31,11 @@ static expr_gradient subtract_gradient(const expr_ranges *r)
     return (expr_gradient){{{1, 1}, {-1, -1}}};
 }
 
-const expr_op expr_add_k = {.operands = 1, .run = run_add_k, .value = add_k_value, .gradient = add_gradient};
-const expr_op expr_add = {
-    .operands = 2, .run = run_add, .value = add_value, .gradient = add_gradient, .pov = " + ", .binding = EXPR_SUM};
-const expr_op expr_subtract = {.operands = 2,
-                               .run = run_subtract,
-                               .value = subtract_value,
-                               .gradient = subtract_gradient,
-                               .pov = " - ",
-                               .binding = EXPR_SUM};
+const expr_op expr_add_k = {.operands = 1, .run = jets_shift, .value = add_k_value, .gradient = add_gradient};
+const expr_op expr_add = OPERATION(add, 2, .run = jets_add, .pov = " + ", .binding = EXPR_SUM);
+const expr_op expr_subtract = OPERATION(subtract, 2, .run = jets_subtract, .pov = " - ", .binding = EXPR_SUM);
 
 /* ---- products ---- */
-
-static void run_multiply_k(const expr_code *c, int n, int order, expr_view z, const expr_view *x)
-{
-    (void)order;
-    jets_scale(n, z, x[0], c->k);
-}
-
-static void run_multiply(const expr_code *c, int n, int order, expr_view z, const expr_view *x)
-{
-    (void)c, (void)order;
-    jets_multiply(n, z, x[0], x[1]);
-}
 
 static interval multiply_k_value(const expr_ranges *r) { return interval_multiply(r->x[0], interval_at(r->k)); }
 static interval multiply_value(const expr_ranges *r)
@@ -94,16 +51,9 @@ static expr_hessian multiply_hessian(const expr_ranges *r)
     return (expr_hessian){{{0, 0}, {1, 1}}};
 }
 
-const expr_op expr_multiply_k = {
-    .operands = 1, .run = run_multiply_k, .value = multiply_k_value, .gradient = multiply_k_gradient};
-const expr_op expr_multiply = {.operands = 2,
-                               .curved = EXPR_AB,
-                               .run = run_multiply,
-                               .value = multiply_value,
-                               .gradient = multiply_gradient,
-                               .hessian = multiply_hessian,
-                               .pov = "*",
-                               .binding = EXPR_PRODUCT};
+const expr_op expr_multiply_k = OPERATION(multiply_k, 1, .run = jets_scale);
+const expr_op expr_multiply = OPERATION(multiply, 2, .run = jets_multiply, .curved = EXPR_AB,
+                                        .hessian = multiply_hessian, .pov = "*", .binding = EXPR_PRODUCT);
 
 /* ---- quotients ---- */
 
@@ -129,12 +79,5 @@ static expr_hessian divide_hessian(const expr_ranges *r)
     return (expr_hessian){{{0, 0}, interval_negate(i2), {0, 0}, interval_scale(2, interval_multiply(r->f, i2))}};
 }
 
-const expr_op expr_divide = {.operands = 2,
-                             .curved = EXPR_AB | EXPR_BB,
-                             .run = expr_run_rule,
-                             .rule2 = rule_divide,
-                             .value = divide_value,
-                             .gradient = divide_gradient,
-                             .hessian = divide_hessian,
-                             .pov = "/",
-                             .binding = EXPR_PRODUCT};
+const expr_op expr_divide = OPERATION(divide, 2, .rule2 = rule_divide, .curved = EXPR_AB | EXPR_BB,
+                                      .hessian = divide_hessian, .pov = "/", .binding = EXPR_PRODUCT);

@@ -31,15 +31,6 @@ static expr_ranges ranges_of(const expr_code *c, const interval *value)
     return r;
 }
 
-void expr_bound_value(const expr *e, double u0, double u1, double w0, double w1, double *lo, double *hi)
-{
-    interval value[EXPR_SLOTS] = {{u0, u1}, {w0, w1}};
-    for (int i = 0; i < e->count; i++)
-        value[e->code[i].z] = ranges_of(&e->code[i], value).f;
-    *lo = value[e->result].lo;
-    *hi = value[e->result].hi;
-}
-
 /* ---- terms of the chain rule ---- */
 
 /* Exact where a factor is 0, as along what an operand does not depend on, or 1 or -1, as in sums. */
@@ -97,30 +88,6 @@ static slope choice(const expr_code *c, const expr_ranges *r, const slope *s)
     return z;
 }
 
-static void put_bounds(interval v, slope s, expr_bounds *out)
-{
-    const interval u = s.along[ALONG_U], w = s.along[ALONG_W];
-    *out = (expr_bounds){{v.lo, v.hi}, {u.lo, u.hi}, {w.lo, w.hi}};
-}
-
-void expr_bound_gradient(const expr *e, double u0, double u1, double w0, double w1, expr_bounds *out)
-{
-    interval value[EXPR_SLOTS] = {{u0, u1}, {w0, w1}};
-    slope s[EXPR_SLOTS] = {{{{1, 1}, {0, 0}}}, {{{0, 0}, {1, 1}}}};
-    for (int i = 0; i < e->count; i++) {
-        const expr_code *c = &e->code[i];
-        const expr_ranges r = ranges_of(c, value);
-        if (c->op->reached)
-            s[c->z] = choice(c, &r, s);
-        else {
-            const expr_gradient g = c->op->gradient(&r);
-            s[c->z] = chain(c, s, &g);
-        }
-        value[c->z] = r.f;
-    }
-    put_bounds(value[e->result], s[e->result], out);
-}
-
 /* ---- second partials ---- */
 
 /* The terms of f_ij in the first partials of operands: f_aa a_i a_j, f_ab (a_i b_j + a_j b_i). */
@@ -169,28 +136,38 @@ static second choice2(const expr_code *c, const expr_ranges *r, const slope *s, 
     return z;
 }
 
+/* One run over the program; h NULL: without second partials. */
+static void bound(const expr *e, interval u, interval w, expr_bounds *out, second *h)
+{
+    static const expr_gradient level;
+    static const expr_hessian flat;
+    interval value[EXPR_SLOTS] = {u, w};
+    slope s[EXPR_SLOTS] = {{{{1, 1}, {0, 0}}}, {{{0, 0}, {1, 1}}}};
+    for (int i = 0; i < e->count; i++) {
+        const expr_code *c = &e->code[i];
+        const expr_op *op = c->op;
+        const expr_ranges r = ranges_of(c, value);
+        const expr_gradient g = op->gradient ? op->gradient(&r) : level;
+        const expr_hessian f = h && op->hessian ? op->hessian(&r) : flat;
+        if (h)
+            h[c->z] = op->reached ? choice2(c, &r, s, h) : chain2(c, s, h, &g, &f);
+        s[c->z] = op->reached ? choice(c, &r, s) : chain(c, s, &g);
+        value[c->z] = r.f;
+    }
+    const interval v = value[e->result], su = s[e->result].along[ALONG_U], sw = s[e->result].along[ALONG_W];
+    *out = (expr_bounds){{v.lo, v.hi}, {su.lo, su.hi}, {sw.lo, sw.hi}};
+}
+
+void expr_bound_gradient(const expr *e, double u0, double u1, double w0, double w1, expr_bounds *out)
+{
+    bound(e, (interval){u0, u1}, (interval){w0, w1}, out, NULL);
+}
+
 void expr_bound_hessian(const expr *e, double u0, double u1, double w0, double w1, expr_bounds *out,
                         expr_hessians *hessian)
 {
-    static const expr_hessian flat;
-    interval value[EXPR_SLOTS] = {{u0, u1}, {w0, w1}};
-    slope s[EXPR_SLOTS] = {{{{1, 1}, {0, 0}}}, {{{0, 0}, {1, 1}}}};
     second h[EXPR_SLOTS] = {{{{0, 0}}}};
-    for (int i = 0; i < e->count; i++) {
-        const expr_code *c = &e->code[i];
-        const expr_ranges r = ranges_of(c, value);
-        if (c->op->reached) {
-            h[c->z] = choice2(c, &r, s, h);
-            s[c->z] = choice(c, &r, s);
-        } else {
-            const expr_gradient g = c->op->gradient(&r);
-            const expr_hessian f = c->op->hessian ? c->op->hessian(&r) : flat;
-            h[c->z] = chain2(c, s, h, &g, &f);
-            s[c->z] = chain(c, s, &g);
-        }
-        value[c->z] = r.f;
-    }
+    bound(e, (interval){u0, u1}, (interval){w0, w1}, out, h);
     const second z = h[e->result];
-    put_bounds(value[e->result], s[e->result], out);
     *hessian = (expr_hessians){{z.d[UU].lo, z.d[UU].hi}, {z.d[UW].lo, z.d[UW].hi}, {z.d[WW].lo, z.d[WW].hi}};
 }

@@ -39,18 +39,18 @@ static void choose(int n, expr_view z, const double *d, expr_view x, expr_view y
 
 /* ---- min, max ---- */
 
-static void run_min(const expr_code *c, int n, int order, expr_view z, const expr_view *x)
+static void run_min(int n, expr_view z, const expr_view *x, double k)
 {
     double d[EXPR_BATCH];
-    (void)c, (void)order;
+    (void)k;
     stage_compare(n, d, expr_part(x[0], PART_V), expr_part(x[1], PART_V));
     choose(n, z, d, x[0], x[1]);
 }
 
-static void run_max(const expr_code *c, int n, int order, expr_view z, const expr_view *x)
+static void run_max(int n, expr_view z, const expr_view *x, double k)
 {
     double d[EXPR_BATCH];
-    (void)c, (void)order;
+    (void)k;
     stage_compare(n, d, expr_part(x[0], PART_V), expr_part(x[1], PART_V));
     choose(n, z, d, x[1], x[0]);
 }
@@ -73,17 +73,17 @@ static int max_reached(const expr_ranges *r) { return (r->x[0].hi >= r->x[1].lo)
 /* ---- select ---- */
 
 /* b where a < 0, else c */
-static void run_select(const expr_code *c, int n, int order, expr_view z, const expr_view *x)
+static void run_select(int n, expr_view z, const expr_view *x, double k)
 {
-    (void)c, (void)order;
+    (void)k;
     choose(n, z, expr_part(x[0], PART_V), x[1], x[2]);
 }
 
 /* b where a < 0, c where a = 0, d where a > 0 */
-static void run_select4(const expr_code *c, int n, int order, expr_view z, const expr_view *x)
+static void run_select4(int n, expr_view z, const expr_view *x, double k)
 {
     double is_zero[EXPR_BATCH], else_part[EXPR_BATCH];
-    (void)c, (void)order;
+    (void)k;
     stage_compare_zero(n, is_zero, expr_part(x[0], PART_V));
     for (int p = 0; p < PARTS; p++)
         if (expr_part(z, p)) {

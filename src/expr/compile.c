@@ -5,8 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { SLOT_U, SLOT_W };
-
 void emitter_begin(emitter *e)
 {
     e->count = 0;
@@ -17,8 +15,6 @@ void emitter_begin(emitter *e)
 }
 
 operand expr_emit_constant(double k) { return (operand){.constant = true, .k = k}; }
-operand expr_emit_u(void) { return (operand){.slot = SLOT_U}; }
-operand expr_emit_w(void) { return (operand){.slot = SLOT_W}; }
 
 /* The second partials that the chain rule makes of first partials i of one operand and j of the other. */
 static int cross(int i, int j)

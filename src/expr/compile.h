@@ -6,6 +6,8 @@
 
 #include "expr/program.h"
 
+enum { SLOT_U, SLOT_W }; /* the slots of u and w */
+
 /* A constant, or a result in a slot. Each result is an operand once. */
 typedef struct operand {
     bool constant;
@@ -24,8 +26,6 @@ typedef struct emitter {
 void emitter_begin(emitter *e);
 
 operand expr_emit_constant(double k);
-operand expr_emit_u(void);
-operand expr_emit_w(void);
 
 /* The result of an operation on n operands. After a problem the results have no meaning. */
 operand expr_emit(emitter *e, const struct expr_op *op, int n, const operand *arg);

@@ -235,7 +235,7 @@ static expr_hessian floor_hessian(const expr_ranges *r) { return second(floor_gr
 
 #define ELEMENTARY(f, text, ...)                                                                                       \
     {                                                                                                                  \
-        .name = #f, .least = 1, .most = 1, .operands = 1, .run = expr_run_rule, .rule1 = rule_##f, .value = f##_value, \
+        .name = #f, .least = 1, .most = 1, .operands = 1, .rule1 = rule_##f, .value = f##_value,                       \
         .gradient = f##_gradient, .hessian = f##_hessian, .pov = text, __VA_ARGS__                                     \
     }
 #define ROW(f, text, ...) &(const expr_op)ELEMENTARY(f, text, __VA_ARGS__)

@@ -25,29 +25,27 @@ typedef struct expr_error {
     char message[160]; /* what is wrong, what was expected; without place or newline */
 } expr_error;
 
-/* The expression that `text` states; owned by the caller, expr_free. NULL on error, with the reason in *error. */
+/* Parse `text`. The caller frees the result with expr_free. NULL on error, with the reason in *error. */
 expr *expr_parse(const char *text, expr_error *error);
 
-/* Evaluate at n <= EXPR_BATCH points (u[i], w[i]). order 0 writes out->v, order 1 also u and w, order 2
- * also uu, uw and ww; what is not asked for is left as it was. Reentrant; allocates nothing. Outside an
- * operation's domain (log of a negative number, ...) the result is NaN or infinite, as in C. */
+/* Evaluate at n <= EXPR_BATCH points (u[i], w[i]). Order 0 writes out->v, order 1 also u and w, order 2 also uu, uw
+ * and ww. Reentrant; allocates nothing. Outside a function's domain (log of a negative number) the result is NaN or
+ * infinite, as in C. */
 void expr_eval(const expr *e, int n, const double *u, const double *w, int order, expr_jets *out);
 
-/* Bounds of the value over u0 <= u <= u1, w0 <= w <= w1 (infinite ends allowed), by interval arithmetic:
- * lo <= e(u,w) <= hi wherever e is defined. The bounds always hold, and may be wider than needed or infinite. */
-void expr_bound_value(const expr *e, double u0, double u1, double w0, double w1, double *lo, double *hi);
-
-/* Least and greatest value, and partials along u and along w. */
+/* Lower and upper bounds of the value and of the first partials. */
 typedef struct expr_bounds {
     double v[2], u[2], w[2];
 } expr_bounds;
 
-/* As expr_bound_value, and bounds of the first partials: never NaN, infinite where none is known. With L the larger
- * magnitude of u's and M that of w's, |e(p) - e(q)| <= L |pu - qu| + M |pw - qw| for all points p and q of the box at
- * which e is defined, in exact arithmetic, with 0 infinity = 0. So at a kink (abs, min, max, clamp) they hold the
- * slopes of both sides; and they are infinite along a direction in which a jump may lie in the box, its edge included
- * (floor, mod, select unless its branches are the same, atan2's cut, poles), and where a slope is (sqrt, log, u^0.5 at
- * 0; asin at 1). They also hold the partials of expr_eval, unless intermediate results underflow. */
+/* Bounds over u0 <= u <= u1, w0 <= w <= w1 (infinite ends allowed), by interval arithmetic. They hold wherever e is
+ * defined, may be wider than needed, are never NaN, and are infinite where none is known.
+ *
+ * Those of the partials are Lipschitz bounds, too: with L the largest |e_u| and M the largest |e_w|,
+ * |e(p) - e(q)| <= L |pu - qu| + M |pw - qw| for all points p and q of the box at which e is defined. So at a kink
+ * (abs, min, max, clamp) they include the slopes of both sides. They are infinite where the box may contain a jump
+ * (floor, mod, select with different branches, atan2's cut, poles) or an infinite slope (sqrt at 0, asin at 1). They
+ * also include the partials of expr_eval, unless intermediate results underflow. */
 void expr_bound_gradient(const expr *e, double u0, double u1, double w0, double w1, expr_bounds *out);
 
 /* Bounds of the second partials. */
@@ -55,8 +53,8 @@ typedef struct expr_hessians {
     double uu[2], uw[2], ww[2];
 } expr_hessians;
 
-/* The same, and bounds of the second partials: Lipschitz bounds of the first ones likewise, so infinite where a slope
- * may jump. */
+/* The same, and bounds of the second partials. They are Lipschitz bounds of the first partials, so infinite where a
+ * slope may jump. */
 void expr_bound_hessian(const expr *e, double u0, double u1, double w0, double w1, expr_bounds *out,
                         expr_hessians *hessian);
 

@@ -5,9 +5,6 @@
 #include "expr/operation.h"
 #include "expr/rule.h"
 #include "math/noise.h"
-#include "math/noise_bounds.h"
-
-static const interval all = {-KM_INF, KM_INF};
 
 /* ---- noise ---- */
 
@@ -19,15 +16,15 @@ KM_INLINE rule2 gradient_noise_at(double a, double b)
 
 RULE2(gradient_noise)
 
-static interval noise_value(const expr_ranges *r) { return noise_bounds_over(r->x[0], r->x[1]).f; }
+static interval gradient_noise_value(const expr_ranges *r) { return noise_bounds_over(r->x[0], r->x[1]).f; }
 
-static expr_gradient noise_slopes(const expr_ranges *r)
+static expr_gradient gradient_noise_gradient(const expr_ranges *r)
 {
     const noise_bounds n = noise_bounds_over(r->x[0], r->x[1]);
     return (expr_gradient){{n.x, n.y}};
 }
 
-static expr_hessian noise_hessian(const expr_ranges *r)
+static expr_hessian gradient_noise_hessian(const expr_ranges *r)
 {
     const noise_bounds n = noise_bounds_over(r->x[0], r->x[1]);
     return (expr_hessian){{n.xx, n.xy, {0, 0}, n.yy}};
@@ -65,7 +62,7 @@ static interval angle_by(interval t, interval r2)
 static expr_gradient atan2_gradient(const expr_ranges *r)
 {
     if (on_cut(r))
-        return (expr_gradient){{all, all}};
+        return (expr_gradient){{interval_all, interval_all}};
     const interval r2 = distance_squared(r);
     return (expr_gradient){{angle_by(r->x[1], r2), angle_by(interval_negate(r->x[0]), r2)}};
 }
@@ -74,7 +71,7 @@ static expr_gradient atan2_gradient(const expr_ranges *r)
 static expr_hessian atan2_hessian(const expr_ranges *r)
 {
     if (on_cut(r))
-        return (expr_hessian){{all, all, {0, 0}, all}};
+        return (expr_hessian){{interval_all, interval_all, {0, 0}, interval_all}};
     const interval i = interval_reciprocal(distance_squared(r));
     const interval x = interval_multiply(r->x[1], i), y = interval_multiply(r->x[0], i);
     const interval xy = interval_scale(2, interval_multiply(x, y));
@@ -101,14 +98,14 @@ static expr_gradient mod_gradient(const expr_ranges *r)
     interval q = interval_multiply(r->x[0], interval_reciprocal(r->x[1]));
     double lo = q.lo < 0 ? ceil(q.lo) : floor(q.lo), hi = q.hi < 0 ? ceil(q.hi) : floor(q.hi);
     if (lo != hi || !(fabs(lo) < KM_TWO52))
-        return (expr_gradient){{all, all}};
+        return (expr_gradient){{interval_all, interval_all}};
     return (expr_gradient){{interval_one, interval_at(-lo)}};
 }
 
 static expr_hessian mod_hessian(const expr_ranges *r)
 {
     const bool jumps = !interval_is_point(mod_gradient(r).d[1]);
-    return jumps ? (expr_hessian){{all, all, {0, 0}, all}} : (expr_hessian){{{0, 0}}};
+    return jumps ? (expr_hessian){{interval_all, interval_all, {0, 0}, interval_all}} : (expr_hessian){{{0, 0}}};
 }
 
 /* ---- smoothstep ---- */
@@ -213,7 +210,7 @@ static interval pow_by_base(interval a, interval b)
     bool integer = interval_is_point(b) && km_floor(b.lo) == b.lo; /* then b - 1 is one, too: a may be negative */
     if (a.lo < 0 && !integer) {
         if (!interval_is_point(b)) /* defined at isolated b */
-            return all;
+            return interval_all;
         a = interval_clip(a, 0, KM_INF);
     }
     const interval less = integer ? interval_at(b.lo - 1) : interval_add(b, interval_at(-1));
@@ -224,16 +221,17 @@ static interval pow_by_base(interval a, interval b)
 static expr_gradient pow_gradient(const expr_ranges *r)
 {
     const interval a = r->x[0];
-    return (expr_gradient){{pow_by_base(a, r->x[1]), a.lo < 0 ? all : interval_multiply(r->f, interval_log(a))}};
+    return (expr_gradient){
+        {pow_by_base(a, r->x[1]), a.lo < 0 ? interval_all : interval_multiply(r->f, interval_log(a))}};
 }
 
 static expr_hessian pow_hessian(const expr_ranges *r)
 {
     const interval a = r->x[0], b = r->x[1];
     if (!interval_is_point(b) || a.lo <= 0)
-        return (expr_hessian){{all, all, {0, 0}, all}};
+        return (expr_hessian){{interval_all, interval_all, {0, 0}, interval_all}};
     const interval p = interval_pow(a, interval_at(b.lo - 2));
-    return (expr_hessian){{interval_scale(b.lo * (b.lo - 1), p), all, {0, 0}, all}};
+    return (expr_hessian){{interval_scale(b.lo * (b.lo - 1), p), interval_all, {0, 0}, interval_all}};
 }
 
 /* a^k, with p = a^(k-2) by squaring: a^k = p a a, k p a and k (k-1) p, which holds at any a. */
@@ -262,10 +260,11 @@ STAGE static void stage_powi(int n, int order, const double *restrict a, double 
         f[i] = f[i] * a[i] * a[i];
 }
 
-static void run_powi(const expr_code *c, int n, int order, expr_view z, const expr_view *x)
+static void run_powi(int n, expr_view z, const expr_view *x, double k)
 {
+    const int order = z.has & HAS_SECOND ? 2 : z.has & HAS_FIRST ? 1 : 0;
     expr_partials p;
-    stage_powi(n, order, expr_part(x[0], PART_V), c->k, expr_part(z, PART_V), p.d[0], p.dd[0]);
+    stage_powi(n, order, expr_part(x[0], PART_V), k, expr_part(z, PART_V), p.d[0], p.dd[0]);
     jets_chain(n, z, 1, x, &p, EXPR_AA);
 }
 
@@ -309,29 +308,21 @@ static operand build_pow(emitter *e, int n, const operand *arg)
 
 /* ---- the table ---- */
 
-#define OF_TWO(rule) .least = 2, .most = 2, .operands = 2, .run = expr_run_rule, .rule2 = rule
-#define OF_THREE(rule) .least = 3, .most = 3, .operands = 3, .run = expr_run_rule, .rule3 = rule
+#define ROW(text, f, n, ...)                                                                                           \
+    {                                                                                                                  \
+        .name = text, .least = n, .most = n, .operands = n, .value = f##_value, .gradient = f##_gradient,              \
+        .hessian = f##_hessian, __VA_ARGS__                                                                            \
+    }
 
-const expr_op expr_pow = {"pow",
-                          OF_TWO(rule_pow),
-                          .build = build_pow,
-                          .curved = EXPR_ALL,
-                          .value = pow_value,
-                          .gradient = pow_gradient,
-                          .hessian = pow_hessian,
-                          .pov = "pow"};
+const expr_op expr_pow = ROW("pow", pow, 2, .rule2 = rule_pow, .build = build_pow, .curved = EXPR_ALL, .pov = "pow");
 
 const expr_op *const expr_functions[] = {
-    &(const expr_op){"noise", OF_TWO(rule_gradient_noise), .curved = EXPR_ALL, .value = noise_value,
-                     .gradient = noise_slopes, .hessian = noise_hessian},
-    &(const expr_op){"atan2", OF_TWO(rule_atan2), .curved = EXPR_ALL, .value = atan2_value, .gradient = atan2_gradient,
-                     .hessian = atan2_hessian, .pov = "atan2"},
-    &(const expr_op){"mod", OF_TWO(rule_mod), .value = mod_value, .gradient = mod_gradient, .hessian = mod_hessian,
-                     .pov = "mod"},
+    &(const expr_op)ROW("noise", gradient_noise, 2, .rule2 = rule_gradient_noise, .curved = EXPR_ALL),
+    &(const expr_op)ROW("atan2", atan2, 2, .rule2 = rule_atan2, .curved = EXPR_ALL, .pov = "atan2"),
+    &(const expr_op)ROW("mod", mod, 2, .rule2 = rule_mod, .pov = "mod"),
     &expr_pow,
     /* the formula has $3 once: t^2 (3 - 2t) = 1/2 + 1/2 sin(3 asin(t - 1/2)) */
-    &(const expr_op){"smoothstep", OF_THREE(rule_smoothstep), .curved = EXPR_ALL, .value = smoothstep_value,
-                     .gradient = smoothstep_gradient, .hessian = smoothstep_hessian,
-                     .pov = "0.5 + 0.5*sin(3*asin(min(max(($3 - $1)/($2 - $1), 0), 1) - 0.5))"},
+    &(const expr_op)ROW("smoothstep", smoothstep, 3, .rule3 = rule_smoothstep, .curved = EXPR_ALL,
+                        .pov = "0.5 + 0.5*sin(3*asin(min(max(($3 - $1)/($2 - $1), 0), 1) - 0.5))"),
     NULL,
 };

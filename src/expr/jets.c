@@ -79,38 +79,41 @@ STAGE static void stage_add_product3(int n, double *restrict z, const double *x,
 
 /* ---- arithmetic ---- */
 
-void jets_fill(int n, expr_view z, double k)
+void jets_fill(int n, expr_view z, const expr_view *x, double k)
 {
+    (void)x;
     for (int p = 0; p < PARTS; p++)
         if (expr_part(z, p))
             stage_fill(n, expr_part(z, p), k);
 }
 
-void jets_scale(int n, expr_view z, expr_view x, double k)
+void jets_scale(int n, expr_view z, const expr_view *x, double k)
 {
     for (int p = 0; p < PARTS; p++)
         if (expr_part(z, p))
-            stage_scale(n, expr_part(z, p), expr_part(x, p), k);
+            stage_scale(n, expr_part(z, p), expr_part(*x, p), k);
 }
 
-void jets_shift(int n, expr_view z, expr_view x, double k)
+void jets_shift(int n, expr_view z, const expr_view *x, double k)
 {
-    stage_shift(n, expr_part(z, PART_V), expr_part(x, PART_V), k);
+    stage_shift(n, expr_part(z, PART_V), expr_part(*x, PART_V), k);
     jets_scale(n, (expr_view){z.jet, z.has & ~HAS_V}, x, 1);
 }
 
-void jets_add(int n, expr_view z, expr_view x, expr_view y)
+void jets_add(int n, expr_view z, const expr_view *x, double k)
 {
+    (void)k;
     for (int p = 0; p < PARTS; p++)
         if (expr_part(z, p))
-            stage_add(n, expr_part(z, p), expr_part_or_zeros(x, p), expr_part_or_zeros(y, p));
+            stage_add(n, expr_part(z, p), expr_part_or_zeros(x[0], p), expr_part_or_zeros(x[1], p));
 }
 
-void jets_subtract(int n, expr_view z, expr_view x, expr_view y)
+void jets_subtract(int n, expr_view z, const expr_view *x, double k)
 {
+    (void)k;
     for (int p = 0; p < PARTS; p++)
         if (expr_part(z, p))
-            stage_subtract(n, expr_part(z, p), expr_part_or_zeros(x, p), expr_part_or_zeros(y, p));
+            stage_subtract(n, expr_part(z, p), expr_part_or_zeros(x[0], p), expr_part_or_zeros(x[1], p));
 }
 
 /* ---- products and the chain rule ---- */
@@ -120,7 +123,7 @@ static const struct {
     int ij, i, j;
 } seconds[] = {{PART_UU, PART_U, PART_U}, {PART_UW, PART_U, PART_W}, {PART_WW, PART_W, PART_W}};
 
-/* z is the sum of the terms so far. A term with a factor NULL is 0 and left out. */
+/* z is the sum of the terms so far; NULL: not asked for. A term with a factor NULL is 0 and left out. */
 typedef struct sum {
     int n;
     double *z;
@@ -129,7 +132,7 @@ typedef struct sum {
 
 static void term(sum *s, const double *x, const double *y)
 {
-    if (!x || !y)
+    if (!s->z || !x || !y)
         return;
     (s->begun ? stage_add_product : stage_set_product)(s->n, s->z, x, y);
     s->begun = true;
@@ -137,31 +140,29 @@ static void term(sum *s, const double *x, const double *y)
 
 static void term3(sum *s, const double *x, const double *y, const double *t)
 {
-    if (!y || !t)
+    if (!s->z || !y || !t)
         return;
     (s->begun ? stage_add_product3 : stage_set_product3)(s->n, s->z, x, y, t);
     s->begun = true;
 }
 
 /* (ab)_i = a_i b + a b_i, (ab)_ij = a_ij b + a b_ij + a_i b_j + a_j b_i */
-void jets_multiply(int n, expr_view z, expr_view a, expr_view b)
+void jets_multiply(int n, expr_view z, const expr_view *x, double k)
 {
+    const expr_view a = x[0], b = x[1];
+    (void)k;
     const double *av = expr_part(a, PART_V), *bv = expr_part(b, PART_V);
     stage_multiply(n, expr_part(z, PART_V), av, bv);
     for (int i = PART_U; i <= PART_W; i++) {
         sum s = {n, expr_part(z, i), false};
-        if (!s.z)
-            continue;
         term(&s, expr_part(a, i), bv);
         term(&s, expr_part(b, i), av);
     }
-    for (int k = 0; k < 3; k++) {
-        int i = seconds[k].i, j = seconds[k].j;
-        sum s = {n, expr_part(z, seconds[k].ij), false};
-        if (!s.z)
-            continue;
-        term(&s, expr_part(a, seconds[k].ij), bv);
-        term(&s, expr_part(b, seconds[k].ij), av);
+    for (int m = 0; m < 3; m++) {
+        int i = seconds[m].i, j = seconds[m].j;
+        sum s = {n, expr_part(z, seconds[m].ij), false};
+        term(&s, expr_part(a, seconds[m].ij), bv);
+        term(&s, expr_part(b, seconds[m].ij), av);
         term(&s, expr_part(a, i), expr_part(b, j));
         term(&s, expr_part(a, j), expr_part(b, i));
     }
@@ -173,7 +174,7 @@ void jets_chain(int n, expr_view z, int operands, const expr_view *x, const expr
 {
     for (int i = PART_U; i <= PART_W; i++) {
         sum s = {n, expr_part(z, i), false};
-        for (int a = 0; s.z && a < operands; a++)
+        for (int a = 0; a < operands; a++)
             term(&s, f->d[a], expr_part(x[a], i));
     }
     for (int k = 0; k < 3; k++) {

@@ -50,13 +50,11 @@ typedef void expr_rule2(int n, int order, const double *restrict a, const double
 typedef void expr_rule3(int n, int order, const double *restrict a, const double *restrict b, const double *restrict c,
                         double *restrict f, expr_partials *restrict p);
 
-/* z = k, x + k, k x, x + y, x - y, a b; all parts that z has. */
-void jets_fill(int n, expr_view z, double k);
-void jets_shift(int n, expr_view z, expr_view x, double k);
-void jets_scale(int n, expr_view z, expr_view x, double k);
-void jets_add(int n, expr_view z, expr_view x, expr_view y);
-void jets_subtract(int n, expr_view z, expr_view x, expr_view y);
-void jets_multiply(int n, expr_view z, expr_view a, expr_view b);
+/* Computes all parts that z has, at n points, from operands x and a constant k, which not all operations use. */
+typedef void expr_run(int n, expr_view z, const expr_view *x, double k);
+
+/* z = k, x[0] + k, k x[0], x[0] + x[1], x[0] - x[1], x[0] x[1] */
+expr_run jets_fill, jets_shift, jets_scale, jets_add, jets_subtract, jets_multiply;
 
 /* The chain rule: the partials of z = f(x[0], x[1], ...). curved: which f_ij can differ from 0. */
 void jets_chain(int n, expr_view z, int operands, const expr_view *x, const expr_partials *f, int curved);

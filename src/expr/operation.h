@@ -45,9 +45,8 @@ struct expr_op {
     int curved;   /* set of EXPR_AA ...: the second partials that can differ from 0 */
     bool steps;   /* all partials are 0: floor */
 
-    /* Evaluation of n points to the given order, of the parts that z has. */
-    void (*run)(const expr_code *c, int n, int order, expr_view z, const expr_view *x);
-    /* For expr_run_rule: the loop over the operation's rule. */
+    /* Evaluation: by `run`, or where that is NULL, by the one rule that is set, and the chain rule. */
+    expr_run *run;
     expr_rule1 *rule1;
     expr_rule2 *rule2;
     expr_rule3 *rule3;
@@ -55,8 +54,8 @@ struct expr_op {
     /* Bounds. The partials are bounds of differences too, so a kink has the derivatives of both its sides and all
      * between, and a jump an infinite one. */
     interval (*value)(const expr_ranges *r);
-    expr_gradient (*gradient)(const expr_ranges *r);
-    expr_hessian (*hessian)(const expr_ranges *r); /* NULL: 0 */
+    expr_gradient (*gradient)(const expr_ranges *r); /* NULL: 0 */
+    expr_hessian (*hessian)(const expr_ranges *r);   /* NULL: 0 */
     /* Instead of gradient and hessian, for an operation whose result is always equal to one of its operands: which of
      * them it is equal to somewhere, bit k for operand k. */
     int (*reached)(const expr_ranges *r);
@@ -67,9 +66,6 @@ struct expr_op {
     const char *pov;
     enum expr_binding binding;
 };
-
-/* Evaluation by rule1, rule2 or rule3 and the chain rule. */
-void expr_run_rule(const expr_code *c, int n, int order, expr_view z, const expr_view *x);
 
 /* Operations on constants and sums and products (arithmetic.c). Those with _k have one operand and a constant. */
 extern const expr_op expr_constant, expr_add_k, expr_multiply_k, expr_add, expr_subtract, expr_multiply, expr_divide;

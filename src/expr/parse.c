@@ -33,7 +33,6 @@ typedef struct parser {
 /* Characters by ASCII, whatever the locale is. */
 static bool is_digit(char c) { return c >= '0' && c <= '9'; }
 static bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
-static char lower(char c) { return c >= 'A' && c <= 'Z' ? (char)(c + 32) : c; }
 
 /* Record an error at `where`, unless there is one already, and let the parser see the end of the text. */
 static operand fail(parser *p, const char *where, const char *fmt, ...) KAGE_PRINTF(3, 4);
@@ -105,7 +104,7 @@ static operand parse_number(parser *p)
     }
     if (!digits)
         return fail(p, start, "'.' without a digit, expected a number such as 0.5");
-    if (lower(*p->at) == 'e') {
+    if (*p->at == 'e' || *p->at == 'E') {
         p->at += p->at[1] == '+' || p->at[1] == '-' ? 2 : 1;
         if (!is_digit(*p->at))
             return fail(p, start, "number with an exponent that has no digits, expected one such as 1e-3");
@@ -149,18 +148,8 @@ static operand unknown_name(parser *p, const char *where, const char *name, bool
 
 static const char *arguments_of(const expr_op *f)
 {
-    switch (f->most) {
-    case 1:
-        return "1 argument";
-    case 2:
-        return "2 arguments";
-    case 3:
-        return "3 arguments";
-    case 4:
-        return "3 or 4 arguments";
-    default:
-        return "2 or more arguments";
-    }
+    static const char *const words[] = {"", "1 argument", "2 arguments", "3 arguments", "3 or 4 arguments"};
+    return f->most == EXPR_ANY_NUMBER ? "2 or more arguments" : words[f->most];
 }
 
 /* Something else stands where an expression could end. */
@@ -211,9 +200,9 @@ static operand parse_name(parser *p)
     skip_blanks(p);
 
     if (strcmp(name, "u") == 0)
-        return expr_emit_u();
+        return (operand){.slot = SLOT_U};
     if (strcmp(name, "w") == 0)
-        return expr_emit_w();
+        return (operand){.slot = SLOT_W};
     if (strcmp(name, "pi") == 0)
         return expr_emit_constant(KM_PI);
     const expr_op *f = function_named(name);
@@ -255,28 +244,27 @@ static operand parse_signed(parser *p)
     return minus ? emit_op(p, where, &expr_multiply, 2, (operand[]){expr_emit_constant(-1), a}) : a;
 }
 
-static operand parse_product(parser *p)
+/* Operands read by `part`, joined from left to right by either of the two signs. */
+static operand parse_chain(parser *p, operand (*part)(parser *), const char signs[2], const expr_op *const op[2])
 {
-    operand a = parse_signed(p);
-    while (*p->at == '*' || *p->at == '/') {
+    operand a = part(p);
+    while (*p->at == signs[0] || *p->at == signs[1]) {
         const char *where = p->at;
         accept(p, *where);
-        operand b = parse_signed(p);
-        a = emit_op(p, where, *where == '*' ? &expr_multiply : &expr_divide, 2, (operand[]){a, b});
+        operand b = part(p);
+        a = emit_op(p, where, op[*where == signs[1]], 2, (operand[]){a, b});
     }
     return a;
 }
 
+static operand parse_product(parser *p)
+{
+    return parse_chain(p, parse_signed, "*/", (const expr_op *[]){&expr_multiply, &expr_divide});
+}
+
 static operand parse_sum(parser *p)
 {
-    operand a = parse_product(p);
-    while (*p->at == '+' || *p->at == '-') {
-        const char *where = p->at;
-        accept(p, *where);
-        operand b = parse_product(p);
-        a = emit_op(p, where, *where == '+' ? &expr_add : &expr_subtract, 2, (operand[]){a, b});
-    }
-    return a;
+    return parse_chain(p, parse_product, "+-", (const expr_op *[]){&expr_add, &expr_subtract});
 }
 
 static operand parse_whole(parser *p)

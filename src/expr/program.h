@@ -30,7 +30,8 @@ enum {
     HAS_UU = 1 << PART_UU,
     HAS_UW = 1 << PART_UW,
     HAS_WW = 1 << PART_WW,
-    HAS_FIRST = HAS_U | HAS_W
+    HAS_FIRST = HAS_U | HAS_W,
+    HAS_SECOND = HAS_UU | HAS_UW | HAS_WW
 };
 
 struct expr_op; /* operation.h */

@@ -8,8 +8,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "image/buffer.h"
-#include "image/read.h"
+#include "image/format.h"
 
 /* What a damaged header may make the library ask for at once; more than any sound file of our limits needs in
  * a chunk. */
@@ -23,27 +22,18 @@ typedef struct exr_reader {
     char *why; /* IMAGE_WHY; the first reason counts */
 } exr_reader;
 
-static bool refuse(exr_reader *r, const char *why)
-{
-    if (!r->why[0])
-        snprintf(r->why, IMAGE_WHY, "%s", why);
-    return false;
-}
-
 static void on_read_error(exr_const_context_t ctx, exr_result_t code, const char *message)
 {
     void *r = NULL;
     (void)code;
-    if (exr_get_user_data(ctx, &r) == EXR_ERR_SUCCESS && r && !((exr_reader *)r)->why[0])
-        snprintf(((exr_reader *)r)->why, IMAGE_WHY, "OpenEXR: %s", message);
+    if (exr_get_user_data(ctx, &r) == EXR_ERR_SUCCESS && r)
+        image_refuse(((exr_reader *)r)->why, "OpenEXR: %s", message);
 }
 
-/* Whether a call of the library went well; where it did not, that there is a reason. */
+/* Whether a call of the library succeeded; if not, there is a reason. */
 static bool good(exr_reader *r, exr_result_t result)
 {
-    if (result != EXR_ERR_SUCCESS && !r->why[0])
-        snprintf(r->why, IMAGE_WHY, "OpenEXR: %s", exr_get_default_error_message(result));
-    return result == EXR_ERR_SUCCESS;
+    return result == EXR_ERR_SUCCESS || image_refuse(r->why, "OpenEXR: %s", exr_get_default_error_message(result));
 }
 
 static int64_t read_at(exr_const_context_t ctx, void *data, void *buffer, uint64_t size, uint64_t offset,
@@ -57,7 +47,7 @@ static int64_t read_at(exr_const_context_t ctx, void *data, void *buffer, uint64
         if (n < 0 && errno == EINTR)
             continue;
         if (n < 0) {
-            refuse(r, strerror(errno));
+            image_refuse(r->why, "%s", strerror(errno));
             return -1;
         }
         if (n == 0)
@@ -82,17 +72,18 @@ static const exr_attr_chlist_entry_t *find(const exr_attr_chlist_t *list, const 
     return NULL;
 }
 
+static bool is_full(exr_reader *r, const exr_attr_chlist_entry_t *channel)
+{
+    return (channel->x_sampling == 1 && channel->y_sampling == 1) ||
+           image_refuse(r->why, "a channel is subsampled; one sample a pixel is expected");
+}
+
 /* The channel of that name, or the only one, or Y. */
 static bool choose(exr_reader *r, const exr_attr_chlist_t *list, const char *name, const exr_attr_chlist_entry_t **out)
 {
-    *out = NULL;
-    for (int c = 0; c < list->num_channels; c++)
-        if ((!name && list->num_channels == 1) || strcmp(list->entries[c].name.str, name ? name : "Y") == 0)
-            *out = &list->entries[c];
+    *out = !name && list->num_channels == 1 ? list->entries : find(list, name ? name : "Y");
     if (*out)
-        return (*out)->x_sampling == 1 && (*out)->y_sampling == 1
-                   ? true
-                   : refuse(r, "the channel is subsampled; one sample a pixel is expected");
+        return is_full(r, *out);
     size_t n = (size_t)(name ? snprintf(r->why, IMAGE_WHY, "there is no channel '%s'; the file has", name)
                              : snprintf(r->why, IMAGE_WHY, "which channel is meant? The file has"));
     for (int c = 0; c < list->num_channels && n < IMAGE_WHY; c++)
@@ -108,17 +99,16 @@ static bool choose_colors(exr_reader *r, const exr_attr_chlist_t *list, const ex
     static const char *const names[] = {"R", "G", "B", "A"};
     for (int k = 0; k < 4; k++) {
         out[k] = find(list, names[k]);
-        if (out[k] && (out[k]->x_sampling != 1 || out[k]->y_sampling != 1))
-            return refuse(r, "a channel is subsampled; one sample a pixel is expected");
+        if (out[k] && !is_full(r, out[k]))
+            return false;
     }
     if (out[0] && out[1] && out[2])
         return true;
     if (out[0] || out[1] || out[2])
-        return refuse(r, "not all of the channels R, G and B are there");
-    const exr_attr_chlist_entry_t *grey;
-    if (!choose(r, list, "Y", &grey))
+        return image_refuse(r->why, "not all of the channels R, G and B are there");
+    if (!choose(r, list, "Y", out))
         return false;
-    out[0] = out[1] = out[2] = grey;
+    out[1] = out[2] = out[0];
     return true;
 }
 
@@ -175,7 +165,7 @@ static bool unpack(exr_reader *r, exr_plane *p, int x, int y)
             const uint64_t size = (uint64_t)ch->width * (uint64_t)ch->bytes_per_element;
             const bool wanted = strcmp(ch->channel_name, p->channel) == 0;
             if (size > left || (wanted && ch->width != chunk->width))
-                return refuse(r, "OpenEXR: a chunk has a wrong size");
+                return image_refuse(r->why, "OpenEXR: a chunk has a wrong size");
             if (wanted)
                 to_float(p->out->v + ((size_t)(y + line) * (size_t)p->out->width + (size_t)x) * (size_t)p->values +
                              p->which,
@@ -190,10 +180,10 @@ static bool unpack(exr_reader *r, exr_plane *p, int x, int y)
 static bool decode_chunk(exr_reader *r, exr_plane *p, const exr_chunk_info_t *chunk, int x, int y)
 {
     if (chunk->width < 1 || chunk->height < 1 || chunk->width > p->out->width - x || chunk->height > p->out->height - y)
-        return refuse(r, "OpenEXR: a chunk does not lie within the image");
+        return image_refuse(r->why, "OpenEXR: a chunk does not lie within the image");
     if (chunk->packed_size == 0 ||
         (chunk->compression == EXR_COMPRESSION_NONE && chunk->packed_size != chunk->unpacked_size))
-        return refuse(r, "OpenEXR: a chunk has a wrong size");
+        return image_refuse(r->why, "OpenEXR: a chunk has a wrong size");
     if (!good(r, p->started ? exr_decoding_update(p->ctx, 0, chunk, &p->pipe)
                             : exr_decoding_initialize(p->ctx, 0, chunk, &p->pipe)))
         return false;
@@ -210,7 +200,7 @@ static bool decode_scanlines(exr_reader *r, exr_plane *p, int first_y)
     if (!good(r, exr_get_scanlines_per_chunk(p->ctx, 0, &lines)))
         return false;
     if (lines < 1)
-        return refuse(r, "OpenEXR: chunks without lines");
+        return image_refuse(r->why, "OpenEXR: chunks without lines");
     for (int y = 0; y < p->out->height; y += lines) {
         exr_chunk_info_t chunk = {0};
         if (!good(r, exr_read_scanline_chunk_info(p->ctx, 0, first_y + y, &chunk)) || !decode_chunk(r, p, &chunk, 0, y))
@@ -226,7 +216,7 @@ static bool decode_tiles(exr_reader *r, exr_plane *p)
     if (!good(r, exr_get_tile_sizes(p->ctx, 0, 0, 0, &w, &h)))
         return false;
     if (w < 1 || h < 1)
-        return refuse(r, "OpenEXR: tiles without samples");
+        return image_refuse(r->why, "OpenEXR: tiles without samples");
     for (int64_t y = 0; y < p->out->height; y += h)
         for (int64_t x = 0; x < p->out->width; x += w) {
             exr_chunk_info_t chunk = {0};
@@ -243,13 +233,11 @@ static bool all_finite(exr_reader *r, const image *m, int values)
     for (int y = 0; y < m->height; y++)
         for (int x = 0; x < width; x++) {
             float v = m->v[(size_t)y * (size_t)width + (size_t)x];
-            if (!isfinite(v)) {
-                snprintf(r->why, IMAGE_WHY, "the sample in column %d of row %d (both from 0) is %s", x / values, y,
-                         isnan(v) ? "NaN"
-                         : v > 0  ? "infinite"
-                                  : "-infinite");
-                return false;
-            }
+            if (!isfinite(v))
+                return image_refuse(r->why, "the sample in column %d of row %d (both from 0) is %s", x / values, y,
+                                    isnan(v) ? "NaN"
+                                    : v > 0  ? "infinite"
+                                             : "-infinite");
         }
     return true;
 }
@@ -272,20 +260,19 @@ static bool decode(exr_reader *r, exr_plane *p, const char *name, bool color)
     if (!good(r, exr_get_count(p->ctx, &parts)))
         return false;
     if (parts != 1)
-        return refuse(r, "the OpenEXR file has several parts; one is expected");
+        return image_refuse(r->why, "the OpenEXR file has several parts; one is expected");
     if (!good(r, exr_get_storage(p->ctx, 0, &storage)))
         return false;
     if (storage != EXR_STORAGE_SCANLINE && storage != EXR_STORAGE_TILED)
-        return refuse(r, "the OpenEXR file holds deep samples; a flat image is expected");
+        return image_refuse(r->why, "the OpenEXR file holds deep samples; a flat image is expected");
     if (!good(r, exr_get_channels(p->ctx, 0, &list)) ||
         !(color ? choose_colors(r, list, channel) : choose(r, list, name, channel)) ||
         !good(r, exr_get_data_window(p->ctx, 0, &window)))
         return false;
-    const char *why = image_alloc(p->out, (int64_t)window.max.x - window.min.x + 1,
-                                  (int64_t)window.max.y - window.min.y + 1, color ? 4 : 1);
-    if (why)
-        return refuse(r, why);
     p->values = color ? 4 : 1;
+    if (!image_alloc(p->out, (int64_t)window.max.x - window.min.x + 1, (int64_t)window.max.y - window.min.y + 1,
+                     p->values, r->why))
+        return false;
     for (size_t k = 0; color && k < (size_t)p->out->width * (size_t)p->out->height; k++)
         p->out->v[4 * k + 3] = 1;
     for (int k = 0; k < p->values; k++)
@@ -298,9 +285,8 @@ bool image_read_exr(FILE *file, const char *channel, bool color, image *out, cha
 {
     exr_reader r = {.fd = fileno(file), .why = why};
     struct stat st;
-    why[0] = 0;
     if (fstat(r.fd, &st) != 0 || !S_ISREG(st.st_mode))
-        return refuse(&r, "an OpenEXR file is read out of order, so not from a pipe or a device");
+        return image_refuse(r.why, "an OpenEXR file is read out of order, so not from a pipe or a device");
     exr_context_initializer_t init = EXR_DEFAULT_CONTEXT_INITIALIZER;
     init.error_handler_fn = on_read_error;
     init.alloc_fn = limited_alloc;
@@ -316,10 +302,6 @@ bool image_read_exr(FILE *file, const char *channel, bool color, image *out, cha
     if (p.ctx) {
         exr_decoding_destroy(p.ctx, &p.pipe);
         exr_finish(&p.ctx);
-    }
-    if (!ok) {
-        free(out->v);
-        *out = (image){0};
     }
     return ok;
 }

@@ -6,7 +6,7 @@
 
 #include "base/file_writer.h"
 #include "base/threads.h"
-#include "image/buffer.h"
+#include "image/format.h"
 
 /* The codes that the calls return say enough; a handler that asked the context for its data, as the reader's
  * does, could meet a lock that the library holds while it writes. */

@@ -6,8 +6,7 @@
 #include <string.h>
 
 #include "base/file_writer.h"
-#include "image/buffer.h"
-#include "image/read.h"
+#include "image/format.h"
 #include "image/srgb.h"
 
 /* libpng reports an error through a call that must not return, so it ends in a longjmp. All variables that are alive
@@ -22,18 +21,12 @@ typedef struct png_job {
 static void on_error(png_structp png, png_const_charp message)
 {
     png_job *job = png_get_error_ptr(png);
-    snprintf(job->why, IMAGE_WHY, "libpng: %s", message);
+    image_refuse(job->why, "libpng: %s", message);
     longjmp(job->jump, 1);
 }
 
 /* Warnings are about chunks that no sample depends on. */
 static void on_warning(png_structp png, png_const_charp message) { (void)png, (void)message; }
-
-static bool refuse(png_job *job, const char *why)
-{
-    snprintf(job->why, IMAGE_WHY, "%s", why);
-    return false;
-}
 
 /* ------------------------------------------------------------------------------------------------ reading */
 
@@ -71,31 +64,36 @@ static void expand_to_color(png_job *job, int colour)
     png_set_add_alpha(job->png, 0xffff, PNG_FILLER_AFTER); /* where there is none */
 }
 
+/* Read all before the samples: from the start of the file with its texts, or after the signature without. */
+static bool read_header(png_job *job, FILE *file, bool texts)
+{
+    job->png = png_create_read_struct(PNG_LIBPNG_VER_STRING, job, on_error, on_warning);
+    job->info = job->png ? png_create_info_struct(job->png) : NULL;
+    if (!job->info)
+        return image_refuse(job->why, "libpng does not start");
+    png_set_read_fn(job->png, file, read_bytes);
+    png_set_sig_bytes(job->png, texts ? 0 : 8);
+    png_set_user_limits(job->png, PNG_UINT_31_MAX, PNG_UINT_31_MAX); /* image_alloc has the limits */
+    if (!texts)
+        png_set_keep_unknown_chunks(job->png, PNG_HANDLE_CHUNK_NEVER, NULL, -1); /* nor gamma and colour profiles */
+    png_read_info(job->png, job->info);
+    return true;
+}
+
 static bool decode(png_job *job, FILE *file, bool color, image *out)
 {
     if (setjmp(job->jump))
         return false;
-    job->png = png_create_read_struct(PNG_LIBPNG_VER_STRING, job, on_error, on_warning);
-    job->info = job->png ? png_create_info_struct(job->png) : NULL;
-    if (!job->info)
-        return refuse(job, "libpng does not start");
-    png_set_read_fn(job->png, file, read_bytes);
-    png_set_sig_bytes(job->png, 8);
-    png_set_user_limits(job->png, PNG_UINT_31_MAX, PNG_UINT_31_MAX); /* image_alloc has the limits */
-    /* Samples are numbers: gamma, colour profiles, texts and the like are not even looked at. */
-    png_set_keep_unknown_chunks(job->png, PNG_HANDLE_CHUNK_NEVER, NULL, -1);
-    png_read_info(job->png, job->info);
-
+    if (!read_header(job, file, false))
+        return false;
     int colour = png_get_color_type(job->png, job->info);
     if (!color && colour != PNG_COLOR_TYPE_GRAY && colour != PNG_COLOR_TYPE_GRAY_ALPHA)
-        return refuse(job, colour == PNG_COLOR_TYPE_PALETTE
-                               ? "the PNG has a palette; a grey one is expected, of 8 or 16 bits"
-                               : "the PNG is in colour; a grey one is expected, of 8 or 16 bits");
+        return image_refuse(job->why, "the PNG %s; a grey one is expected, of 8 or 16 bits",
+                            colour == PNG_COLOR_TYPE_PALETTE ? "has a palette" : "is in colour");
     const int values = color ? 4 : 1;
-    const char *why =
-        image_alloc(out, png_get_image_width(job->png, job->info), png_get_image_height(job->png, job->info), values);
-    if (why)
-        return refuse(job, why);
+    if (!image_alloc(out, png_get_image_width(job->png, job->info), png_get_image_height(job->png, job->info), values,
+                     job->why))
+        return false;
     const int bytes = png_get_bit_depth(job->png, job->info) == 16 ? 2 : 1;
     if (color)
         expand_to_color(job, colour);
@@ -107,7 +105,7 @@ static bool decode(png_job *job, FILE *file, bool color, image *out)
     png_read_update_info(job->png, job->info);
     const size_t row = (size_t)out->width * (size_t)values;
     if (png_get_rowbytes(job->png, job->info) != row * (size_t)bytes)
-        return refuse(job, "libpng: unexpected size of a row");
+        return image_refuse(job->why, "libpng: unexpected size of a row");
     for (int pass = 0; pass < passes; pass++)
         for (int y = 0; y < out->height; y++)
             png_read_row(job->png, (png_bytep)(out->v + (size_t)y * row), NULL);
@@ -122,10 +120,6 @@ bool image_read_png(FILE *file, bool color, image *out, char *why)
     png_job job = {.why = why};
     bool ok = decode(&job, file, color, out);
     png_destroy_read_struct(&job.png, &job.info, NULL);
-    if (!ok) {
-        free(out->v);
-        *out = (image){0};
-    }
     return ok;
 }
 
@@ -145,19 +139,12 @@ static const char *software(png_job *job, FILE *file)
 {
     if (setjmp(job->jump))
         return NULL;
-    job->png = png_create_read_struct(PNG_LIBPNG_VER_STRING, job, on_error, on_warning);
-    job->info = job->png ? png_create_info_struct(job->png) : NULL;
-    if (!job->info)
-        return NULL;
-    png_set_read_fn(job->png, file, read_bytes);
-    png_set_user_limits(job->png, PNG_UINT_31_MAX, PNG_UINT_31_MAX);
-    png_read_info(job->png, job->info);
-    return find_text(job, "Software");
+    return read_header(job, file, true) ? find_text(job, "Software") : NULL;
 }
 
 bool image_png_is_from(const char *path, const char *program)
 {
-    char why[IMAGE_WHY];
+    char why[IMAGE_WHY] = "";
     png_job job = {.why = why};
     FILE *file = fopen(path, "rb");
     if (!file)
@@ -238,7 +225,7 @@ static bool encode(png_job *job, png_out *o, int width, int height, int bits, co
     o->row = malloc((size_t)width * 3 * (size_t)(bits / 8));
     o->text = calloc((size_t)texts + 1, sizeof *o->text);
     if (!job->info || !o->curve || !o->code || !o->row || !o->text)
-        return refuse(job, "there is not enough memory");
+        return image_refuse(job->why, "there is not enough memory");
     png_set_write_fn(job->png, o, write_bytes, flush_nothing);
     png_set_compression_level(job->png, 2); /* with one filter: a third of the usual time, a fifth more bytes */
     png_set_filter(job->png, PNG_FILTER_TYPE_BASE, PNG_FILTER_SUB);
@@ -261,7 +248,7 @@ bool image_write_png(const char *path, int width, int height, int bits, const fl
     const char *refused = image_refuse_size(width, height);
     if (refused || (bits != 8 && bits != 16))
         return errors_add(e, "%s: cannot be written: %s", path, refused ? refused : "a PNG has 8 or 16 bits");
-    char why[IMAGE_WHY];
+    char why[IMAGE_WHY] = "";
     png_job job = {.why = why};
     png_out o = {0};
     if (!file_writer_open(&o.file, path, e))

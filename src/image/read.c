@@ -1,5 +1,5 @@
 /* Reading an image: the format is recognised by the first bytes of the file. */
-#include "image/read.h"
+#include "image/format.h"
 
 #include <errno.h>
 #include <stdlib.h>
@@ -14,23 +14,27 @@ static bool read_any(FILE *file, const char *channel, bool color, image *out, bo
     unsigned char first[8] = {0};
     errno = 0;
     size_t n = fread(first, 1, sizeof first, file);
-    if (ferror(file)) {
-        snprintf(why, IMAGE_WHY, "%s", strerror(errno));
-        return false;
-    }
+    if (ferror(file))
+        return image_refuse(why, "%s", strerror(errno));
     *is_exr = n >= sizeof exr && memcmp(first, exr, sizeof exr) == 0;
     if (*is_exr)
         return image_read_exr(file, channel, color, out, why);
-    if (n < sizeof png || memcmp(first, png, sizeof png) != 0) {
-        snprintf(why, IMAGE_WHY,
-                 n ? "its first bytes are those of neither a PNG nor an OpenEXR file" : "the file is empty");
-        return false;
-    }
-    if (channel) {
-        snprintf(why, IMAGE_WHY, "there is no channel '%s': a PNG file has no named channels", channel);
-        return false;
-    }
+    if (n < sizeof png || memcmp(first, png, sizeof png) != 0)
+        return image_refuse(why,
+                            n ? "its first bytes are those of neither a PNG nor an OpenEXR file" : "the file is empty");
+    if (channel)
+        return image_refuse(why, "there is no channel '%s': a PNG file has no named channels", channel);
     return image_read_png(file, color, out, why);
+}
+
+/* Frees the image unless `good`, which it returns. */
+static bool keep_if(bool good, image *out)
+{
+    if (!good) {
+        free(out->v);
+        *out = (image){0};
+    }
+    return good;
 }
 
 static bool read_file(const char *path, const char *channel, bool color, image *out, bool *is_exr, errors *e)
@@ -42,7 +46,7 @@ static bool read_file(const char *path, const char *channel, bool color, image *
     char why[IMAGE_WHY] = "";
     bool ok = read_any(file, channel, color, out, is_exr, why);
     fclose(file);
-    return ok || errors_add(e, "%s", why);
+    return keep_if(ok || errors_add(e, "%s", why), out);
 }
 
 bool image_read(const char *path, const char *channel, image *out, errors *e)
@@ -70,9 +74,5 @@ bool image_read_color(const char *path, image_encoding encoding, image *out, boo
     if (ok && !*is_exr && encoding != IMAGE_LINEAR)
         ok = srgb_decode((size_t)out->width * (size_t)out->height, out->v) ||
              errors_add(e, "there is not enough memory for the image");
-    if (!ok) {
-        free(out->v);
-        *out = (image){0};
-    }
-    return ok;
+    return keep_if(ok, out);
 }

@@ -32,6 +32,12 @@ interval interval_reciprocal(interval a)
 /* A function that does not fall, from its values at the ends. */
 static interval rising(double lo, double hi) { return interval_widen((interval){lo, hi}, INTERVAL_ROUNDINGS); }
 
+/* A function that is extreme at the corners of a rectangle, from its values there. */
+static interval corners(double a, double b, double c, double d)
+{
+    return rising(lesser(lesser(a, b), lesser(c, d)), greater(greater(a, b), greater(c, d)));
+}
+
 /* Is there an integer in lo..hi, or so near that rounding decides? */
 static bool has_integer(double lo, double hi) { return floor(hi + 1e-9) >= ceil(lo - 1e-9); }
 
@@ -76,8 +82,7 @@ interval interval_atan2(interval y, interval x)
 {
     if (x.lo <= 0 && interval_has(y, 0))
         return interval_widen((interval){-KM_PI, KM_PI}, INTERVAL_ONE_ROUNDING);
-    double a = km_atan2(y.lo, x.lo), b = km_atan2(y.lo, x.hi), c = km_atan2(y.hi, x.lo), d = km_atan2(y.hi, x.hi);
-    return rising(lesser(lesser(a, b), lesser(c, d)), greater(greater(a, b), greater(c, d)));
+    return corners(km_atan2(y.lo, x.lo), km_atan2(y.lo, x.hi), km_atan2(y.hi, x.lo), km_atan2(y.hi, x.hi));
 }
 
 interval interval_sinh(interval a) { return rising(km_sinh(a.lo), km_sinh(a.hi)); }
@@ -121,9 +126,7 @@ interval interval_mod(interval a, interval b)
 /* a^b for a >= 0: it is monotonic in a and in b, so the extremes are at corners. */
 static interval positive_power(interval a, interval b)
 {
-    interval p = {km_pow(a.lo, b.lo), km_pow(a.lo, b.hi)}, q = {km_pow(a.hi, b.lo), km_pow(a.hi, b.hi)};
-    return not_negative(
-        rising(lesser(lesser(p.lo, p.hi), lesser(q.lo, q.hi)), greater(greater(p.lo, p.hi), greater(q.lo, q.hi))));
+    return not_negative(corners(km_pow(a.lo, b.lo), km_pow(a.lo, b.hi), km_pow(a.hi, b.lo), km_pow(a.hi, b.hi)));
 }
 
 static interval power(interval a, interval b)

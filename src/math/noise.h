@@ -11,7 +11,7 @@
 #ifndef KAGE_MATH_NOISE_H
 #define KAGE_MATH_NOISE_H
 
-#include "math/kmath.h"
+#include "math/interval.h"
 
 typedef struct noise_jet {
     double f, x, y, xx, xy, yy;
@@ -78,5 +78,13 @@ KM_INLINE noise_jet noise_at(double x, double y)
     n.xy = s1 * (Ay + t * Cy) + t1 * (Bx + s * Cx) + s1 * t1 * C;
     return n;
 }
+
+typedef struct noise_bounds {
+    interval f, x, y, xx, xy, yy;
+} noise_bounds;
+
+/* Bounds of the noise and its partials over a rectangle: close if it is small; those of the whole plane if its sides
+ * add up to 2 or more (noise_bounds.c). */
+noise_bounds noise_bounds_over(interval x, interval y);
 
 #endif

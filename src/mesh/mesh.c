@@ -91,8 +91,6 @@ static void mesh_box(const surface *base, double lo[3], double hi[3])
     }
 }
 
-static void show_tree(void *user, double share) { progress_show(user, "building", share); }
-
 static bvh *tree_of(const mesh *f, const progress *w)
 {
     bvh_box *box = malloc(sizeof *box * (size_t)f->d.n);
@@ -105,8 +103,7 @@ static bvh *tree_of(const mesh *f, const progress *w)
         }
         box[k] = bvh_box_in(&f->space, lo, hi);
     }
-    progress to = w ? *w : (progress){NULL, NULL};
-    bvh *b = box ? bvh_new_with_progress(f->d.n, box, show_tree, &to) : NULL;
+    bvh *b = box ? bvh_new(f->d.n, box, w) : NULL;
     free(box);
     return b;
 }

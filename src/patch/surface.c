@@ -194,7 +194,7 @@ static bvh *tree_of(const pieces *l)
     bvh_box *box = malloc(sizeof *box * (size_t)l->n);
     for (int i = 0; box && i < l->n; i++)
         box[i] = bvh_box_in(&l->space, l->piece[i].box[0], l->piece[i].box[1]);
-    bvh *b = box ? bvh_new(l->n, box) : NULL;
+    bvh *b = box ? bvh_new(l->n, box, NULL) : NULL;
     free(box);
     return b;
 }

@@ -67,7 +67,7 @@ static bvh *tree_of(const object_bvh *c)
     bvh_box *b = malloc(sizeof *b * (size_t)c->bounded);
     for (int i = 0; b && i < c->bounded; i++)
         b[i] = bvh_box_in(&c->space, c->box[i].lo, c->box[i].hi);
-    bvh *tree = b ? bvh_new(c->bounded, b) : NULL;
+    bvh *tree = b ? bvh_new(c->bounded, b, NULL) : NULL;
     free(b);
     return tree;
 }

@@ -8,11 +8,7 @@
 #include "bumpshadow.h"
 #include "wave/wave.h"
 
-static inline bs_vec3 lane_get(const vec3s *v, int i)
-{
-    bs_vec3 x = {v->x[i], v->y[i], v->z[i]};
-    return x;
-}
+static inline bs_vec3 lane_get(const vec3s *v, int i) { return (bs_vec3){v->x[i], v->y[i], v->z[i]}; }
 
 static inline void lane_set(vec3s *v, int i, bs_vec3 x)
 {
@@ -24,15 +20,13 @@ static inline void lane_set(vec3s *v, int i, bs_vec3 x)
 static inline bs_vec3 lane_unit(bs_vec3 v)
 {
     real il = 1 / real_sqrt(bs_dot(v, v));
-    bs_vec3 x = {v.x * il, v.y * il, v.z * il};
-    return x;
+    return (bs_vec3){v.x * il, v.y * il, v.z * il};
 }
 
 /* r + s t */
 static inline bs_vec3 lane_at(const rays *x, int i, real t)
 {
-    bs_vec3 p = {x->r.x[i] + x->s.x[i] * t, x->r.y[i] + x->s.y[i] * t, x->r.z[i] + x->s.z[i] * t};
-    return p;
+    return (bs_vec3){x->r.x[i] + x->s.x[i] * t, x->r.y[i] + x->s.y[i] * t, x->r.z[i] + x->s.z[i] * t};
 }
 
 #endif

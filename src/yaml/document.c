@@ -1,4 +1,4 @@
-/* Opening: the file's bytes, their one document, what is wrong with its syntax; and closing. */
+/* Opening and closing: reads the file, checks its bytes, and loads the one document in it. */
 #include "yaml/document.h"
 
 #include <errno.h>
@@ -15,7 +15,7 @@ static const char scene_expected[] = "expected a map with camera, lights, materi
 
 /* ---- the bytes ---- */
 
-/* Why these bytes are no scene, as an error with its place; true: they may be one. */
+/* Are the bytes a text that can be a scene? If not, adds an error with its place. */
 static bool is_text(const char *path, const char *text, size_t n, errors *e)
 {
     char message[80];
@@ -38,7 +38,7 @@ static bool is_text(const char *path, const char *text, size_t n, errors *e)
     return text_error(e, path, text, line, column, message);
 }
 
-/* The bytes of the file, or of the text, with a 0 behind them; owned. NULL: an error is in *e. */
+/* A copy of the file, or of `text`, ended by a 0. The caller frees it. NULL: an error is added. */
 static char *read_bytes(const char *path, const char *text, size_t *size, errors *e)
 {
     FILE *f = text ? NULL : fopen(path, "rb");

@@ -1,4 +1,4 @@
-/* The document behind yaml.h, as its parts share it. Private to the yaml files. */
+/* The loaded document: the struct and functions that the files of this room share. Private to them. */
 #ifndef KAGE_YAML_DOCUMENT_H
 #define KAGE_YAML_DOCUMENT_H
 
@@ -8,11 +8,11 @@ struct fy_diag;
 struct fy_diag_error;
 struct fy_document;
 
-/* Where a node and its contents come from; attached to nodes that a --set made, and to those around them. */
+/* Where a node comes from. Attached as libfyaml's "meta" to nodes that a --set made and to those that contain them. */
 typedef struct origin {
     const char *set; /* NULL: the file */
-    int start;       /* the column at which the text that libfyaml saw begins in it */
-    bool placed;     /* line and column are set, since libfyaml loses the place of a node that is changed */
+    int start;       /* column in `set` at which the text given to libfyaml begins */
+    bool placed;     /* line and column are set, as libfyaml loses the place of a changed node */
     int line, column;
 } origin;
 
@@ -32,7 +32,7 @@ struct yaml {
 /* The next error that libfyaml has collected, NULL where there is none. */
 struct fy_diag_error *yaml_report(yaml *y);
 
-/* Where a node comes from; NULL: as it stands in the file. */
+/* The origin of a node or of the nearest node around it that has one. NULL: the file. */
 const origin *yaml_origin(node *at);
 
 /* A node's line and column, from 1, in the file or in the value of a --set. */
@@ -41,10 +41,10 @@ void yaml_place(yaml *y, node *at, int *line, int *column);
 /* Add an error at a place in the file (o: NULL) or in a --set. Always false. */
 bool yaml_add_error(yaml *y, const origin *o, int line, int column, const char *message);
 
-/* Add the first error that libfyaml has found in the text; those after it mostly follow from it. Always false. */
+/* Add the first syntax error that libfyaml found; later ones are mostly consequences of it. Always false. */
 bool yaml_syntax_errors(yaml *y, const origin *o);
 
-/* Make the changes to the loaded document. A wrong one adds an error, and the next is made. False: out of memory. */
+/* Make the changes to the loaded document. A wrong one adds an error and is skipped. False: out of memory. */
 bool yaml_change(yaml *y, int sets, const char *const *set, const char *optional);
 
 #endif

@@ -1,4 +1,4 @@
-/* Errors with their places: where in the file, or in a --set, a node is; and errors of syntax, which libfyaml finds. */
+/* Errors at nodes: finds the line and column of a node in the file or in a --set. Rewords libfyaml's syntax errors. */
 #include "yaml/document.h"
 
 #include <libfyaml.h>
@@ -17,7 +17,7 @@ struct fy_diag_error *yaml_report(yaml *y)
     return k;
 }
 
-/* libfyaml knows where a node begins; it is asked by letting it collect a report about the node. */
+/* The only way to get a node's place from libfyaml is a report about the node. */
 static bool own_place(yaml *y, node *at, int *line, int *column)
 {
     struct fy_diag_error *k;
@@ -55,7 +55,7 @@ static node *key_of(node *map, node *value)
     return NULL;
 }
 
-/* An empty value has no place, nor has a map that begins with one: it is that of its key, or of what is around it. */
+/* An empty value has no place, nor has a map that begins with one. It gets that of its key, or of its parent. */
 void yaml_place(yaml *y, node *at, int *line, int *column)
 {
     *line = *column = 1;
@@ -90,7 +90,7 @@ bool yaml_add_error(yaml *y, const origin *o, int line, int column, const char *
     return text_error(y->errors, set ? "--set" : y->path, set ? o->set : y->text, line, column, message);
 }
 
-static bool error_at(yaml *y, node *at, size_t offset, const char *fmt, va_list args)
+bool yaml_error_in(yaml *y, node *at, size_t offset, const char *fmt, ...)
 {
     char message[1024];
     int line = 1, column = 1;
@@ -98,7 +98,10 @@ static bool error_at(yaml *y, node *at, size_t offset, const char *fmt, va_list 
         y->errors->count++;
         return false;
     }
+    va_list args;
+    va_start(args, fmt);
     vsnprintf(message, sizeof message, fmt, args);
+    va_end(args);
     const origin *o = yaml_origin(at);
     struct fy_token *token = offset && fy_node_is_scalar(at) ? fy_node_get_scalar_token(at) : NULL;
     const struct fy_mark *mark = token ? fy_token_start_mark(token) : NULL;
@@ -109,24 +112,6 @@ static bool error_at(yaml *y, node *at, size_t offset, const char *fmt, va_list 
         text_place(text, text_offset(text, mark->input_pos, style_of(token), offset), &line, &column);
     }
     return yaml_add_error(y, o, line, column, message);
-}
-
-bool yaml_error_in(yaml *y, node *at, size_t offset, const char *fmt, ...)
-{
-    va_list args;
-    va_start(args, fmt);
-    error_at(y, at, offset, fmt, args);
-    va_end(args);
-    return false;
-}
-
-bool yaml_error(yaml *y, node *at, const char *fmt, ...)
-{
-    va_list args;
-    va_start(args, fmt);
-    error_at(y, at, 0, fmt, args);
-    va_end(args);
-    return false;
 }
 
 /* ---- syntax ---- */
@@ -150,12 +135,14 @@ static const char *reworded(const char *message)
 
 bool yaml_syntax_errors(yaml *y, const origin *o)
 {
-    struct fy_diag_error *k;
-    bool added = false;
-    while ((k = yaml_report(y)))
-        if (k->line >= 1 && !added) {
-            yaml_add_error(y, o, k->line, k->column, reworded(k->msg));
-            added = true;
-        }
-    return added ? false : yaml_add_error(y, o, 1, 1, o ? "no value here" : "no scene here, only comments");
+    struct fy_diag_error *k = yaml_report(y);
+    while (k && k->line < 1)
+        k = yaml_report(y);
+    yaml_add_error(y, o, k ? k->line : 1, k ? k->column : 1,
+                   k   ? reworded(k->msg)
+                   : o ? "no value here"
+                       : "no scene here, only comments");
+    while (k)
+        k = yaml_report(y);
+    return false;
 }

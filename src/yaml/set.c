@@ -1,5 +1,4 @@
-/* --set: changes of the document. New nodes remember the setting that they came from, which errors in them then show.
- */
+/* --set: changes of the document. Each new node stores the setting that it comes from, for errors in it. */
 #include "yaml/document.h"
 
 #include <libfyaml.h>
@@ -38,7 +37,7 @@ static bool set_error(yaml *y, const char *set, const char *at, const char *fmt,
     return yaml_add_error(y, &(origin){set, 1, true, line, column}, line, column, message);
 }
 
-/* Before something in a node changes: keep its place, and those of the nodes around it. */
+/* Call before a node changes: stores its place, and those of the nodes that contain it. */
 static void keep_places(yaml *y, node *at)
 {
     for (; at; at = fy_node_get_parent(at)) {
@@ -58,11 +57,11 @@ static void keep_places(yaml *y, node *at)
     }
 }
 
-/* A new node from a part of a setting, with its origin. NULL: an error is added. */
+/* Parse the part of a setting at `at`: a key of n letters, or the value to the end. NULL: an error is added. */
 static node *made(yaml *y, const char *set, const char *at, size_t n, bool key)
 {
     int line, column;
-    char *quoted = key ? malloc(n + 3) : NULL; /* the document's, once it is parsed */
+    char *quoted = key ? malloc(n + 3) : NULL; /* owned by the document once parsed */
     if (key && !quoted) {
         errors_add(y->errors, "out of memory");
         return NULL;
@@ -90,8 +89,8 @@ static bool append(yaml *y, const char *set, const char *at, size_t n, node *map
     return (key && fy_node_mapping_append(map, key, value) == 0) || set_error(y, set, at, "can't be set");
 }
 
-/* The node that the first n letters of k lead to from a node; NULL where there is none, with an error where it can't be
- * added either. *index: its place in a list, else -1. */
+/* One step down the path: from `at` by the name of n letters at k. *next: the node there, NULL where the last name is
+ * new; *index: its place in a list, else -1. False: an error is added. */
 static bool step(yaml *y, const char *set, const char *k, size_t n, node *at, const char *optional, node **next,
                  int *index)
 {

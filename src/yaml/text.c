@@ -1,4 +1,4 @@
-/* Places in a text, and how an error shows one. */
+/* Lines and columns of a text, the excerpt that an error shows, and how a scalar's value maps to its written form. */
 #include "yaml/text.h"
 
 #include <stdio.h>
@@ -32,7 +32,7 @@ size_t text_not_utf8(const char *text, size_t size)
     return at;
 }
 
-/* Copy what fits of at most `most` bytes, whole characters only, control characters as '?'. */
+/* Copy at most `most` bytes into `room` bytes: whole characters only, control characters as '?'. */
 static void copy_shown(char *to, size_t room, const char *from, size_t most)
 {
     size_t at = 0, out = 0;
@@ -70,7 +70,7 @@ void text_place(const char *text, size_t at, int *line, int *column)
 bool text_error(errors *e, const char *name, const char *text, int line, int column, const char *message)
 {
     enum { BEFORE = 60, SHOWN = 150, BYTES = 4 };
-    char shown_message[1024], excerpt[SHOWN * BYTES + 1], blank[SHOWN + 1];
+    char shown_message[1024], shown[SHOWN * BYTES + 1], blank[SHOWN + 1], excerpt[sizeof shown + sizeof blank + 32];
     const char *from = text;
     copy_shown(shown_message, sizeof shown_message, message, strlen(message));
     for (int k = 1; k < line; k++) {
@@ -101,13 +101,14 @@ bool text_error(errors *e, const char *name, const char *text, int line, int col
         if (!is_tail(*c))
             blank[pad++] = *c == '\t' ? '\t' : ' ';
     blank[pad] = 0;
-    copy_shown(excerpt, sizeof excerpt, from, length);
-    return errors_add_at(e, name, line, column, shown_message, "\n%5d | %s\n      | %s^", line, excerpt, blank);
+    copy_shown(shown, sizeof shown, from, length);
+    snprintf(excerpt, sizeof excerpt, "\n%5d | %s\n      | %s^", line, shown, blank);
+    return errors_add_at(e, name, line, column, shown_message, excerpt);
 }
 
 /* ---- scalars ---- */
 
-/* Bytes that an escape in double quotes is written in, and bytes of UTF-8 that it stands for. */
+/* The length of an escape at s in double quotes. *made: the bytes of UTF-8 that it stands for. */
 static size_t escape(const char *s, size_t *made)
 {
     const char c = s[1];
@@ -130,8 +131,7 @@ static size_t escape(const char *s, size_t *made)
     return c ? 2 + strlen(digits) : 1;
 }
 
-/* Bytes of a run of blanks and line ends: where it holds a line end it is folded to one blank, or to the empty lines.
- */
+/* The length of a run of blanks and line ends. *made: the bytes of its value, where YAML folds lines. */
 static size_t fold(const char *s, size_t *made)
 {
     size_t n = strspn(s, " \t"), lines = 0;

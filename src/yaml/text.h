@@ -1,4 +1,4 @@
-/* Places in a text: lines and columns, and what an error shows of them. Nothing here knows libfyaml. */
+/* Lines and columns of a text, and errors that show them. Independent of libfyaml. */
 #ifndef KAGE_YAML_TEXT_H
 #define KAGE_YAML_TEXT_H
 
@@ -9,9 +9,8 @@
 /* How a scalar is written. */
 typedef enum scalar_style { SCALAR_PLAIN, SCALAR_SINGLE, SCALAR_DOUBLE, SCALAR_LITERAL, SCALAR_FOLDED } scalar_style;
 
-/* Where in the text the byte `offset` of a scalar's value is written. `start`: where the scalar's own text begins,
- * behind an opening quote, at the first line of a block. Undoes escapes, doubled quotes, folded lines and indentation.
- */
+/* The byte of `text` at which byte `offset` of a scalar's value is written: past escapes, doubled quotes, folded lines
+ * and indentation. `start`: after the opening quote, or at the first line of a block. */
 size_t text_offset(const char *text, size_t start, scalar_style style, size_t offset);
 
 /* Line and column, from 1, of a byte of the text. A column is a character (UTF-8); \n, \r\n and \r end a line. */
@@ -21,7 +20,7 @@ void text_place(const char *text, size_t at, int *line, int *column);
  * characters become '?': a scene must not steer the terminal. Always false. */
 bool text_error(errors *e, const char *name, const char *text, int line, int column, const char *message);
 
-/* The first byte that is no UTF-8, or `size`. */
+/* The index of the first byte that is not UTF-8, or `size`. */
 size_t text_not_utf8(const char *text, size_t size);
 
 #endif

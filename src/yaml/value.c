@@ -1,4 +1,4 @@
-/* The typed getters: each checks the value that it returns, and says in its error what it expected. */
+/* The typed getters. Each checks its value; its error names what was expected. */
 #include "yaml/document.h"
 
 #include <libfyaml.h>
@@ -8,10 +8,13 @@
 
 #include "base/spelling.h"
 
-static bool is_empty(node *at)
+/* A scalar's text, "" where it is empty, as a missing value (at: NULL) is. NULL: no scalar. */
+static const char *text_of(node *at)
 {
-    const char *text = fy_node_is_scalar(at) ? fy_node_get_scalar0(at) : NULL;
-    return fy_node_is_scalar(at) && !fy_node_is_alias(at) && !(text && *text);
+    if (!fy_node_is_scalar(at) || fy_node_is_alias(at))
+        return NULL;
+    const char *text = fy_node_get_scalar0(at);
+    return text ? text : "";
 }
 
 static const char *kind_of(node *at)
@@ -22,13 +25,15 @@ static const char *kind_of(node *at)
         return "a map";
     if (fy_node_is_sequence(at))
         return "a list";
-    return is_empty(at) ? "nothing here" : "a single value";
+    const char *text = text_of(at);
+    return text && !*text ? "nothing here" : "a single value";
 }
 
 bool yaml_map(yaml *y, node *at, const char *what, const char *keys)
 {
+    const char *single = text_of(at);
     if (!fy_node_is_mapping(at))
-        return yaml_error(y, at, "%s is %s, expected a map", what, is_empty(at) ? "empty" : kind_of(at));
+        return yaml_error(y, at, "%s is %s, expected a map", what, single && !*single ? "empty" : kind_of(at));
     bool good = true;
     unsigned seen = 0;
     void *next = NULL;
@@ -36,7 +41,7 @@ bool yaml_map(yaml *y, node *at, const char *what, const char *keys)
     while (keys && (p = fy_node_mapping_iterate(at, &next))) {
         char near[64];
         node *key = fy_node_pair_key(p);
-        const char *text = key && fy_node_is_scalar(key) && !fy_node_is_alias(key) ? fy_node_get_scalar0(key) : NULL;
+        const char *text = text_of(key);
         int k = text ? spelling_among(text, keys) : -1;
         if (k >= 0 && !(seen & 1u << k)) {
             seen |= 1u << k;
@@ -45,7 +50,7 @@ bool yaml_map(yaml *y, node *at, const char *what, const char *keys)
         spelling_nearest(text ? text : "", keys, near, sizeof near);
         if (k >= 0)
             good = yaml_error(y, key, "a second '%s' in %s, expected one", text, what);
-        else if (!text)
+        else if (!text || !*text)
             good =
                 yaml_error(y, key ? key : at, "%s as a key, expected one of: %s", key ? kind_of(key) : "nothing", keys);
         else if (*near)
@@ -83,20 +88,11 @@ node *yaml_pair(node *map, int i, node **key)
     return fy_node_pair_value(p);
 }
 
-static bool scalar(yaml *y, node *at, const char *what)
-{
-    if (at && fy_node_is_scalar(at) && !fy_node_is_alias(at))
-        return true;
-    return yaml_error(y, at, "%s, expected %s", kind_of(at), what);
-}
-
 const char *yaml_text(yaml *y, node *at, const char *what)
 {
-    if (!scalar(y, at, what))
-        return NULL;
-    const char *text = fy_node_get_scalar0(at);
+    const char *text = text_of(at);
     if (!text || !*text) {
-        yaml_error(y, at, "nothing here, expected %s", what);
+        yaml_error(y, at, "%s, expected %s", kind_of(at), what);
         return NULL;
     }
     char **more = realloc(y->scalars, sizeof *more * (size_t)(y->count + 1)), *copy = strdup(text);
@@ -122,13 +118,12 @@ static bool number(const char *text, double *x)
 
 bool yaml_number(yaml *y, node *at, double lo, bool open, double hi, const char *what, double *x)
 {
-    if (!scalar(y, at, what))
-        return false;
-    const char *text = fy_node_get_scalar0(at);
+    const char *text = text_of(at);
     double v;
-    if (!text || !number(text, &v))
-        return yaml_error(y, at, "%s%.60s%s, expected %s", text && *text ? "'" : "", text && *text ? text : "nothing",
-                          text && *text ? "' is no number" : " here", what);
+    if (!text || !*text)
+        return yaml_error(y, at, "%s, expected %s", kind_of(at), what);
+    if (!number(text, &v))
+        return yaml_error(y, at, "'%.60s' is no number, expected %s", text, what);
     if (v < lo || v > hi)
         return yaml_error(y, at, "%.60s is %s than %.7g, expected %s", text, v < lo ? "less" : "more", v < lo ? lo : hi,
                           what);
@@ -140,7 +135,7 @@ bool yaml_number(yaml *y, node *at, double lo, bool open, double hi, const char 
 
 bool yaml_whole(yaml *y, node *at, int lo, int hi, const char *what, int *x)
 {
-    double v;
+    double v = 0;
     if (!yaml_number(y, at, lo, false, hi, what, &v))
         return false;
     if (v != floor(v))

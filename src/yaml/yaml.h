@@ -21,31 +21,31 @@ typedef struct yaml yaml;
 
 enum { YAML_MAX_BYTES = 1 << 22 };
 
-/* Read the file at `path`, or the text of that name and of `size` bytes where `text` is not NULL, and make the changes
- * PATH=VALUE (PATH: keys and indices with dots between them; VALUE: YAML). A change may go into the maps at the top
- * named in `optional` also where the file has none. Errors go to e, from now on. NULL where there is no document to go
- * on with. */
+/* Read the file at `path`, or `text` of `size` bytes if that is not NULL (then `path` is only its name), and make the
+ * changes PATH=VALUE (PATH: keys and indices with dots between them; VALUE: YAML). A change may create the top-level
+ * maps named in `optional`. Errors go to e, until yaml_close. NULL: there is no document. One thread at a time. */
 yaml *yaml_open(const char *path, const char *text, size_t size, int sets, const char *const *set, const char *optional,
                 errors *e);
 void yaml_close(yaml *y);
 
 node *yaml_root(const yaml *y);
-const char *yaml_source(const yaml *y); /* the file's text; the yaml's */
+const char *yaml_source(const yaml *y); /* the file's text, owned by y */
 
-/* Add an error about a node. `offset`: characters into its text. Always false. */
-bool yaml_error(yaml *y, node *at, const char *fmt, ...) KAGE_PRINTF(3, 4);
+/* Add an error about a node, or about the byte `offset` of its text. Always false. */
+#define yaml_error(y, at, ...) yaml_error_in(y, at, 0, __VA_ARGS__)
 bool yaml_error_in(yaml *y, node *at, size_t offset, const char *fmt, ...) KAGE_PRINTF(4, 5);
 
-/* Maps. `yaml_map` checks that the node is one with no other keys than `keys` (separated by spaces, any where NULL). */
+/* Maps. `yaml_map` checks that the node is a map with no keys but `keys` (separated by spaces; NULL: any). In this
+ * and other functions `what` names the map or the value expected, for the message. */
 bool yaml_map(yaml *y, node *at, const char *what, const char *keys);
 bool yaml_is_map(node *at);
-node *yaml_get(node *map, const char *key);   /* NULL: not there */
-node *yaml_first(node *map, const char *key); /* the key itself; of several of that name the first */
+node *yaml_get(node *map, const char *key);                             /* NULL: not there */
+node *yaml_first(node *map, const char *key);                           /* the node of the key, not of its value */
 node *yaml_need(yaml *y, node *map, const char *key, const char *what); /* NULL, with an error: not there */
 int yaml_size(node *map);
 node *yaml_pair(node *map, int i, node **key);
 
-/* Scalars. The texts are the yaml's. `what` names the value expected, for the message. */
+/* Scalars. y owns the texts. NULL or false, with an error: not such a scalar. */
 const char *yaml_text(yaml *y, node *at, const char *what);
 
 /* A number lo <= x <= hi; `open`: lo < x. */

@@ -15,8 +15,9 @@ static void test_range_holds(void **state)
         expr *e = random_parsed(text, 1 + i % 4, false);
         double size = i % 3 == 0 ? 0.05 : i % 3 == 1 ? 1 : 30;
         double u0 = draw_in(-2, 2), w0 = draw_in(-2, 2), u1 = u0 + draw_in(0, size), w1 = w0 + draw_in(0, size);
-        double lo, hi;
-        expr_bound_value(e, u0, u1, w0, w1, &lo, &hi);
+        expr_bounds b;
+        expr_bound_gradient(e, u0, u1, w0, w1, &b);
+        const double lo = b.v[0], hi = b.v[1];
         CHECK(lo, <=, hi);
         finite += isfinite(lo) && isfinite(hi);
         for (int k = 0; k < 40; k++) {
@@ -37,8 +38,9 @@ static void test_range_holds(void **state)
 static void check_range(const char *text, double u0, double u1, double w0, double w1, double lo, double hi)
 {
     expr *e = parse(text);
-    double l, h;
-    expr_bound_value(e, u0, u1, w0, w1, &l, &h);
+    expr_bounds b;
+    expr_bound_gradient(e, u0, u1, w0, w1, &b);
+    const double l = b.v[0], h = b.v[1];
     double slack = 1e-13;
     bool low = l == lo || (l <= lo && l >= lo - slack * (1 + fabs(lo)));
     bool high = h == hi || (h >= hi && h <= hi + slack * (1 + fabs(hi)));
@@ -129,16 +131,13 @@ static void check_gradient_in(const char *text, const expr *e, const double u[2]
 {
     expr_bounds b, same;
     expr_hessians bend;
-    double lo, hi;
     expr_bound_gradient(e, u[0], u[1], w[0], w[1], &b);
     expr_bound_hessian(e, u[0], u[1], w[0], w[1], &same, &bend);
     assert_memory_equal(&same, &b, sizeof b);
     CHECK(bend.uu[0], <=, bend.uu[1]);
     CHECK(bend.uw[0], <=, bend.uw[1]);
     CHECK(bend.ww[0], <=, bend.ww[1]);
-    expr_bound_value(e, u[0], u[1], w[0], w[1], &lo, &hi);
-    CHECK(b.v[0], ==, lo);
-    CHECK(b.v[1], ==, hi);
+    CHECK(b.v[0], <=, b.v[1]);
     CHECK(b.u[0], <=, b.u[1]);
     CHECK(b.w[0], <=, b.w[1]); /* so none is NaN */
     for (int k = 0; k < 40; k++) {

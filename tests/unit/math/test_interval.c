@@ -4,7 +4,6 @@
 
 #include "math/interval.h"
 #include "math/noise.h"
-#include "math/noise_bounds.h"
 #include "support/random_in.h"
 
 enum { TRIES = 3000, PLACES = 60 };
