@@ -62,8 +62,8 @@ struct patch {
     int threads;       /* that share making it ready (piece.c); 0: all processors */
 };
 
-/* Q from three expressions over u[0]..u[1], w[0]..w[1]. Owns them, also on failure. `kind` must outlive it. NULL: out
- * of memory. */
+/* Q from three expressions over u[0]..u[1], w[0]..w[1]. Owns them, also on failure. `kind` must outlive it. NULL: an
+ * expression is NULL, or out of memory. */
 patch *patch_function_new(const char *kind, expr *const xyz[3], const double u[2], const double w[2]);
 
 /* Bicubic Bezier patches, each a part over 0..1 in u and in w, from 16 control points each: point 4 j + i goes with the

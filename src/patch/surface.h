@@ -31,26 +31,24 @@ surface *patch_surface_new_bounded(patch *q, bool *bounded);
  * patch_surface_new. */
 surface *patch_surface_affine(const surface *from, const affine *m);
 
-/* A closed form's formula as a patch surface (formula.c); kind: a constant. threads: as patch.threads. NULL: out of
+/* A closed form's formula as a patch surface; kind: a constant. threads: as patch.threads. NULL: out of
  * memory. */
 surface *patch_surface_formula(const char *kind, const form_formula *f, int threads);
 
-/* As patch_surface_new, with pieces as flat as that (pieces_of). */
-patch_surface *patch_surface_make(patch *q, double flat);
+/* As patch_surface_new_bounded, with the flatness of its pieces (pieces_of). */
+patch_surface *patch_surface_make(patch *q, double flat, bool *bounded);
 
 /* Counts of work: evaluations of the patch, and hits that are not proved to be the first. */
 typedef struct patch_counts {
     long evaluations, unsure;
 } patch_counts;
 
-/* The methods of a patch surface that count: work is added to *c. */
-void patch_surface_intersect(const patch_surface *f, int n, const rays *x, int32_t id, hits *h, patch_counts *c);
-void patch_surface_intersect_own(const patch_surface *f, int n, const rays *x, const ray_origins *from, int32_t id,
-                                 hits *h, patch_counts *c);
-void patch_surface_occlude(const patch_surface *f, int n, const rays *x, real *lit, patch_counts *c);
-/* part: of each start; NULL: any part. */
-void patch_surface_occlude_own(const patch_surface *f, int n, const rays *x, const int32_t *part, real *lit,
-                               patch_counts *c);
+/* Hits of rays and shadows of segments, as the members of surface_ops; work is added to *c. from: NULL where no ray
+ * starts on the surface. own: whether all segments do, and then part[i], or NULL: on any part. */
+void patch_surface_intersect(const patch_surface *f, int n, const rays *x, const ray_origins *from, int32_t id, hits *h,
+                             patch_counts *c);
+void patch_surface_occlude(const patch_surface *f, int n, const rays *x, bool own, const int32_t *part, real *lit,
+                           patch_counts *c);
 
 /* In partials.c: as the member of surface_ops. */
 void patch_surface_eval(const surface *base, int n, const int32_t *part, const real *u, const real *w, int order,
