@@ -3,6 +3,7 @@
 #define KAGE_DISPLACED_FORM_H
 
 #include "displaced/displaced.h"
+#include "patch/patch.h"
 
 typedef struct displaced_form {
     /* Whether it is for this smooth surface. */
@@ -19,6 +20,10 @@ typedef struct displaced_form {
      * said, and may be corrected. */
     void (*closest)(const displaced *d, int n, const rays *x, const real *t, int32_t *part, closest_points *p);
 } displaced_form;
+
+/* In offset_patch.c: X = Q + P n/|n| over a patch Q, n = Qu x Qw; both must outlive it. It is evaluated to order 1
+ * only, and has no Hessian bounds. NULL: out of memory. */
+patch *patch_offset_new(const patch *q, const bump *P);
 
 extern const displaced_form displaced_over_closed, displaced_over_patch, displaced_over_mesh;
 

@@ -2,7 +2,6 @@
 #include "displaced/form.h"
 
 #include "displaced/offset.h"
-#include "displaced/offset_patch.h"
 #include "patch/surface.h"
 
 /* Of X's pieces. Coarser than a smooth patch's: where slopes of P turn, halving pays only where a ray comes. */

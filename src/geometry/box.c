@@ -213,14 +213,6 @@ static void box_lipschitz(const surface *base, int part, int n, const rays *x, c
     }
 }
 
-static void box_extent(const surface *base, int part, double u[2], double w[2])
-{
-    (void)base;
-    (void)part;
-    u[0] = w[0] = 0;
-    u[1] = w[1] = 1;
-}
-
 static void box_box(const surface *base, double lo[3], double hi[3])
 {
     const box *f = (const box *)base;
@@ -238,7 +230,7 @@ static const surface_ops box_methods = {
     .eval = box_eval,
     .occlude = box_occlude,
     .occlude_own = box_occlude_own,
-    .extent = box_extent,
+    .extent = extent_unit,
     .box = box_box,
     .parts = 6,
     .bound = box_bound,

@@ -54,8 +54,7 @@ STAGE static void ellipsoid_hit(const surface *base, int n, const rays *x, int32
         int met = roots_of(ray_of(&f, &x->r, &x->s, i), &t0, &t1);
         real t = t0 > 0 ? t0 : t1;
         int take = met & (t > 0) & (t < h->t[i]);
-        h->t[i] = take ? t : h->t[i];
-        h->id[i] = take ? id : h->id[i];
+        hits_take(h, i, take, t, id);
     }
 }
 
@@ -68,8 +67,7 @@ STAGE static void ellipsoid_hit_own(const surface *base, int n, const rays *x, c
         int met = roots_of(ray_of(&f, &x->r, &x->s, i), &t0, &t1), own = from->id[i] == id;
         real far = far_root(ray_of(&f, &from->at, &x->s, i)), near = t0 > 0 ? t0 : t1, t = own ? far : near;
         int take = (met | own) & (t > 0) & (t < h->t[i]);
-        h->t[i] = take ? t : h->t[i];
-        h->id[i] = take ? id : h->id[i];
+        hits_take(h, i, take, t, id);
     }
 }
 
@@ -140,16 +138,6 @@ STAGE static void ellipsoid_occlude_own(const surface *base, int n, const rays *
     }
 }
 
-static void ellipsoid_extent(const surface *base, int part, double u[2], double w[2])
-{
-    (void)base;
-    (void)part;
-    u[0] = -KM_PI;
-    u[1] = KM_PI;
-    w[0] = 0;
-    w[1] = KM_PI;
-}
-
 static void ellipsoid_box(const surface *base, double lo[3], double hi[3])
 {
     const ellipsoid *f = (const ellipsoid *)base;
@@ -167,7 +155,7 @@ static const surface_ops ellipsoid_methods = {
     .eval = ellipsoid_eval,
     .occlude = ellipsoid_occlude,
     .occlude_own = ellipsoid_occlude_own,
-    .extent = ellipsoid_extent,
+    .extent = extent_polar,
     .box = ellipsoid_box,
     .parts = 1,
 };
@@ -199,7 +187,7 @@ static surface *make_ellipsoid(const shape_values *v, form_fault *fault)
 
 static bool ellipsoid_formula(const shape_values *v, form_formula *out)
 {
-    ellipsoid_extent(NULL, 0, out->u, out->w);
+    extent_polar(NULL, 0, out->u, out->w);
     snprintf(out->xyz[0], sizeof out->xyz[0], "%.17g*sin(w)*cos(u)", v->v[1].x);
     snprintf(out->xyz[1], sizeof out->xyz[1], "%.17g*cos(w)", v->v[1].y);
     snprintf(out->xyz[2], sizeof out->xyz[2], "%.17g*sin(w)*sin(u)", v->v[1].z);

@@ -298,7 +298,7 @@ static bool box_image(transformed *f, const affine *m)
     return good;
 }
 
-static void choose_methods(transformed *f, double scale)
+static void choose_methods(transformed *f)
 {
     f->base.ops = &f->methods;
     f->methods = *f->from->ops;
@@ -310,7 +310,7 @@ static void choose_methods(transformed *f, double scale)
     f->methods.occlude_own = f->from->ops->occlude_own ? transformed_occlude_own : NULL;
     f->methods.extent = transformed_extent;
     f->methods.box = transformed_box;
-    const bool known = scale > 0 && f->from->ops->closest;
+    const bool known = f->scale > 0 && f->from->ops->closest;
     f->methods.bound = known ? similar_bound : NULL;
     f->methods.closest = known ? similar_closest : NULL;
     f->methods.lipschitz = known ? similar_lipschitz : NULL;
@@ -342,7 +342,7 @@ surface *surface_transformed(const surface *from, const affine *m)
     vec3_round(f->o, m->o);
     f->scale = (real)scale;
     f->over = scale > 0 ? (real)(1 / scale) : 0;
-    choose_methods(f, scale);
+    choose_methods(f);
     if (is(from, "box") && !box_image(f, m)) {
         free(f);
         return NULL;

@@ -13,6 +13,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -145,12 +146,8 @@ static bool can_open(const char *path, size_t *size, char why[MESH_WHY])
     static const char *const ends[] = {".obj", ".ply", ".stl", ".gltf", ".glb", ".off"};
     const char *dot = strrchr(path, '.');
     bool known = false;
-    for (size_t k = 0; dot && k < sizeof ends / sizeof *ends; k++) {
-        size_t i = 0;
-        while (dot[i] && (i == 0 || (dot[i] | 0x20) == ends[k][i]))
-            i++;
-        known |= !dot[i] && !ends[k][i];
-    }
+    for (size_t k = 0; dot && k < sizeof ends / sizeof *ends; k++)
+        known |= strcasecmp(dot, ends[k]) == 0;
     FILE *f = fopen(path, "rb");
     struct stat about;
     if (!f || fstat(fileno(f), &about) != 0)
@@ -191,14 +188,10 @@ static int start(const char *program, const char *path, int to, pid_t *pid)
         error = posix_spawn_file_actions_adddup2(&ends, to, LETTER_FD);
         for (int k = 0; k < 3 && !error; k++)
             error = posix_spawn_file_actions_addopen(&ends, k, "/dev/null", O_RDWR, 0);
-        if (!error)
-            error = posix_spawnattr_setsigmask(&how, &none);
-        if (!error)
-            error = posix_spawnattr_setsigdefault(&how, &usual);
-        if (!error)
-            error = posix_spawnattr_setflags(&how, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
-        if (!error)
-            error = posix_spawn(pid, program, &ends, &how, argv, environ);
+        error = error ? error : posix_spawnattr_setsigmask(&how, &none);
+        error = error ? error : posix_spawnattr_setsigdefault(&how, &usual);
+        error = error ? error : posix_spawnattr_setflags(&how, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
+        error = error ? error : posix_spawn(pid, program, &ends, &how, argv, environ);
         posix_spawnattr_destroy(&how);
     }
     posix_spawn_file_actions_destroy(&ends);

@@ -69,10 +69,8 @@ static void mesh_extent(const surface *base, int part, double u[2], double w[2])
 {
     const mesh *f = (const mesh *)base;
     (void)part;
-    for (int k = 0; k < 2; k++) {
-        u[k] = f->u[k];
-        w[k] = f->w[k];
-    }
+    memcpy(u, f->u, sizeof f->u);
+    memcpy(w, f->w, sizeof f->w);
 }
 
 /* ---- making one ---- */
