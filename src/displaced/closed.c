@@ -1,12 +1,11 @@
-/* Displaced surfaces over surfaces whose closest points have closed forms: the members bound, closest and
- * lipschitz of surface_ops. Each part of the surface is searched as if it alone were there. */
+/* Displaced surfaces over those whose closest points have closed forms: the members bound, closest and lipschitz of
+ * surface_ops. Each part of the surface is searched alone, by march.h. */
 #include "displaced/form.h"
 #include "displaced/march.h"
 #include "wave/lane.h"
 
-enum {
-    STEPS = 4096
-}; /* of a search along one ray: its shortest step is this share of its stretch, far below a pixel */
+/* Of a search along one ray: its shortest step is the stretch over this, far below a pixel. */
+enum { STEPS = 4096 };
 
 /* A part of a surface, the same for every lane. */
 typedef struct part_domain {

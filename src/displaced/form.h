@@ -1,4 +1,5 @@
-/* How a displaced surface is found over one family of smooth surfaces. Private to displaced/. */
+/* How rays are intersected with displaced surfaces over one family of smooth ones: closed.c, patch.c, mesh.c. Private
+ * to displaced. */
 #ifndef KAGE_DISPLACED_FORM_H
 #define KAGE_DISPLACED_FORM_H
 
@@ -16,8 +17,8 @@ typedef struct displaced_form {
     void (*hit)(const displaced *d, int n, const rays *x, const ray_origins *from, int32_t id, hits *h);
     void (*occlude)(const displaced *d, int n, const rays *x, const int32_t *part, real *lit);
 
-    /* The closest points of the smooth surface to the hits r + s t, and the parts they are on: part[i] is what `hit`
-     * said, and may be corrected. */
+    /* The closest points of the smooth surface to the hits r + s t, and the parts they are on: part[i] comes in as
+     * `hit` has set it, and may be corrected. */
     void (*closest)(const displaced *d, int n, const rays *x, const real *t, int32_t *part, closest_points *p);
 } displaced_form;
 

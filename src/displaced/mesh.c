@@ -1,9 +1,9 @@
-/* Displaced surfaces over meshes: Q + P N over each triangle, N the unit of the normal between its corners. What stands
- * over a triangle is a prism whose sides two neighbours share where their normals at the common corners are the same:
- * there the displaced surface has no gap. It has one at a crease, and at a seam of the texture where P differs.
+/* Displaced surfaces over meshes: Q + P N over each triangle, N the unit normal interpolated between its corners. The
+ * space over a triangle is a prism (prism.h). Neighbours share its sides, and there is no gap between them, unless
+ * their normals differ (at a crease) or P does (at a seam of the texture).
  *
  * A ray is searched (march.h) over each triangle whose prism it may pass, many pairs of rays and triangles side by
- * side. The closest point to a place is that from which N leads to it, by Newton's iteration.
+ * side. The closest point to a place is that from which N points to it; Newton's iteration finds it.
  */
 #include "displaced/form.h"
 
@@ -99,8 +99,8 @@ static void triangles_lipschitz(const domain *g, int n, const int32_t *lane, con
     }
 }
 
-/* (u,w) of a place of the triangle, as far as it goes on, that is near the closest point: that itself where it is one.
- * So P goes on from there without a step, which a ray that comes by would cross. */
+/* (u,w) of the closest point, moved into the triangle with its overlap. So P is continuous beyond the triangle: a step
+ * of it would be hit by rays that pass. */
 static void triangles_within(const domain *g, int n, const int32_t *lane, const closest_points *p, real *u, real *w)
 {
     for (int i = 0; i < n; i++) {

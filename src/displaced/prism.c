@@ -1,4 +1,4 @@
-/* Prisms over triangles. N is the unit of what lies in a straight line between the corners' normals. */
+/* Prisms over triangles. N is the linear mean of the corners' normals, made a unit vector. */
 #include "displaced/prism.h"
 
 #include <math.h>

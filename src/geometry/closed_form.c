@@ -1,4 +1,4 @@
-/* The table of closed forms, and what all of them share. */
+/* The table of closed forms, and functions that several of them use. */
 #include "geometry/closed_form.h"
 #include "math/kmath.h"
 

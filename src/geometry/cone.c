@@ -298,7 +298,7 @@ surface *cone_new(vec3 from, double from_radius, vec3 to, double to_radius, bool
     return &f->base;
 }
 
-/* ---- as the scene file has them ---- */
+/* ---- in the scene file ---- */
 
 static const form_parameter cylinder_parameters[] = {
     {"from", FORM_PLACE, 0, "the middle of one end [x, y, z]"},

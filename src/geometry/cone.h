@@ -1,4 +1,4 @@
-/* Cones and cylinders as values. Private to cone.c and cone_shape.c. */
+/* The struct of cones and cylinders, and rays in its frame. Private to cone.c and cone_shape.c. */
 #ifndef KAGE_GEOMETRY_CONE_H
 #define KAGE_GEOMETRY_CONE_H
 

@@ -1,7 +1,7 @@
 /* Ellipsoid with its axes along the scene's: Q(u,w) = C + (a sin w cos u, b cos w, c sin w sin u).
  *
- * Divided by its radii, places and directions are those of a unit sphere at the origin, with the same t. It has no foot
- * of a perpendicular in closed form, so a displaced one is searched as a patch, by its formula.
+ * Relative to C and divided by the radii, it is the unit sphere, with the same t. Its closest points have no closed
+ * form, so true displacement takes it as a patch, by its formula.
  */
 #include "geometry/closed_form.h"
 #include "math/kmath.h"
@@ -14,7 +14,7 @@ typedef struct ellipsoid {
     real C[3], R[3], over[3]; /* the centre, the radii along x, y and z, 1/radius */
 } ellipsoid;
 
-/* A ray as the unit sphere has it. */
+/* A ray in the space of the unit sphere. */
 typedef struct unit_ray {
     real ox, oy, oz, dx, dy, dz;
 } unit_ray;
@@ -160,7 +160,7 @@ static const surface_ops ellipsoid_methods = {
     .parts = 1,
 };
 
-/* ---- as the scene file has it ---- */
+/* ---- in the scene file ---- */
 
 static const form_parameter ellipsoid_parameters[] = {
     {"center", FORM_PLACE, 0, "a place [x, y, z]"},

@@ -316,7 +316,7 @@ surface *disc_new(vec3 centre, vec3 normal, double radius)
     return &f->base;
 }
 
-/* ---- as the scene file has them ---- */
+/* ---- in the scene file ---- */
 
 static const form_parameter edges[] = {
     {"origin", FORM_PLACE, 0, "the place of u = w = 0, [x, y, z]"},

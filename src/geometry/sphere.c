@@ -134,8 +134,8 @@ STAGE static void sphere_occlude_own(const surface *base, int n, const rays *x, 
 
 /* ---- for true displacement ---- */
 
-/* The outer sphere's stretch. From within the inner one it begins at that one's far side; all others go through it, as
- * a ray that is below the rough surface already meets it on the far side only. */
+/* The stretch within the outer sphere. From within the inner sphere it begins at that one's far side. Other rays keep
+ * what is inside, as one that starts below the displaced surface meets it on the far side only. */
 STAGE static void sphere_bound(const surface *base, int part, int n, const rays *x, const real *restrict end, real Pmin,
                                real Pmax, real *restrict t0, real *restrict t1)
 {
@@ -231,7 +231,7 @@ surface *sphere_new(vec3 centre, double radius)
     return &f->base;
 }
 
-/* ---- as the scene file has it ---- */
+/* ---- in the scene file ---- */
 
 static const form_parameter sphere_parameters[] = {
     {"center", FORM_PLACE, 0, "a place [x, y, z]"},

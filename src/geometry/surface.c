@@ -1,4 +1,4 @@
-/* What all surfaces share: how one ends. */
+/* Frees a surface of any kind. */
 #include "geometry/surface.h"
 
 #include <stdlib.h>

@@ -1,5 +1,5 @@
-/* From what a file says to triangles that can be relied on: finite numbers, an area, and a unit normal at each corner
- * that does not face away. */
+/* Checks and repairs the triangles of a file. Afterwards numbers are finite, each triangle has an area, and each corner
+ * has a unit normal that does not face away. */
 #include "mesh/mesh_data.h"
 
 #include "base/vec3.h"
@@ -13,11 +13,11 @@
 #define FACING 0.05     /* the least cosine between a corner's normal and its triangle's: 87 degrees */
 #define TEXTURE 1e6     /* the largest texture coordinate: float leaves it a digit after the point */
 #define SHORTEST 1e-6   /* a normal, or a sum of unit normals, that is shorter has no direction in float */
-#define LONGEST 1e6     /* and a longer normal is no normal */
+#define LONGEST 1e6     /* a longer normal is ignored */
 #define SAME_ANGLE 1e-6 /* of cosines: float's coordinates determine them no better */
 
-/* Triangles about a vertex that are compared with each other. Beyond that the mean over all of them stands for every
- * corner, so that time stays linear. */
+/* Up to this many triangles about a vertex are compared with each other. With more, every corner gets the mean over
+ * all, so that time stays linear. */
 enum { FAN = 512 };
 
 /* (b - a) x (c - a) */
@@ -155,7 +155,7 @@ static vec3 weighted_normal(const mesh_data *d, int corner)
     return vec3_scale(vec3_unit(area_of(at)), km_acos(fmin(1, fmax(-1, cosine))));
 }
 
-/* Give the corners at one place that have no normal theirs. least: the cosine of the crease angle. */
+/* Set the normals of those corners at one place that have none. least: the cosine of the crease angle. */
 static void smooth_place(mesh_data *d, const int32_t *corner, int n, double least)
 {
     vec3 all = {0, 0, 0};

@@ -127,12 +127,12 @@ static const surface_ops methods = {
     .occlude_own = mesh_occlude_own,
     .extent = mesh_extent,
     .box = mesh_box,
-    .parts = 1, /* `part` is the triangle; nothing that is asked by part alone differs between them */
+    .parts = 1, /* though `part` is the triangle */
 };
 
 bool mesh_is(const surface *f) { return f->ops == &methods; }
 
-/* All that follows from triangles and texture coordinates. */
+/* Set all else from the triangles and their texture coordinates. */
 static surface *finish(mesh *f, const progress *w)
 {
     f->base.ops = &methods;

@@ -1,12 +1,12 @@
 /* Where a ray meets a patch: Q(u,w) = r + s t.
  *
- * The hierarchy names the pieces that the ray may meet. For each pair of ray and piece there is a proof that they miss
- * each other, or that they meet at most once (piece_intersect). Where neither is proved, as where the ray grazes, the
- * piece is subdivided for this ray. So no hit is lost, and none depends on how small the pieces are. Each pair that is
- * left has one root. Newton's iteration finds it in three or four steps, many pairs side by side.
+ * The hierarchy reports the pieces that the ray may meet. For each pair of ray and piece there is a proof that they
+ * miss each other, or that they meet at most once (piece_intersect). Where neither is proved, as where the ray grazes,
+ * the piece is subdivided for this ray. So no hit is lost, and none depends on how small the pieces are. Each pair that
+ * is left has one root. Newton's iteration finds it in three or four steps, many pairs side by side.
  *
- * A ray's first root depends neither on the order in which the hierarchy names pieces nor on the pieces that it names
- * in vain: the pictures are the same on every processor.
+ * A ray's first root depends neither on the order in which the hierarchy reports pieces nor on how many it reports too
+ * many: the pictures are the same on every processor.
  */
 #include "patch/query.h"
 
