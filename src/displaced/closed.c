@@ -86,7 +86,7 @@ static void closed_occlude(const displaced *d, int n, const rays *x, const int32
     real t[LANES], end[LANES];
     int32_t found[LANES], own[LANES];
     for (int i = 0; i < n; i++)
-        end[i] = lit[i] > 0 ? R(1) : R(-1); /* what is dark already need not be searched */
+        end[i] = lit[i] > 0 ? R(1) : R(-1); /* in shadow already: nothing to search */
     for (int part = 0; part < d->smooth->ops->parts; part++) {
         long uncertain = 0;
         for (int i = 0; i < n; i++)

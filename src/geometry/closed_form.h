@@ -100,12 +100,13 @@ extern const closed_form *const closed_forms[CLOSED_FORM_COUNT];
 /* The shape moved so that the middle of its places is in the origin; *middle: where it was. */
 shape_values shape_centred(const closed_form *form, const shape_values *v, vec3 *middle);
 
-/* The formula of a shape that turns about the frame's y: rho and y are functions of w alone, u is the angle from x to
- * z.
+/* In surface.c. The formula of a shape that turns about the frame's y: rho and y are functions of w alone, u is the
+ * angle from x to z.
  */
 void formula_revolve(form_formula *f, frame axes, const char *rho, const char *y);
 
-/* Two ranges of (u,w), as the member `extent` of surface_ops: 0..1 for both, and -pi..pi for u with 0..pi for w. */
+/* Also there. Two ranges of (u,w), as the member `extent` of surface_ops: 0..1 for both, and -pi..pi for u with 0..pi
+ * for w. */
 void extent_unit(const surface *f, int part, double u[2], double w[2]);
 void extent_polar(const surface *f, int part, double u[2], double w[2]);
 

@@ -189,8 +189,8 @@ STAGE static void cone_side_bound(const cone *restrict base, int n, const rays *
         cone_ray l = cone_local_of(&f, x, i);
         spans k = cone_spans(&f, outer, lo, hi, l), core = cone_spans(&f, inner, lo, hi, l);
         real in = real_max(k.from, k.in), out = real_min(k.to, k.out), from = real_max(in, 0);
-        /* Within the core the gap is below 0, so that a ray that has come in through the outer cone has met the rough
-         * side before it, unless the foot was beyond an end. */
+        /* Within the core the gap is below 0, so that a ray that has come in through the outer cone has met the
+         * displaced side before it, unless its closest point was beyond an end. */
         int crossed = exact & (inner > 0) & (core.in <= core.out) & (core.in > from) & (from == k.in);
         out = crossed ? real_min(core.in, out) : out;
         t0[i] = from;

@@ -171,7 +171,7 @@ FLAT_BOUND(plane, NOWHERE)
 FLAT_BOUND(rectangle, AT_SIDES)
 FLAT_BOUND(disc, AT_RIM)
 
-/* The dual basis is in the plane, so Du.(X - O) is u of the foot. */
+/* The dual basis is in the plane, so Du.(X - O) is u of the closest point. */
 STAGE static void plane_closest(const surface *base, int part, int n, const rays *x, const real *restrict t,
                                 closest_points *restrict p)
 {

@@ -134,8 +134,8 @@ STAGE static void sphere_occlude_own(const surface *base, int n, const rays *x, 
 
 /* ---- for true displacement ---- */
 
-/* The stretch within the outer sphere. From within the inner sphere it begins at that one's far side. Other rays keep
- * what is inside, as one that starts below the displaced surface meets it on the far side only. */
+/* The stretch within the outer sphere. From within the inner sphere it begins at that one's far side. Other stretches
+ * include the inner sphere, since a ray that starts below the displaced surface meets that on the far side only. */
 STAGE static void sphere_bound(const surface *base, int part, int n, const rays *x, const real *restrict end, real Pmin,
                                real Pmax, real *restrict t0, real *restrict t1)
 {

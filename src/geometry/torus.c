@@ -166,13 +166,6 @@ static const surface_ops torus_methods = {
     .lipschitz = torus_lipschitz,
 };
 
-static void store(double to[3], vec3 v)
-{
-    to[0] = v.x;
-    to[1] = v.y;
-    to[2] = v.z;
-}
-
 surface *torus_new(vec3 centre, vec3 axis, double major, double minor)
 {
     const double l = vec3_length(axis);
@@ -181,13 +174,13 @@ surface *torus_new(vec3 centre, vec3 axis, double major, double minor)
     if (!f)
         return NULL;
     const frame a = frame_about(axis);
-    f->base.ops = &torus_methods;
-    store(f->C, centre);
-    store(f->X, a.x);
-    store(f->Y, a.y);
-    store(f->Z, a.z);
-    f->M = major;
-    f->m = minor;
+    *f = (torus){.base = {&torus_methods, NULL},
+                 .C = {centre.x, centre.y, centre.z},
+                 .X = {a.x.x, a.x.y, a.x.z},
+                 .Y = {a.y.x, a.y.y, a.y.z},
+                 .Z = {a.z.x, a.z.y, a.z.z},
+                 .M = major,
+                 .m = minor};
     return &f->base;
 }
 

@@ -204,10 +204,10 @@ static void explain(const letter *l, int status, size_t size, char why[MESH_WHY]
     if (l->is == LETTER_WRONG)
         snprintf(why, MESH_WHY, "%s", l->why);
     else if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU)
-        snprintf(why, MESH_WHY, "reading it takes for ever, expected at most %d seconds",
+        snprintf(why, MESH_WHY, "reading it takes too long, expected at most %d seconds",
                  LETTER_SECONDS + (int)(size / MIB / LETTER_MIB_A_SECOND));
     else
-        snprintf(why, MESH_WHY, "its reader broke down over it, expected a sound file");
+        snprintf(why, MESH_WHY, "its reader failed, expected a valid file");
 }
 
 bool mesh_file_read(const char *path, const char *reader, const progress *w, files *opened, mesh_data *out,

@@ -181,10 +181,10 @@ surface *mesh_moved(const surface *base, const affine *m)
     for (int k = 0; f->d.at && f->d.skin && k < f->d.n; k++)
         for (int i = 0; i < 3; i++) {
             const int to = mirrors && i ? 3 - i : i;
-            const vec3 n = mesh_get(from->d.skin[k].normal[i]);
-            const vec3 to_n = affine_vector(&back, n); /* normals go by the transpose of the inverse */
+            /* normals are mapped by the transpose of the inverse */
+            const vec3 n = affine_vector(&back, mesh_get(from->d.skin[k].normal[i]));
             mesh_set(f->d.at[k][to], affine_point(m, mesh_get(from->d.at[k][i])));
-            mesh_set(f->d.skin[k].normal[to], vec3_unit(to_n));
+            mesh_set(f->d.skin[k].normal[to], vec3_unit(n));
             f->d.skin[k].uv[to][0] = mirrors ? (float)(from->u[0] + from->u[1] - (double)from->d.skin[k].uv[i][0])
                                              : from->d.skin[k].uv[i][0];
             f->d.skin[k].uv[to][1] = from->d.skin[k].uv[i][1];

@@ -12,9 +12,8 @@
 typedef struct affine_patch {
     patch base;
     const patch *from;
-    double M[3][3], o[3]; /* M[k]: row k of the map's matrix */
-    double mirror,
-        u_ends_sum; /* the original's u is u_ends_sum + mirror u; mirror is -1 where the map mirrors, else 1 */
+    double M[3][3], o[3];      /* M[k]: row k of the map's matrix */
+    double mirror, u_ends_sum; /* the original's u is u_ends_sum + mirror u; mirror: -1 where the map mirrors, else 1 */
 } affine_patch;
 
 /* One coordinate of Q or of a partial, from the original's three; sign: what mirroring does to the partial. */

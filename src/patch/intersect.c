@@ -18,7 +18,7 @@
 enum {
     STEPS = 24,      /* of Newton's iteration; four are usual, and those that begin far off need more */
     DEPTH = 128,     /* of the stack of halves; each halving adds one, and 64 in u and in w leave no digit to halve */
-    HALVINGS = 4096, /* of one piece for one ray: then a patch with jumps is tried as it is, and others have no root */
+    HALVINGS = 4096, /* of one piece for one ray; what is left is tried as it is on a patch with jumps, else dropped */
     QUEUE = 1024,    /* undecided pieces that wait: 8 for each ray of a wave */
 };
 
@@ -38,9 +38,8 @@ typedef struct pairs {
     int n;
     int32_t lane[PATCH_BATCH], part[PATCH_BATCH];
     double u[PATCH_BATCH], w[PATCH_BATCH], t[PATCH_BATCH];
-    double mu[PATCH_BATCH], mw[PATCH_BATCH], hu[PATCH_BATCH],
-        hw[PATCH_BATCH];     /* the range: its middle and half its width */
-    double close_u, close_w; /* smaller steps are rounding */
+    double mu[PATCH_BATCH], mw[PATCH_BATCH], hu[PATCH_BATCH], hw[PATCH_BATCH]; /* the range: middle, half width */
+    double close_u, close_w;                                                   /* smaller steps are rounding */
     double rx[PATCH_BATCH], ry[PATCH_BATCH], rz[PATCH_BATCH], sx[PATCH_BATCH], sy[PATCH_BATCH], sz[PATCH_BATCH];
     double open[PATCH_BATCH]; /* 1: not converged yet; 0: converged; -1: has left its range for good */
     bool tried[PATCH_BATCH];  /* it is not proved that there is one root at most */
