@@ -194,8 +194,8 @@ $(BUILD)/flags: FORCE
 	@mkdir -p $(BUILD)
 	@echo '$(CC) $(CFLAGS) $(LDFLAGS)' | cmp -s - $@ || echo '$(CC) $(CFLAGS) $(LDFLAGS)' > $@
 
-$(BUILD)/mesh/find_reader.o: DEFINES += -DKAGE_LIBEXEC='"$(LIBEXEC)"'
-$(BUILD)/mesh/find_reader.o: $(BUILD)/libexec
+$(BUILD)/mesh/load.o: DEFINES += -DKAGE_LIBEXEC='"$(LIBEXEC)"'
+$(BUILD)/mesh/load.o: $(BUILD)/libexec
 
 $(BUILD)/libexec: FORCE
 	@mkdir -p $(BUILD)

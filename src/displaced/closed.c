@@ -1,12 +1,11 @@
-/* Displaced surfaces over surfaces whose closest points have closed forms: the members bound, closest and
- * lipschitz of surface_ops. Each part of the surface is searched as if it alone were there. */
+/* Displaced surfaces over those whose closest points have closed forms: the members bound, closest and lipschitz of
+ * surface_ops. Each part of the surface is searched alone, by march.h. */
 #include "displaced/form.h"
 #include "displaced/march.h"
 #include "wave/lane.h"
 
-enum {
-    STEPS = 4096
-}; /* of a search along one ray: its shortest step is this share of its stretch, far below a pixel */
+/* Of a search along one ray: its shortest step is the stretch over this, far below a pixel. */
+enum { STEPS = 4096 };
 
 /* A part of a surface, the same for every lane. */
 typedef struct part_domain {
@@ -87,7 +86,7 @@ static void closed_occlude(const displaced *d, int n, const rays *x, const int32
     real t[LANES], end[LANES];
     int32_t found[LANES], own[LANES];
     for (int i = 0; i < n; i++)
-        end[i] = lit[i] > 0 ? R(1) : R(-1); /* what is dark already need not be searched */
+        end[i] = lit[i] > 0 ? R(1) : R(-1); /* in shadow already: nothing to search */
     for (int part = 0; part < d->smooth->ops->parts; part++) {
         long uncertain = 0;
         for (int i = 0; i < n; i++)

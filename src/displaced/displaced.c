@@ -1,4 +1,4 @@
-/* The displaced surface's methods, which are the same whatever it is over, and the choice of its form. */
+/* Displaced surfaces: their methods, by the form that fits the smooth surface (form.h), and the method `exact`. */
 #include "displaced/displaced.h"
 
 #include <stdlib.h>

@@ -13,13 +13,13 @@
 
 struct bvh;
 
-/* What searches cost, and how sure they are; sums. */
+/* Sums over the searches of a thread. */
 typedef struct displaced_counts {
     long evaluations; /* of P */
     long uncertain;   /* hits that could not be confirmed */
 } displaced_counts;
 
-/* The displaced surface, as one thread uses it. A plain copy is the same surface: it lives as long as the original. */
+/* A copy of the struct is the same surface; it is valid as long as the original. */
 typedef struct displaced {
     surface base;
     const struct displaced_form *form;
@@ -30,25 +30,25 @@ typedef struct displaced {
     struct bvh *prisms;       /* over a mesh: what the surface over each triangle lies in */
 } displaced;
 
-/* Whether the displaced surface of f can be found, and whether P has the bounds of value and slope that this takes. */
+/* Whether surfaces like f can be displaced, and whether P has the finite bounds of value and slope that this needs. */
 bool displaced_has_form(const surface *f);
 bool displaced_has_bounds(const bump *P);
 
-/* X over f by P, which both must outlive it and satisfy the two questions above. NULL: out of memory. */
+/* X over f by P. Both must outlive it, and the two functions above must be true of them. NULL: out of memory. */
 surface *displaced_new(const surface *f, const bump *P);
 
-/* Whether a surface is one. It has the methods of any other, and no `eval`, as its Q and partials are not known: */
+/* Whether a surface is one. It has no `eval`: Q and its partials are not known, displaced_shape stands for it. */
 bool displaced_is(const surface *f);
 
-/* A group that has met it at g->t on g->part: (u,w), P and its gradient, in q.Q the hit, and in n_smooth and n_bump
- * alike its unit normal. No shift. */
+/* For a group that has hit f at g->t on g->part, set (u,w), P and its gradient, q.Q to the hit, and both n_smooth and
+ * n_bump to its unit normal. tau is 0. */
 void displaced_shape(const surface *f, hit_group *g);
 
 /* A copy that adds to *c, for one thread. It owns nothing. */
 displaced displaced_counting(const surface *f, displaced_counts *c);
 
-/* Method `exact`, for a group that has met the smooth surface: tau to the first hit with the displaced one, f. Where
- * the ray passes that, beside a silhouette, order 0. */
+/* Method `exact`, for a group that has met the smooth surface: tau to the first hit with the displaced one, f. Order 0
+ * where the ray misses f, near a silhouette. */
 void displaced_shift(const surface *f, hit_group *g);
 
 #endif

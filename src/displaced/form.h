@@ -1,8 +1,10 @@
-/* How a displaced surface is found over one family of smooth surfaces. Private to displaced/. */
+/* How rays are intersected with displaced surfaces over one family of smooth ones: closed.c, patch.c, mesh.c. Private
+ * to displaced. */
 #ifndef KAGE_DISPLACED_FORM_H
 #define KAGE_DISPLACED_FORM_H
 
 #include "displaced/displaced.h"
+#include "patch/patch.h"
 
 typedef struct displaced_form {
     /* Whether it is for this smooth surface. */
@@ -15,10 +17,14 @@ typedef struct displaced_form {
     void (*hit)(const displaced *d, int n, const rays *x, const ray_origins *from, int32_t id, hits *h);
     void (*occlude)(const displaced *d, int n, const rays *x, const int32_t *part, real *lit);
 
-    /* The closest points of the smooth surface to the hits r + s t, and the parts they are on: part[i] is what `hit`
-     * said, and may be corrected. */
+    /* The closest points of the smooth surface to the hits r + s t, and the parts they are on: part[i] comes in as
+     * `hit` has set it, and may be corrected. */
     void (*closest)(const displaced *d, int n, const rays *x, const real *t, int32_t *part, closest_points *p);
 } displaced_form;
+
+/* In offset_patch.c: X = Q + P n/|n| over a patch Q, n = Qu x Qw; both must outlive it. It is evaluated to order 1
+ * only, and has no Hessian bounds. NULL: out of memory. */
+patch *patch_offset_new(const patch *q, const bump *P);
 
 extern const displaced_form displaced_over_closed, displaced_over_patch, displaced_over_mesh;
 

@@ -15,7 +15,7 @@ typedef struct search {
     rays x;
     real t[LANES], gap[LANES], end[LANES], shortest[LANES], tolerance[LANES];
     real side[LANES]; /* 1: the ray comes from above the displaced surface; -1: from below; 0: not known yet */
-    int32_t own[LANES], left[LANES], open[LANES]; /* starts on this part; has clearly left it; is still searched */
+    int32_t own[LANES], left[LANES], open[LANES]; /* starts on this piece; has clearly left it; is still searched */
     closest_points p;
     bump_values h;
     real rate[LANES], reach[LANES];
@@ -149,7 +149,7 @@ static void begin(const domain *f, const bump *P, int n, const rays *x, const re
     }
 }
 
-/* The side on which a ray begins. Where the gap does not tell, because it is 0 there: a ray that starts on the surface
+/* The side on which a ray begins. Where the gap is 0 to rounding: a ray that starts on the surface
  * is on the side that it leaves to, any other on the one that it comes from. */
 static real side_of(const search *s, int i, real slope)
 {
@@ -188,7 +188,7 @@ long displaced_search(const domain *f, const bump *P, int n, const rays *x, cons
             real least = s.own[i] ? s.tolerance[i] : 0;
             real above = s.side[i] * s.gap[i];
             /* A map's partials are not the slopes of its bilinear surface, so a ray can leave to the other side than
-             * they tell: it is there, and does not turn back. One that has come back to its start turns to it. */
+             * they say: it is there, and does not turn back. One that has come back to its start turns to it. */
             if (!s.left[i] && above <= -least && s.side[i] * slope[i] > 0) {
                 s.side[i] = -s.side[i];
                 above = -above;

@@ -1,9 +1,9 @@
-/* Displaced surfaces over meshes: Q + P N over each triangle, N the unit of the normal between its corners. What stands
- * over a triangle is a prism whose sides two neighbours share where their normals at the common corners are the same:
- * there the displaced surface has no gap. It has one at a crease, and at a seam of the texture where P differs.
+/* Displaced surfaces over meshes: Q + P N over each triangle, N the unit normal interpolated between its corners. The
+ * space over a triangle is a prism (prism.h). Neighbours share its sides, and there is no gap between them, unless
+ * their normals differ (at a crease) or P does (at a seam of the texture).
  *
  * A ray is searched (march.h) over each triangle whose prism it may pass, many pairs of rays and triangles side by
- * side. The closest point to a place is that from which N leads to it, by Newton's iteration.
+ * side. The closest point to a place is that from which N points to it; Newton's iteration finds it.
  */
 #include "displaced/form.h"
 
@@ -99,8 +99,8 @@ static void triangles_lipschitz(const domain *g, int n, const int32_t *lane, con
     }
 }
 
-/* (u,w) of a place of the triangle, as far as it goes on, that is near the closest point: that itself where it is one.
- * So P goes on from there without a step, which a ray that comes by would cross. */
+/* (u,w) of the closest point, moved into the triangle with its overlap. So P is continuous beyond the triangle: a step
+ * of it would be hit by rays that pass. */
 static void triangles_within(const domain *g, int n, const int32_t *lane, const closest_points *p, real *u, real *w)
 {
     for (int i = 0; i < n; i++) {
@@ -123,14 +123,11 @@ static void triangles_within(const domain *g, int n, const int32_t *lane, const 
 
 typedef struct traversal {
     const displaced *d;
-    const mesh *f;
-    const bump *P;
     double height;
     const rays *x;
     real end[LANES];
     bool own[LANES]; /* the ray starts on the displaced surface */
-    long evaluations, uncertain;
-    real *t; /* the nearest hits so far */
+    real *t;         /* the nearest hits so far */
     int32_t *index_hit;
     int lane;
     /* pairs that wait */
@@ -151,8 +148,8 @@ static void starts_on(traversal *tv, const triangles *g, int32_t *own)
         lane[i] = i;
     triangles_closest(&g->base, tv->n, lane, &tv->y, zero, &p);
     triangles_within(&g->base, tv->n, lane, &p, u, w);
-    tv->P->ops->eval(tv->P, tv->n, u, w, 0, &h);
-    tv->evaluations += tv->n;
+    tv->d->P->ops->eval(tv->d->P, tv->n, u, w, 0, &h);
+    displaced_count(tv->d, tv->n, 0);
     for (int i = 0; i < tv->n; i++) {
         const double size = vec3_length(vec3s_get(&tv->y.r, i)) + tv->height;
         const bool in = u[i] == p.u[i] && w[i] == p.w[i];
@@ -169,7 +166,7 @@ static void search_all(traversal *tv)
                           .within = triangles_within,
                           .unclamped = true,
                           .steps = SEARCH},
-                         tv->f->space.radius,
+                         mesh_of(tv->d)->space.radius,
                          tv->height,
                          tv->triangle};
     real end[LANES], t[LANES];
@@ -177,7 +174,7 @@ static void search_all(traversal *tv)
     for (int i = 0; i < tv->n; i++)
         end[i] = tv->end[tv->of[i]];
     starts_on(tv, &g, own);
-    tv->evaluations += displaced_search(&g.base, tv->P, tv->n, &tv->y, end, own, t, found);
+    displaced_count(tv->d, displaced_search(&g.base, tv->d->P, tv->n, &tv->y, end, own, t, found), 0);
     for (int i = 0; i < tv->n; i++) {
         const int at = tv->of[i];
         const bool nearer = found[i] != DISPLACED_MISSED && t[i] > 0 &&
@@ -186,7 +183,7 @@ static void search_all(traversal *tv)
             continue;
         tv->t[at] = t[i];
         tv->index_hit[at] = tv->index[i];
-        tv->uncertain += found[i] == DISPLACED_UNCERTAIN;
+        displaced_count(tv->d, 0, found[i] == DISPLACED_UNCERTAIN);
     }
     tv->n = 0;
 }
@@ -196,9 +193,9 @@ static void visit(void *user, int32_t index)
     traversal *tv = user;
     const int i = tv->n;
     double from = 0, to = (double)tv->end[tv->lane];
-    tv->triangle[i] = mesh_triangle_of(tv->f, index);
-    if (!prism_stretch(&tv->triangle[i], ROOM * tv->f->space.radius, vec3s_get(&tv->x->r, tv->lane),
-                       vec3s_get(&tv->x->s, tv->lane), (double)tv->P->Pmin, (double)tv->P->Pmax, &from, &to))
+    tv->triangle[i] = mesh_triangle_of(mesh_of(tv->d), index);
+    if (!prism_stretch(&tv->triangle[i], ROOM * mesh_of(tv->d)->space.radius, vec3s_get(&tv->x->r, tv->lane),
+                       vec3s_get(&tv->x->s, tv->lane), (double)tv->d->P->Pmin, (double)tv->d->P->Pmax, &from, &to))
         return;
     tv->n++;
     tv->of[i] = tv->lane;
@@ -212,10 +209,7 @@ static void visit(void *user, int32_t index)
 static void traversal_begin(traversal *tv, const displaced *d)
 {
     tv->d = d;
-    tv->f = mesh_of(d);
-    tv->P = d->P;
     tv->height = greatest_height(d->P);
-    tv->evaluations = tv->uncertain = 0;
     tv->n = 0;
 }
 
@@ -232,12 +226,11 @@ static void traverse(traversal *tv, int n, const rays *x, real *t, int32_t *inde
         tv->end[i] = t[i];
         index[i] = -1;
         tv->lane = i;
-        if (bvh_enter(&tv->f->space, tv->f->space.radius + tv->height, vec3s_get(&x->r, i), vec3s_get(&x->s, i), &from,
-                      &to, at, way, &far))
+        if (bvh_enter(&mesh_of(tv->d)->space, mesh_of(tv->d)->space.radius + tv->height, vec3s_get(&x->r, i),
+                      vec3s_get(&x->s, i), &from, &to, at, way, &far))
             bvh_along(tv->d->prisms, at, way, far, visit, tv);
     }
     search_all(tv);
-    displaced_count(tv->d, tv->evaluations, tv->uncertain);
 }
 
 static void over_mesh_hit(const displaced *d, int n, const rays *x, const ray_origins *from, int32_t id, hits *h)

@@ -3,7 +3,7 @@
  * With n = Qu x Qw, X_u = Qu + P_u n/|n| + P (n/|n|)_u, and (n/|n|)_u is n_u = Quu x Qw + Qu x Quw without its part
  * along n, over |n|. Vectors are bounded by balls: within r of c.
  */
-#include "displaced/offset_patch.h"
+#include "displaced/form.h"
 
 #include "base/real.h"
 

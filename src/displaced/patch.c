@@ -2,7 +2,6 @@
 #include "displaced/form.h"
 
 #include "displaced/offset.h"
-#include "displaced/offset_patch.h"
 #include "patch/surface.h"
 
 /* Of X's pieces. Coarser than a smooth patch's: where slopes of P turn, halving pays only where a ray comes. */
@@ -13,7 +12,8 @@ static const patch_surface *offset_of_patch(const displaced *d) { return (const 
 static bool over_patch_prepare(displaced *d)
 {
     patch *q = patch_offset_new(((const patch_surface *)d->smooth)->q, d->P);
-    patch_surface *shape = q ? patch_surface_make(q, FLAT) : NULL;
+    bool bounded;
+    patch_surface *shape = q ? patch_surface_make(q, FLAT, &bounded) : NULL;
     if (!shape)
         return false;
     shape->broken = true;
@@ -24,20 +24,14 @@ static bool over_patch_prepare(displaced *d)
 static void over_patch_hit(const displaced *d, int n, const rays *x, const ray_origins *from, int32_t id, hits *h)
 {
     patch_counts q = {0};
-    if (from)
-        patch_surface_intersect_own(offset_of_patch(d), n, x, from, id, h, &q);
-    else
-        patch_surface_intersect(offset_of_patch(d), n, x, id, h, &q);
+    patch_surface_intersect(offset_of_patch(d), n, x, from, id, h, &q);
     displaced_count(d, q.evaluations, q.unsure);
 }
 
 static void over_patch_occlude(const displaced *d, int n, const rays *x, const int32_t *part, real *lit)
 {
     patch_counts q = {0};
-    if (part)
-        patch_surface_occlude_own(offset_of_patch(d), n, x, NULL, lit, &q);
-    else
-        patch_surface_occlude(offset_of_patch(d), n, x, lit, &q);
+    patch_surface_occlude(offset_of_patch(d), n, x, part != NULL, NULL, lit, &q);
     displaced_count(d, q.evaluations, q.unsure);
 }
 

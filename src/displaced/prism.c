@@ -1,4 +1,4 @@
-/* Prisms over triangles. N is the unit of what lies in a straight line between the corners' normals. */
+/* Prisms over triangles. N is the linear mean of the corners' normals, made a unit vector. */
 #include "displaced/prism.h"
 
 #include <math.h>
@@ -46,8 +46,8 @@ static void narrow(double a, double b, double lo, double hi, double *t0, double 
     *t1 = fmin(*t1, fmax(x, y));
 }
 
-/* Between what is lowest and highest of it along the mean normal, and not farther out past each side than the normals
- * there lean. */
+/* A slab across the mean normal, and for each side of the triangle a plane, moved out as far as the normals there lean.
+ */
 bool prism_stretch(const mesh_triangle *x, double air, vec3 r, vec3 s, double lo, double hi, double *from, double *to)
 {
     double bulge, low = HUGE_VAL, high = -HUGE_VAL;

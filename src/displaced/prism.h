@@ -4,7 +4,7 @@
 
 #include "mesh/mesh.h"
 
-/* A triangle's displaced surface goes on beyond it by this share, so that no hit is between two triangles. */
+/* A triangle's displaced surface extends beyond it by this share, so that no ray passes between two triangles. */
 #define PRISM_OVERLAP 1e-4
 
 /* The offset point Q + h N at b and c of a triangle, N there, and the point's partials by b and by c. */

@@ -144,7 +144,7 @@ STAGE static void box_occlude_own(const surface *base, int n, const rays *x, con
 
 /* ---- for true displacement ---- */
 
-/* Each face by itself, as a rectangle. At the box's edges displaced faces part or cross. */
+/* Each face by itself, as a rectangle. At the box's edges displaced faces leave a gap or cross. */
 
 /* A face: the axis across it and the place there, the axes of u and w, and the direction of n. */
 typedef struct face {
@@ -213,14 +213,6 @@ static void box_lipschitz(const surface *base, int part, int n, const rays *x, c
     }
 }
 
-static void box_extent(const surface *base, int part, double u[2], double w[2])
-{
-    (void)base;
-    (void)part;
-    u[0] = w[0] = 0;
-    u[1] = w[1] = 1;
-}
-
 static void box_box(const surface *base, double lo[3], double hi[3])
 {
     const box *f = (const box *)base;
@@ -238,7 +230,7 @@ static const surface_ops box_methods = {
     .eval = box_eval,
     .occlude = box_occlude,
     .occlude_own = box_occlude_own,
-    .extent = box_extent,
+    .extent = extent_unit,
     .box = box_box,
     .parts = 6,
     .bound = box_bound,
@@ -246,7 +238,7 @@ static const surface_ops box_methods = {
     .lipschitz = box_lipschitz,
 };
 
-/* In the numbers that it is kept in. */
+/* Whether no side is 0 once rounded to `real`. */
 static bool is_thick(vec3 from, vec3 to)
 {
     return (real)from.x != (real)to.x && (real)from.y != (real)to.y && (real)from.z != (real)to.z;
@@ -266,7 +258,7 @@ surface *box_new(vec3 from, vec3 to)
     return &f->base;
 }
 
-/* ---- as the scene file has it ---- */
+/* ---- in the scene file ---- */
 
 static const form_parameter box_parameters[] = {
     {"from", FORM_PLACE, 0, "a corner [x, y, z]"},
@@ -283,7 +275,6 @@ static surface *make_box(const shape_values *v, form_fault *fault)
 
 static double *coordinate(vec3 *v, int k) { return k == 0 ? &v->x : k == 1 ? &v->y : &v->z; }
 
-/* u and w go along the two next axes on the high side, swapped on the low one. */
 static bool flat_face(const shape_values *v, int part, flat_part *out)
 {
     const int k = part >> 1, high = part & 1, a = (k + (high ? 1 : 2)) % 3, b = (k + (high ? 2 : 1)) % 3;

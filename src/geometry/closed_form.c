@@ -1,4 +1,4 @@
-/* The table of closed forms, and what all of them share. */
+/* The table of closed forms, and moving them to the origin. */
 #include "geometry/closed_form.h"
 
 #define POINT_TO(NAME) &form_##NAME,

@@ -1,10 +1,8 @@
-/* The kinds of surfaces with closed forms, as data: what the scene file says of each, how one is made, and what exports
- * need to know. A new kind is one file, with its methods and its closed_form, and one line in CLOSED_FORMS.
+/* The kinds of surfaces with closed forms, as data: their parameters in the scene file, their constructors, and what
+ * exports need. A new kind is one file, with its methods and its closed_form, and one line in CLOSED_FORMS.
  */
 #ifndef KAGE_GEOMETRY_CLOSED_FORM_H
 #define KAGE_GEOMETRY_CLOSED_FORM_H
-
-#include <stdio.h>
 
 #include "base/frame.h"
 #include "geometry/surface.h"
@@ -34,17 +32,17 @@ typedef enum form_type {
     FORM_PLACE,     /* [x, y, z], in v: moving the shape moves it. A form has one, or two opposite ends */
     FORM_VECTOR,    /* [x, y, z], in v */
     FORM_DIRECTION, /* the same with a length above 0 */
-    FORM_EDGE,      /* [x, y, z] with a length above 0, which counts */
+    FORM_EDGE,      /* [x, y, z] whose length matters and is above 0 */
     FORM_LENGTH,    /* 0 or more, in r */
     FORM_POSITIVE,  /* SHAPE_SMALL or more, in r */
-    FORM_OPEN,      /* true or false, in open; false if it is not there. All others are needed */
+    FORM_OPEN,      /* true or false, in open; false by default. All others are required */
 } form_type;
 
 typedef struct form_parameter {
     const char *key; /* as in the scene file; NULL after the last one */
     form_type type;
     int slot;             /* in shape_values' v or r */
-    const char *expected; /* of vectors: for the message where it is none */
+    const char *expected; /* of vectors: what an error says was expected */
 } form_parameter;
 
 /* Why no surface can be made. */
@@ -59,7 +57,7 @@ typedef struct flat_part {
     double rim; /* the radius of a disc, in units of u and w; 0: there is no such part; -1: no disc */
 } flat_part;
 
-/* Q(u,w) as three texts in the expression language, about the middle of the shape's places. */
+/* Q(u,w) as three texts in the expression language, with the middle (shape_centred) at the origin. */
 typedef struct form_formula {
     char xyz[3][384];
     double u[2], w[2]; /* the range */
@@ -69,14 +67,14 @@ typedef struct closed_form {
     const char *name;
     const form_parameter *parameters;
 
-    /* NULL: it can't be made, and why is in *fault, which comes in empty. */
+    /* NULL: an error, with the reason in *fault, which the caller has cleared. */
     surface *(*make)(const shape_values *v, form_fault *fault);
 
     /* Whether the part is flat, and then its frame. NULL: none is. */
     bool (*flat)(const shape_values *v, int part, flat_part *out);
 
-    /* Q as formulas, where the shape has one part: it is searched as a parametric patch for true displacement where no
-     * foot is known. False, or NULL: there are none. */
+    /* Q as formulas, for shapes of one part. True displacement uses them, as a parametric patch, where closest points
+     * have no closed form. False, or NULL: there are none. */
     bool (*formula)(const shape_values *v, form_formula *out);
 
     bool solid; /* has an inside, unless it is open: light that passes through the surface is refracted */
@@ -102,14 +100,14 @@ extern const closed_form *const closed_forms[CLOSED_FORM_COUNT];
 /* The shape moved so that the middle of its places is in the origin; *middle: where it was. */
 shape_values shape_centred(const closed_form *form, const shape_values *v, vec3 *middle);
 
-/* The texts of what turns about the frame's y: rho and y are functions of w alone, u is the angle from x to z. */
-static inline void formula_revolve(form_formula *f, frame axes, const char *rho, const char *y)
-{
-    const double X[3] = {axes.x.x, axes.x.y, axes.x.z}, Y[3] = {axes.y.x, axes.y.y, axes.y.z};
-    const double Z[3] = {axes.z.x, axes.z.y, axes.z.z};
-    for (int k = 0; k < 3; k++)
-        snprintf(f->xyz[k], sizeof f->xyz[k], "(%s)*(%.17g*cos(u) + %.17g*sin(u)) + %.17g*(%s)", rho, X[k], Z[k], Y[k],
-                 y);
-}
+/* In surface.c. The formula of a shape that turns about the frame's y: rho and y are functions of w alone, u is the
+ * angle from x to z.
+ */
+void formula_revolve(form_formula *f, frame axes, const char *rho, const char *y);
+
+/* Also there. Two ranges of (u,w), as the member `extent` of surface_ops: 0..1 for both, and -pi..pi for u with 0..pi
+ * for w. */
+void extent_unit(const surface *f, int part, double u[2], double w[2]);
+void extent_polar(const surface *f, int part, double u[2], double w[2]);
 
 #endif

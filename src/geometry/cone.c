@@ -189,8 +189,8 @@ STAGE static void cone_side_bound(const cone *restrict base, int n, const rays *
         cone_ray l = cone_local_of(&f, x, i);
         spans k = cone_spans(&f, outer, lo, hi, l), core = cone_spans(&f, inner, lo, hi, l);
         real in = real_max(k.from, k.in), out = real_min(k.to, k.out), from = real_max(in, 0);
-        /* Within the core the gap is below 0, so that a ray that has come in through the outer cone has met the rough
-         * side before it, unless the foot was beyond an end. */
+        /* Within the core the gap is below 0, so that a ray that has come in through the outer cone has met the
+         * displaced side before it, unless its closest point was beyond an end. */
         int crossed = exact & (inner > 0) & (core.in <= core.out) & (core.in > from) & (from == k.in);
         out = crossed ? real_min(core.in, out) : out;
         t0[i] = from;
@@ -203,10 +203,8 @@ static void cone_bound(const surface *base, int part, int n, const rays *x, cons
 {
     if (part == 0)
         cone_side_bound((const cone *)base, n, x, end, Pmin, Pmax, t0, t1);
-    else {
-        const surface *cap = &cone_cap(base, part)->base;
-        cap->ops->bound(cap, 0, n, x, end, Pmin, Pmax, t0, t1);
-    }
+    else
+        cone_cap(base, part)->ops->bound(cone_cap(base, part), 0, n, x, end, Pmin, Pmax, t0, t1);
 }
 
 STAGE static void cone_side_closest(const cone *restrict base, int n, const rays *restrict x, const real *restrict t,
@@ -231,10 +229,8 @@ static void cone_closest(const surface *base, int part, int n, const rays *x, co
 {
     if (part == 0)
         cone_side_closest((const cone *)base, n, x, t, p);
-    else {
-        const surface *cap = &cone_cap(base, part)->base;
-        cap->ops->closest(cap, 0, n, x, t, p);
-    }
+    else
+        cone_cap(base, part)->ops->closest(cone_cap(base, part), 0, n, x, t, p);
 }
 
 /* The directions of h, of w and around the axis are at right angles, so that the ray's way is shared between them
@@ -255,10 +251,8 @@ static void cone_lipschitz(const surface *base, int part, int n, const rays *x, 
 {
     if (part == 0)
         cone_side_lipschitz(n, x, p, Pu_max, Pw_max, rate, reach);
-    else {
-        const surface *cap = &cone_cap(base, part)->base;
-        cap->ops->lipschitz(cap, 0, n, x, p, Pu_max, Pw_max, rate, reach);
-    }
+    else
+        cone_cap(base, part)->ops->lipschitz(cone_cap(base, part), 0, n, x, p, Pu_max, Pw_max, rate, reach);
 }
 
 /* The methods of a cone or a cylinder, open or capped. */
@@ -304,25 +298,23 @@ surface *cone_new(vec3 from, double from_radius, vec3 to, double to_radius, bool
     return &f->base;
 }
 
-/* ---- as the scene file has them ---- */
+/* ---- in the scene file ---- */
 
-#define FROM                                                                                                           \
-    {                                                                                                                  \
-        "from", FORM_PLACE, 0, "the middle of one end [x, y, z]"                                                       \
-    }
-#define TO                                                                                                             \
-    {                                                                                                                  \
-        "to", FORM_PLACE, 1, "the middle of the other end [x, y, z]"                                                   \
-    }
-#define OPEN                                                                                                           \
-    {                                                                                                                  \
-        "open", FORM_OPEN, 0, NULL                                                                                     \
-    }
-
-static const form_parameter cylinder_parameters[] = {FROM, TO, {"radius", FORM_POSITIVE, 0, NULL}, OPEN, {0}};
+static const form_parameter cylinder_parameters[] = {
+    {"from", FORM_PLACE, 0, "the middle of one end [x, y, z]"},
+    {"to", FORM_PLACE, 1, "the middle of the other end [x, y, z]"},
+    {"radius", FORM_POSITIVE, 0, NULL},
+    {"open", FORM_OPEN, 0, NULL},
+    {0},
+};
 
 static const form_parameter cone_parameters[] = {
-    FROM, {"from_radius", FORM_LENGTH, 0, NULL}, TO, {"to_radius", FORM_LENGTH, 1, NULL}, OPEN, {0},
+    {"from", FORM_PLACE, 0, "the middle of one end [x, y, z]"},
+    {"from_radius", FORM_LENGTH, 0, NULL},
+    {"to", FORM_PLACE, 1, "the middle of the other end [x, y, z]"},
+    {"to_radius", FORM_LENGTH, 1, NULL},
+    {"open", FORM_OPEN, 0, NULL},
+    {0},
 };
 
 static bool has_length(const shape_values *v) { return vec3_length(vec3_sub(v->v[1], v->v[0])) >= SHAPE_SMALL; }

@@ -1,4 +1,4 @@
-/* Cones and cylinders as values. Private to cone.c and cone_shape.c. */
+/* The struct of cones and cylinders, and rays in its frame. Private to cone.c and cone_shape.c. */
 #ifndef KAGE_GEOMETRY_CONE_H
 #define KAGE_GEOMETRY_CONE_H
 
@@ -43,7 +43,10 @@ static inline void cone_vector(const cone *f, vec3s *v, int i, real x, real y, r
 }
 
 /* The disc of part 1 or 2. */
-static inline const plane *cone_cap(const surface *base, int part) { return &((const cone *)base)->cap[part - 1]; }
+static inline const surface *cone_cap(const surface *base, int part)
+{
+    return &((const cone *)base)->cap[part - 1].base;
+}
 
 /* In cone_shape.c; as the members of surface_ops of the same names. */
 void cone_locate(const surface *base, int n, const rays *x, const real *t, int32_t *part, real *u, real *w);

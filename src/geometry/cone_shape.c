@@ -113,10 +113,8 @@ void cone_extent(const surface *base, int part, double u[2], double w[2])
         u[1] = KM_PI;
         w[0] = 0;
         w[1] = (double)((const cone *)base)->side;
-    } else {
-        const surface *cap = &cone_cap(base, part)->base;
-        cap->ops->extent(cap, 0, u, w);
-    }
+    } else
+        cone_cap(base, part)->ops->extent(cone_cap(base, part), 0, u, w);
 }
 
 /* The box of the discs at the ends. */

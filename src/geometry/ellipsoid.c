@@ -1,7 +1,7 @@
 /* Ellipsoid with its axes along the scene's: Q(u,w) = C + (a sin w cos u, b cos w, c sin w sin u).
  *
- * Divided by its radii, places and directions are those of a unit sphere at the origin, with the same t. It has no foot
- * of a perpendicular in closed form, so a displaced one is searched as a patch, by its formula.
+ * Relative to C and divided by the radii, it is the unit sphere, with the same t. Its closest points have no closed
+ * form, so true displacement takes it as a patch, by its formula.
  */
 #include "geometry/closed_form.h"
 #include "math/kmath.h"
@@ -14,7 +14,7 @@ typedef struct ellipsoid {
     real C[3], R[3], over[3]; /* the centre, the radii along x, y and z, 1/radius */
 } ellipsoid;
 
-/* A ray as the unit sphere has it. */
+/* A ray in the space of the unit sphere. */
 typedef struct unit_ray {
     real ox, oy, oz, dx, dy, dz;
 } unit_ray;
@@ -54,8 +54,7 @@ STAGE static void ellipsoid_hit(const surface *base, int n, const rays *x, int32
         int met = roots_of(ray_of(&f, &x->r, &x->s, i), &t0, &t1);
         real t = t0 > 0 ? t0 : t1;
         int take = met & (t > 0) & (t < h->t[i]);
-        h->t[i] = take ? t : h->t[i];
-        h->id[i] = take ? id : h->id[i];
+        hits_take(h, i, take, t, id);
     }
 }
 
@@ -68,8 +67,7 @@ STAGE static void ellipsoid_hit_own(const surface *base, int n, const rays *x, c
         int met = roots_of(ray_of(&f, &x->r, &x->s, i), &t0, &t1), own = from->id[i] == id;
         real far = far_root(ray_of(&f, &from->at, &x->s, i)), near = t0 > 0 ? t0 : t1, t = own ? far : near;
         int take = (met | own) & (t > 0) & (t < h->t[i]);
-        h->t[i] = take ? t : h->t[i];
-        h->id[i] = take ? id : h->id[i];
+        hits_take(h, i, take, t, id);
     }
 }
 
@@ -140,16 +138,6 @@ STAGE static void ellipsoid_occlude_own(const surface *base, int n, const rays *
     }
 }
 
-static void ellipsoid_extent(const surface *base, int part, double u[2], double w[2])
-{
-    (void)base;
-    (void)part;
-    u[0] = -KM_PI;
-    u[1] = KM_PI;
-    w[0] = 0;
-    w[1] = KM_PI;
-}
-
 static void ellipsoid_box(const surface *base, double lo[3], double hi[3])
 {
     const ellipsoid *f = (const ellipsoid *)base;
@@ -167,12 +155,12 @@ static const surface_ops ellipsoid_methods = {
     .eval = ellipsoid_eval,
     .occlude = ellipsoid_occlude,
     .occlude_own = ellipsoid_occlude_own,
-    .extent = ellipsoid_extent,
+    .extent = extent_polar,
     .box = ellipsoid_box,
     .parts = 1,
 };
 
-/* ---- as the scene file has it ---- */
+/* ---- in the scene file ---- */
 
 static const form_parameter ellipsoid_parameters[] = {
     {"center", FORM_PLACE, 0, "a place [x, y, z]"},
@@ -199,7 +187,7 @@ static surface *make_ellipsoid(const shape_values *v, form_fault *fault)
 
 static bool ellipsoid_formula(const shape_values *v, form_formula *out)
 {
-    ellipsoid_extent(NULL, 0, out->u, out->w);
+    extent_polar(NULL, 0, out->u, out->w);
     snprintf(out->xyz[0], sizeof out->xyz[0], "%.17g*sin(w)*cos(u)", v->v[1].x);
     snprintf(out->xyz[1], sizeof out->xyz[1], "%.17g*cos(w)", v->v[1].y);
     snprintf(out->xyz[2], sizeof out->xyz[2], "%.17g*sin(w)*sin(u)", v->v[1].z);

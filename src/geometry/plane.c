@@ -171,7 +171,7 @@ FLAT_BOUND(plane, NOWHERE)
 FLAT_BOUND(rectangle, AT_SIDES)
 FLAT_BOUND(disc, AT_RIM)
 
-/* The dual basis is in the plane, so Du.(X - O) is u of the foot. */
+/* The dual basis is in the plane, so Du.(X - O) is u of the closest point. */
 STAGE static void plane_closest(const surface *base, int part, int n, const rays *x, const real *restrict t,
                                 closest_points *restrict p)
 {
@@ -209,14 +209,6 @@ static void plane_extent(const surface *base, int part, double u[2], double w[2]
     (void)part;
     u[0] = w[0] = -HUGE_VAL;
     u[1] = w[1] = HUGE_VAL;
-}
-
-static void rectangle_extent(const surface *base, int part, double u[2], double w[2])
-{
-    (void)base;
-    (void)part;
-    u[0] = w[0] = 0;
-    u[1] = w[1] = 1;
 }
 
 static void disc_extent(const surface *base, int part, double u[2], double w[2])
@@ -258,16 +250,16 @@ static void disc_box(const surface *base, double lo[3], double hi[3])
     }
 }
 
-#define FLAT_METHODS(name)                                                                                             \
+#define FLAT_METHODS(name, range)                                                                                      \
     {                                                                                                                  \
         .kind = #name, .hit = name##_hit, .hit_own = name##_hit_own, .locate = plane_locate, .eval = plane_eval,       \
-        .occlude = name##_occlude, .extent = name##_extent, .box = name##_box, .parts = 1, .bound = name##_bound,      \
+        .occlude = name##_occlude, .extent = range, .box = name##_box, .parts = 1, .bound = name##_bound,              \
         .closest = plane_closest, .lipschitz = plane_lipschitz                                                         \
     }
 
-static const surface_ops plane_methods = FLAT_METHODS(plane);
-static const surface_ops rectangle_methods = FLAT_METHODS(rectangle);
-static const surface_ops disc_methods = FLAT_METHODS(disc);
+static const surface_ops plane_methods = FLAT_METHODS(plane, plane_extent);
+static const surface_ops rectangle_methods = FLAT_METHODS(rectangle, extent_unit);
+static const surface_ops disc_methods = FLAT_METHODS(disc, disc_extent);
 
 /* The squared sine of the angle between U and W below which float has no digits of N: an angle of 1e-6, float's
  * rounding is 1e-7. */
@@ -324,7 +316,7 @@ surface *disc_new(vec3 centre, vec3 normal, double radius)
     return &f->base;
 }
 
-/* ---- as the scene file has them ---- */
+/* ---- in the scene file ---- */
 
 static const form_parameter edges[] = {
     {"origin", FORM_PLACE, 0, "the place of u = w = 0, [x, y, z]"},

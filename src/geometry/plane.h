@@ -1,4 +1,4 @@
-/* Planes, rectangles and discs as values, for surfaces that have flat parts. Private to geometry. */
+/* The struct of planes, rectangles and discs, for surfaces that contain some. Private to geometry. */
 #ifndef KAGE_GEOMETRY_PLANE_H
 #define KAGE_GEOMETRY_PLANE_H
 

@@ -134,8 +134,8 @@ STAGE static void sphere_occlude_own(const surface *base, int n, const rays *x, 
 
 /* ---- for true displacement ---- */
 
-/* The outer sphere's stretch. From within the inner one it begins at that one's far side; all others go through it, as
- * a ray that is below the rough surface already meets it on the far side only. */
+/* The stretch within the outer sphere. From within the inner sphere it begins at that one's far side. Other stretches
+ * include the inner sphere, since a ray that starts below the displaced surface meets that on the far side only. */
 STAGE static void sphere_bound(const surface *base, int part, int n, const rays *x, const real *restrict end, real Pmin,
                                real Pmax, real *restrict t0, real *restrict t1)
 {
@@ -195,16 +195,6 @@ STAGE static void sphere_lipschitz(const surface *base, int part, int n, const r
     }
 }
 
-static void sphere_extent(const surface *base, int part, double u[2], double w[2])
-{
-    (void)base;
-    (void)part;
-    u[0] = -KM_PI;
-    u[1] = KM_PI;
-    w[0] = 0;
-    w[1] = KM_PI;
-}
-
 static void sphere_box(const surface *base, double lo[3], double hi[3])
 {
     const sphere *f = (const sphere *)base;
@@ -222,7 +212,7 @@ static const surface_ops sphere_methods = {
     .eval = sphere_eval,
     .occlude = sphere_occlude,
     .occlude_own = sphere_occlude_own,
-    .extent = sphere_extent,
+    .extent = extent_polar,
     .box = sphere_box,
     .parts = 1,
     .bound = sphere_bound,
@@ -241,7 +231,7 @@ surface *sphere_new(vec3 centre, double radius)
     return &f->base;
 }
 
-/* ---- as the scene file has it ---- */
+/* ---- in the scene file ---- */
 
 static const form_parameter sphere_parameters[] = {
     {"center", FORM_PLACE, 0, "a place [x, y, z]"},
@@ -261,7 +251,7 @@ static bool sphere_formula(const shape_values *v, form_formula *out)
     char rho[40], y[40];
     snprintf(rho, sizeof rho, "%.17g*sin(w)", v->r[0]);
     snprintf(y, sizeof y, "%.17g*cos(w)", v->r[0]);
-    sphere_extent(NULL, 0, out->u, out->w);
+    extent_polar(NULL, 0, out->u, out->w);
     formula_revolve(out, frame_about(up), rho, y);
     return true;
 }

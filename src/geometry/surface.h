@@ -1,10 +1,11 @@
 /* Smooth parametric surfaces Q(u,w): where rays meet them, and their shape there. A surface knows nothing of scenes,
  * bumps or lights.
  *
- * A surface is a table of functions over a wave, and the constants that they need. The constructors below make the
- * analytic ones; patch/surface.h and mesh/mesh.h make others; surface_free ends all. A surface does not change once it
- * is made, and any number of threads may use it. All lengths are in scene units, coordinates left-handed with y up;
- * n = Qu x Qw points outward. Seen from outside, u goes to the right where w goes down, like the pixels of an image.
+ * A surface is a table of functions over a wave, and the constants that they need. The constructors below make those
+ * with closed forms; patch/surface.h and mesh/mesh.h make others. surface_free frees any. A surface does not change
+ * once it is made, and any number of threads may use it. All lengths are in scene units, coordinates left-handed with y
+ * up; n = Qu x Qw points outward. Seen from outside, u goes to the right where w goes down, like the pixels of an
+ * image.
  */
 #ifndef KAGE_GEOMETRY_SURFACE_H
 #define KAGE_GEOMETRY_SURFACE_H
@@ -48,11 +49,10 @@ typedef struct surface_ops {
     /* The bounding box, up to rounding. Ends are infinite where the surface has none. */
     void (*box)(const surface *f, double lo[3], double hi[3]);
 
-    int parts; /* how many there are; 1 of a mesh, whose triangles do not differ in anything that depends on part alone
-                */
+    int parts; /* how many; 1 for a mesh, though `part` is a triangle there */
 
-    /* For displaced surfaces (displaced.h), with a part of the surface as if it alone were there. All three are NULL
-     * where closest points have no closed form, as of a stretched sphere. */
+    /* For displaced surfaces (displaced.h), over one part of the surface alone. All three are NULL where closest points
+     * have no closed form, as on an ellipsoid. */
 
     /* The stretch t0 <= t <= t1 of each ray, within 0..end[i], that may meet Q + P n/|n| for Pmin <= P <= Pmax: all
      * such places are in it. t0 > t1: there is none. */
@@ -68,7 +68,7 @@ typedef struct surface_ops {
     void (*lipschitz)(const surface *f, int part, int n, const rays *x, const closest_points *p, real Pu_max,
                       real Pw_max, real *rate, real *reach);
 
-    /* Whether stretches may also lead over places beyond the part's extent, so that hits there do not count. */
+    /* Whether `bound` also admits places over (u,w) beyond the part's extent; hits there do not count. */
     bool unclamped;
 } surface_ops;
 
@@ -77,7 +77,7 @@ struct surface {
     void (*free)(surface *f); /* NULL: it owns nothing but itself */
 };
 
-/* All constructors return NULL where the arguments are wrong in the way that is said, or out of memory. */
+/* The constructors return NULL for the arguments stated at each, or out of memory. */
 
 /* Q = origin + u U + w W; over all (u,w), or over 0..1 where `bounded`. NULL where U and W are parallel, zero or not
  * finite. */
@@ -106,11 +106,12 @@ surface *cone_new(vec3 from, double from_radius, vec3 to, double to_radius, bool
  * direction. */
 surface *torus_new(vec3 centre, vec3 axis, double major, double minor);
 
-/* The image of a surface by an affine map. `from` must outlive it, and is not such an image itself. It has the (u,w) of
- * `from`. Where the map mirrors, u runs the other way in its extent (on a plane: -u), so that n still points outward.
- * Where the map does not keep angles, images of round surfaces cannot be displaced. NULL where the map reduces volumes
- * to 0. */
+/* The image of a surface by an affine map. `from` must outlive it, and must not be such an image itself. It has the
+ * (u,w) of `from`. Where the map mirrors, u runs the other way in its extent (on a plane: -u), so that n still points
+ * outward. Where the map does not keep angles, images of round surfaces cannot be displaced. NULL where the map reduces
+ * volumes to 0. */
 surface *surface_transformed(const surface *from, const affine *m);
+
 /* NULL is allowed. */
 void surface_free(surface *f);
 

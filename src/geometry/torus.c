@@ -81,7 +81,7 @@ STAGE static void torus_enter(const torus *restrict base, double m, int n, const
     }
 }
 
-/* What lies between two places of the shell, the hole or the tube's core, is left to the search. */
+/* The hole or the tube's core, between two stretches in the shell, is included. */
 static void torus_bound(const surface *base, int part, int n, const rays *x, const real *end, real Pmin, real Pmax,
                         real *t0, real *t1)
 {
@@ -139,7 +139,7 @@ static void torus_extent(const surface *base, int part, double u[2], double w[2]
     u[1] = w[1] = KM_PI;
 }
 
-/* The circle that the tube is about reaches as far along an axis as that is across its own. */
+/* The circle at the tube's middle reaches M sin(angle) along a coordinate axis, at that angle to Y. */
 static void torus_box(const surface *base, double lo[3], double hi[3])
 {
     const torus *f = (const torus *)base;
@@ -166,13 +166,6 @@ static const surface_ops torus_methods = {
     .lipschitz = torus_lipschitz,
 };
 
-static void store(double to[3], vec3 v)
-{
-    to[0] = v.x;
-    to[1] = v.y;
-    to[2] = v.z;
-}
-
 surface *torus_new(vec3 centre, vec3 axis, double major, double minor)
 {
     const double l = vec3_length(axis);
@@ -181,17 +174,17 @@ surface *torus_new(vec3 centre, vec3 axis, double major, double minor)
     if (!f)
         return NULL;
     const frame a = frame_about(axis);
-    f->base.ops = &torus_methods;
-    store(f->C, centre);
-    store(f->X, a.x);
-    store(f->Y, a.y);
-    store(f->Z, a.z);
-    f->M = major;
-    f->m = minor;
+    *f = (torus){.base = {&torus_methods, NULL},
+                 .C = {centre.x, centre.y, centre.z},
+                 .X = {a.x.x, a.x.y, a.x.z},
+                 .Y = {a.y.x, a.y.y, a.y.z},
+                 .Z = {a.z.x, a.z.y, a.z.z},
+                 .M = major,
+                 .m = minor};
     return &f->base;
 }
 
-/* ---- as the scene file has it ---- */
+/* ---- in the scene file ---- */
 
 static const form_parameter torus_parameters[] = {
     {"center", FORM_PLACE, 0, "a place [x, y, z]"},

@@ -1,4 +1,4 @@
-/* Tori as values, and rays in their frame. Private to torus.c and torus_roots.c. */
+/* The struct of tori, and rays in its frame. Private to torus.c and torus_roots.c. */
 #ifndef KAGE_GEOMETRY_TORUS_H
 #define KAGE_GEOMETRY_TORUS_H
 

@@ -1,4 +1,4 @@
-/* A surface under an affine map: rays are taken back into the space of the original, and results are brought from
+/* A surface under an affine map: rays are mapped back into the space of the original, and results are mapped from
  * there. Directions are not made unit vectors, so that t is the same in both spaces.
  *
  * A map that mirrors would make n = Qu x Qw point inward. So u then runs the other way, and seen from outside u still
@@ -77,10 +77,10 @@ static const real nowhere[3] = {0, 0, 0};
 STAGE static void places_to(const transformed *f, int n, vec3s *v) { apply(n, f->to, 1, f->o, v); }
 STAGE static void vectors_to(const transformed *f, int n, real k, vec3s *v) { apply(n, f->to, k, nowhere, v); }
 
-/* Gradients go by the transpose of the inverse, */
+/* Gradients are mapped by the transpose of the inverse. */
 STAGE static void gradients_to(const transformed *f, int n, real k, vec3s *v) { apply(n, f->back, k, nowhere, v); }
 
-/* and back by the transpose of the map. */
+/* Gradients are mapped back by the transpose of the map. */
 STAGE static void gradients_back(const transformed *restrict base, int n, real k, const vec3s *restrict v,
                                  vec3s *restrict to)
 {
@@ -172,7 +172,7 @@ static void transformed_occlude_own(const surface *base, int n, const rays *x, c
     f->from->ops->occlude_own(f->from, n, &y, part, lit);
 }
 
-/* The same: u is reflected about the middle of its extent. */
+/* The original's: where the map mirrors, u is reflected about the middle of its extent. */
 static void transformed_extent(const surface *base, int part, double u[2], double w[2])
 {
     of(base)->from->ops->extent(of(base)->from, part, u, w);
@@ -298,7 +298,7 @@ static bool box_image(transformed *f, const affine *m)
     return good;
 }
 
-static void choose_methods(transformed *f, double scale)
+static void choose_methods(transformed *f)
 {
     f->base.ops = &f->methods;
     f->methods = *f->from->ops;
@@ -310,7 +310,7 @@ static void choose_methods(transformed *f, double scale)
     f->methods.occlude_own = f->from->ops->occlude_own ? transformed_occlude_own : NULL;
     f->methods.extent = transformed_extent;
     f->methods.box = transformed_box;
-    const bool known = scale > 0 && f->from->ops->closest;
+    const bool known = f->scale > 0 && f->from->ops->closest;
     f->methods.bound = known ? similar_bound : NULL;
     f->methods.closest = known ? similar_closest : NULL;
     f->methods.lipschitz = known ? similar_lipschitz : NULL;
@@ -342,7 +342,7 @@ surface *surface_transformed(const surface *from, const affine *m)
     vec3_round(f->o, m->o);
     f->scale = (real)scale;
     f->over = scale > 0 ? (real)(1 / scale) : 0;
-    choose_methods(f, scale);
+    choose_methods(f);
     if (is(from, "box") && !box_image(f, m)) {
         free(f);
         return NULL;

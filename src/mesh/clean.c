@@ -1,5 +1,5 @@
-/* From what a file says to triangles that can be relied on: finite numbers, an area, and a unit normal at each corner
- * that does not face away. */
+/* Checks and repairs the triangles of a file. Afterwards numbers are finite, each triangle has an area, and each corner
+ * has a unit normal that does not face away. */
 #include "mesh/mesh_data.h"
 
 #include "base/vec3.h"
@@ -13,21 +13,21 @@
 #define FACING 0.05     /* the least cosine between a corner's normal and its triangle's: 87 degrees */
 #define TEXTURE 1e6     /* the largest texture coordinate: float leaves it a digit after the point */
 #define SHORTEST 1e-6   /* a normal, or a sum of unit normals, that is shorter has no direction in float */
-#define LONGEST 1e6     /* and a longer normal is no normal */
+#define LONGEST 1e6     /* a longer normal is ignored */
 #define SAME_ANGLE 1e-6 /* of cosines: float's coordinates determine them no better */
 
-/* Triangles about a vertex that are compared with each other. Beyond that the mean over all of them stands for every
- * corner, so that time stays linear. */
+/* Up to this many triangles about a vertex are compared with each other. With more, every corner gets the mean over
+ * all, so that time stays linear. */
 enum { FAN = 512 };
 
 /* (b - a) x (c - a) */
-static vec3 area_of(const float at[3][3])
+static vec3 area_of(float at[3][3])
 {
     const vec3 a = mesh_get(at[0]);
     return vec3_cross(vec3_sub(mesh_get(at[1]), a), vec3_sub(mesh_get(at[2]), a));
 }
 
-static bool is_flat(const float at[3][3], vec3 area)
+static bool is_flat(float at[3][3], vec3 area)
 {
     double longest = 0;
     for (int k = 0; k < 3; k++) {
@@ -64,7 +64,7 @@ static void drop_flat(mesh_data *d)
 {
     int n = 0;
     for (int k = 0; k < d->n; k++) {
-        if (is_flat((const float(*)[3])d->at[k], area_of((const float(*)[3])d->at[k])))
+        if (is_flat(d->at[k], area_of(d->at[k])))
             continue;
         memmove(d->at[n], d->at[k], sizeof d->at[n]);
         d->skin[n++] = d->skin[k];
@@ -148,27 +148,27 @@ static bool find_places(const mesh_data *d, places *p)
 /* The triangle's unit normal times its angle at that corner: sums do not depend on how a flat face is triangulated. */
 static vec3 weighted_normal(const mesh_data *d, int corner)
 {
-    const float(*at)[3] = (const float(*)[3])d->at[corner / 3];
+    float(*at)[3] = d->at[corner / 3];
     const vec3 a = mesh_get(at[corner % 3]);
     const vec3 b = vec3_sub(mesh_get(at[(corner + 1) % 3]), a), c = vec3_sub(mesh_get(at[(corner + 2) % 3]), a);
     const double cosine = vec3_dot(b, c) / (vec3_length(b) * vec3_length(c));
     return vec3_scale(vec3_unit(area_of(at)), km_acos(fmin(1, fmax(-1, cosine))));
 }
 
-/* Give the corners at one place that have no normal theirs. least: the cosine of the crease angle. */
+/* Set the normals of those corners at one place that have none. least: the cosine of the crease angle. */
 static void smooth_place(mesh_data *d, const int32_t *corner, int n, double least)
 {
     vec3 all = {0, 0, 0};
     for (int i = 0; n > FAN && i < n; i++)
         all = vec3_add(all, weighted_normal(d, corner[i]));
     for (int i = 0; i < n; i++) {
-        const vec3 own = vec3_unit(area_of((const float(*)[3])d->at[corner[i] / 3]));
+        const vec3 own = vec3_unit(area_of(d->at[corner[i] / 3]));
         vec3 sum = all;
         float *to = d->skin[corner[i] / 3].normal[corner[i] % 3];
         if (to[0] != 0 || to[1] != 0 || to[2] != 0)
             continue;
         for (int j = 0; n <= FAN && j < n; j++) {
-            const vec3 one = vec3_unit(area_of((const float(*)[3])d->at[corner[j] / 3]));
+            const vec3 one = vec3_unit(area_of(d->at[corner[j] / 3]));
             if (i == j || vec3_dot(own, one) >= least)
                 sum = vec3_add(sum, weighted_normal(d, corner[j]));
         }
@@ -217,7 +217,7 @@ static void exchange(float *a, float *b, size_t bytes)
 static void flip_by_normals(mesh_data *d)
 {
     for (int k = 0; k < d->n; k++) {
-        const vec3 n = area_of((const float(*)[3])d->at[k]);
+        const vec3 n = area_of(d->at[k]);
         mesh_skin *x = &d->skin[k];
         if (!(vec3_dot(n, mesh_get(x->normal[0])) < 0 && vec3_dot(n, mesh_get(x->normal[1])) < 0 &&
               vec3_dot(n, mesh_get(x->normal[2])) < 0))
@@ -233,7 +233,7 @@ static void flip_by_normals(mesh_data *d)
 static void replace_averted(mesh_data *d)
 {
     for (int k = 0; k < d->n; k++) {
-        const vec3 n = vec3_unit(area_of((const float(*)[3])d->at[k]));
+        const vec3 n = vec3_unit(area_of(d->at[k]));
         for (int i = 0; i < 3; i++)
             if (!(vec3_dot(n, mesh_get(d->skin[k].normal[i])) >= FACING)) {
                 mesh_set(d->skin[k].normal[i], n);

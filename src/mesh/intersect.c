@@ -1,7 +1,7 @@
 /* Rays against a mesh: hits and shadows. A ray against a triangle is Woop, Benthin and Wald's test of 2013, in double:
  * the ray becomes an axis, and the sign of a sum says on which side of it each edge is. Two triangles that share an
- * edge compute the same sum with opposite signs, so that no ray passes between them. Embree's hierarchy (bvh.h) names
- * the triangles to try; of hits at one place the triangle of the lowest index counts, so that their order does not.
+ * edge compute the same sum with opposite signs, so that no ray passes between them. Embree's hierarchy (bvh.h) reports
+ * the triangles to test, in any order: of hits at one t the triangle with the lowest index counts.
  */
 #include "mesh/mesh.h"
 

@@ -6,14 +6,13 @@
 
 #include "mesh/mesh_data.h"
 
-/* kage-import FILE: where it writes to; its own output goes nowhere. */
+/* kage-import FILE: the descriptor that it writes to; its stdout and stderr are /dev/null. */
 enum { LETTER_FD = 3 };
 
-/* LETTER_MAGIC, with which each letter begins, changes with the form of a letter: a reader of another version is found
- * out. */
+/* Each letter begins with it. It changes with the struct, so that a kage-import of another version is refused. */
 #define LETTER_MAGIC 0x6b61676531ull
 
-/* The limits of the child; the parent names them in its errors. */
+/* The limits of time of kage-import; errors state them. */
 #define MIB ((size_t)1 << 20)
 enum { LETTER_SECONDS = 3, LETTER_MIB_A_SECOND = 1 };
 

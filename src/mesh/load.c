@@ -1,11 +1,11 @@
-/* A model's file is read by a program of its own, kage-import: whatever a broken file does to the importer, crash, loop
- * for ever or take all memory, ends there, and is an error here. The triangles come back through a pipe.
+/* Reads a model's file by running kage-import (room import) and taking the triangles from a pipe. A broken file can
+ * make the importer crash, loop for ever or use up its memory. In a process of its own that is only an error here.
  */
-#define _GNU_SOURCE /* pipe2: no program that another thread starts meanwhile keeps the pipe open */
+#define _GNU_SOURCE /* dladdr, secure_getenv, pipe2 */
 
-#include "mesh/find_reader.h"
 #include "mesh/letter.h"
 
+#include <dlfcn.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <signal.h>
@@ -13,11 +13,71 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-enum { MOST_MIB = 1024 }; /* of a file: no model of MESH_MOST triangles is larger */
+#ifndef KAGE_LIBEXEC
+#define KAGE_LIBEXEC "/usr/local/libexec/kage"
+#endif
+
+enum {
+    MOST_MIB = 1024, /* of a file: no model of MESH_MOST triangles is larger */
+    PATH_SIZE = 4096,
+};
+
+/* ---- where kage-import is ---- */
+
+/* Whether `folder`, n bytes long, with `below` behind it has the program. */
+static bool has(const char *folder, size_t n, const char *below, char path[PATH_SIZE])
+{
+    const int size = snprintf(path, PATH_SIZE, "%.*s%s/kage-import", (int)n, folder, below);
+    return size > 0 && size < PATH_SIZE && access(path, X_OK) == 0;
+}
+
+static bool is_near(const char *file, char path[PATH_SIZE])
+{
+    const char *slash = strrchr(file, '/');
+    const size_t n = slash ? (size_t)(slash - file) : 0;
+    return slash && (has(file, n, "", path) || has(file, n, "/../libexec/kage", path));
+}
+
+/* Beside the file that holds this code. For a program dladdr only knows the name that it was called by, which may be
+ * without a folder; so /proc is asked as well. */
+static bool is_beside(char path[PATH_SIZE])
+{
+    static const char here = 0;
+    char program[PATH_SIZE];
+    Dl_info about;
+    const ssize_t n = readlink("/proc/self/exe", program, sizeof program - 1);
+    program[n > 0 ? n : 0] = 0;
+    return (dladdr(&here, &about) != 0 && about.dli_fname && is_near(about.dli_fname, path)) ||
+           (n > 0 && is_near(program, path));
+}
+
+/* The path of kage-import: `asked`, which may be NULL, else the environment's KAGE_IMPORT, else beside this code or in
+ * ../libexec/kage from there, else where the library was installed. False, with the reason: there is none. */
+static bool find_reader(const char *asked, char path[PATH_SIZE], char why[MESH_WHY])
+{
+    const char *said = asked ? asked : secure_getenv("KAGE_IMPORT"),
+               *by = asked ? "as asked for" : "as KAGE_IMPORT says";
+    if (said) {
+        const int n = snprintf(path, PATH_SIZE, "%s", said);
+        if (n < PATH_SIZE && access(path, X_OK) == 0)
+            return true;
+        snprintf(why, MESH_WHY, "no program %.150s to read models, %s", said, by);
+        return false;
+    }
+    if (is_beside(path) || has(KAGE_LIBEXEC, strlen(KAGE_LIBEXEC), "", path))
+        return true;
+    snprintf(why, MESH_WHY,
+             "no program kage-import to read models, expected it beside kage, in " KAGE_LIBEXEC
+             ", or where KAGE_IMPORT says");
+    return false;
+}
+
+/* ---- its letters ---- */
 
 static bool receive(int from, void *to, size_t size)
 {
@@ -86,12 +146,8 @@ static bool can_open(const char *path, size_t *size, char why[MESH_WHY])
     static const char *const ends[] = {".obj", ".ply", ".stl", ".gltf", ".glb", ".off"};
     const char *dot = strrchr(path, '.');
     bool known = false;
-    for (size_t k = 0; dot && k < sizeof ends / sizeof *ends; k++) {
-        size_t i = 0;
-        while (dot[i] && (i == 0 || (dot[i] | 0x20) == ends[k][i]))
-            i++;
-        known |= !dot[i] && !ends[k][i];
-    }
+    for (size_t k = 0; dot && k < sizeof ends / sizeof *ends; k++)
+        known |= strcasecmp(dot, ends[k]) == 0;
     FILE *f = fopen(path, "rb");
     struct stat about;
     if (!f || fstat(fileno(f), &about) != 0)
@@ -132,14 +188,10 @@ static int start(const char *program, const char *path, int to, pid_t *pid)
         error = posix_spawn_file_actions_adddup2(&ends, to, LETTER_FD);
         for (int k = 0; k < 3 && !error; k++)
             error = posix_spawn_file_actions_addopen(&ends, k, "/dev/null", O_RDWR, 0);
-        if (!error)
-            error = posix_spawnattr_setsigmask(&how, &none);
-        if (!error)
-            error = posix_spawnattr_setsigdefault(&how, &usual);
-        if (!error)
-            error = posix_spawnattr_setflags(&how, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
-        if (!error)
-            error = posix_spawn(pid, program, &ends, &how, argv, environ);
+        error = error ? error : posix_spawnattr_setsigmask(&how, &none);
+        error = error ? error : posix_spawnattr_setsigdefault(&how, &usual);
+        error = error ? error : posix_spawnattr_setflags(&how, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
+        error = error ? error : posix_spawn(pid, program, &ends, &how, argv, environ);
         posix_spawnattr_destroy(&how);
     }
     posix_spawn_file_actions_destroy(&ends);
@@ -152,27 +204,27 @@ static void explain(const letter *l, int status, size_t size, char why[MESH_WHY]
     if (l->is == LETTER_WRONG)
         snprintf(why, MESH_WHY, "%s", l->why);
     else if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU)
-        snprintf(why, MESH_WHY, "reading it takes for ever, expected at most %d seconds",
+        snprintf(why, MESH_WHY, "reading it takes too long, expected at most %d seconds",
                  LETTER_SECONDS + (int)(size / MIB / LETTER_MIB_A_SECOND));
     else
-        snprintf(why, MESH_WHY, "its reader broke down over it, expected a sound file");
+        snprintf(why, MESH_WHY, "its reader failed, expected a valid file");
 }
 
 bool mesh_file_read(const char *path, const char *reader, const progress *w, files *opened, mesh_data *out,
                     char why[MESH_WHY])
 {
     letter l = {.is = LETTER_READ};
-    char program[READER_PATH];
+    char program[PATH_SIZE];
     size_t size = 0;
     int ends[2], status = 0;
     pid_t pid;
-    if (!can_open(path, &size, why) || !find_reader(reader, program, why, MESH_WHY))
+    if (!can_open(path, &size, why) || !find_reader(reader, program, why))
         return false;
     if (!progress_show(w, "reading", 0)) {
         snprintf(why, MESH_WHY, "cancelled");
         return false;
     }
-    if (pipe2(ends, O_CLOEXEC) != 0) {
+    if (pipe2(ends, O_CLOEXEC) != 0) { /* so that programs that other threads start do not inherit the pipe */
         snprintf(why, MESH_WHY, "%s", strerror(errno));
         return false;
     }

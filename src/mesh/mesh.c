@@ -69,10 +69,8 @@ static void mesh_extent(const surface *base, int part, double u[2], double w[2])
 {
     const mesh *f = (const mesh *)base;
     (void)part;
-    for (int k = 0; k < 2; k++) {
-        u[k] = f->u[k];
-        w[k] = f->w[k];
-    }
+    memcpy(u, f->u, sizeof f->u);
+    memcpy(w, f->w, sizeof f->w);
 }
 
 /* ---- making one ---- */
@@ -126,12 +124,12 @@ static const surface_ops methods = {
     .occlude_own = mesh_occlude_own,
     .extent = mesh_extent,
     .box = mesh_box,
-    .parts = 1, /* `part` is the triangle; nothing that is asked by part alone differs between them */
+    .parts = 1, /* though `part` is the triangle */
 };
 
 bool mesh_is(const surface *f) { return f->ops == &methods; }
 
-/* All that follows from triangles and texture coordinates. */
+/* Set all else from the triangles and their texture coordinates. */
 static surface *finish(mesh *f, const progress *w)
 {
     f->base.ops = &methods;
@@ -180,10 +178,10 @@ surface *mesh_moved(const surface *base, const affine *m)
     for (int k = 0; f->d.at && f->d.skin && k < f->d.n; k++)
         for (int i = 0; i < 3; i++) {
             const int to = mirrors && i ? 3 - i : i;
-            const vec3 n = mesh_get(from->d.skin[k].normal[i]);
-            const vec3 to_n = affine_vector(&back, n); /* normals go by the transpose of the inverse */
+            /* normals are mapped by the transpose of the inverse */
+            const vec3 n = affine_vector(&back, mesh_get(from->d.skin[k].normal[i]));
             mesh_set(f->d.at[k][to], affine_point(m, mesh_get(from->d.at[k][i])));
-            mesh_set(f->d.skin[k].normal[to], vec3_unit(to_n));
+            mesh_set(f->d.skin[k].normal[to], vec3_unit(n));
             f->d.skin[k].uv[to][0] = mirrors ? (float)(from->u[0] + from->u[1] - (double)from->d.skin[k].uv[i][0])
                                              : from->d.skin[k].uv[i][0];
             f->d.skin[k].uv[to][1] = from->d.skin[k].uv[i][1];

@@ -6,9 +6,8 @@
  * surface whose normal is N.
  *
  * A triangle whose texture is mirrored would have n inward. So its u is reflected to beyond the end of the range:
- * u -> 2 axis - u, the axis one range beyond the end. Whoever looks (u,w) up in a texture reflects it back
- * (texture/mirrored_uv.h). Where the texture has no area on a triangle, its texture coordinates are moved apart by
- * 1/4096 of the range.
+ * u -> 2 axis - u, the axis one range beyond the end. Textures reflect it back (texture/mirrored_uv.h). Where the
+ * texture has no area on a triangle, its texture coordinates are moved apart by 1/4096 of the range.
  */
 #ifndef KAGE_MESH_MESH_H
 #define KAGE_MESH_MESH_H
@@ -19,20 +18,20 @@
 
 typedef struct mesh {
     surface base;
-    mesh_data d;       /* owned; its notes on textures are counted here */
+    mesh_data d;       /* owned; mesh_new counts notes.folded and notes.spread */
     bool textured;     /* the file has texture coordinates on every triangle */
     double u[2], w[2]; /* the range of the texture coordinates; 0..1 where there are none */
     bvh_space space;   /* the sphere about all vertices */
     bvh *tree;         /* over the triangles, in `space` */
 } mesh;
 
-/* Owns *d, also on failure. *d has been through mesh_clean. w: shows how far the hierarchy is; may be NULL. NULL: out
- * of memory, or all vertices are in one place. */
+/* Owns *d, also on failure. *d has been through mesh_clean. w: the progress of building the hierarchy; may be NULL.
+ * NULL: out of memory, or all vertices are in one place. */
 surface *mesh_new(mesh_data *d, const progress *w);
 
-/* The image of a mesh by an affine map, with arrays of its own (an image by surface_transformed has no true
- * displacement). Where the map mirrors, u runs the other way in its range, as there. NULL: out of memory. */
-surface *mesh_moved(const surface *base, const affine *m);
+/* The image of a mesh by an affine map, with arrays of its own; unlike one by surface_transformed it can be displaced.
+ * Where the map mirrors, u runs the other way in its range. NULL: out of memory. */
+surface *mesh_moved(const surface *from, const affine *m);
 
 /* Whether a surface is one. */
 bool mesh_is(const surface *f);

@@ -1,4 +1,4 @@
-/* A mesh as plain arrays of triangles, from the file (load.c, import_assimp.c) through the checks (clean.c) to the
+/* A mesh as plain arrays of triangles, from the file (import/assimp.c, load.c) through the checks (clean.c) to the
  * surface (mesh.h).
  *
  * Coordinates are kage's, left-handed; a triangle's corners follow each other so that (b - a) x (c - a) points outward.
@@ -24,7 +24,7 @@ typedef struct mesh_skin {
     float uv[3][2];     /* NaN: none in the file */
 } mesh_skin;
 
-/* What was found in a file and changed. */
+/* How often something was found in a file, and changed. */
 typedef struct mesh_notes {
     int flat;   /* triangles without an area, removed */
     int turned; /* triangles flipped, as all three normals were on the other side */
@@ -55,8 +55,8 @@ void mesh_data_free(mesh_data *d);
 
 typedef enum mesh_normals { MESH_NORMALS_FILE, MESH_NORMALS_SMOOTH, MESH_NORMALS_FLAT } mesh_normals;
 
-/* Read a file of a model; it and those that it names are added to *opened. The program `reader` does it, or where that
- * is NULL the one that is found (mesh/load.c). False, and why not in one line. Reentrant. */
+/* Read a model with the program `reader`; NULL: the one that load.c finds. The model's file and those that it refers to
+ * are added to *opened. False, with the reason in one line. Reentrant. */
 bool mesh_file_read(const char *path, const char *reader, const progress *w, files *opened, mesh_data *out,
                     char why[MESH_WHY]);
 

@@ -6,16 +6,14 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #define ROUNDING 1e-15 /* more than the roundings of a sum of four products, as a share of its terms */
 
 typedef struct affine_patch {
     patch base;
     const patch *from;
-    double M[3][3], o[3]; /* M[k]: row k of the map's matrix */
-    double mirror,
-        u_ends_sum; /* the original's u is u_ends_sum + mirror u; mirror is -1 where the map mirrors, else 1 */
+    double M[3][3], o[3];      /* M[k]: row k of the map's matrix */
+    double mirror, u_ends_sum; /* the original's u is u_ends_sum + mirror u; mirror: -1 where the map mirrors, else 1 */
 } affine_patch;
 
 /* One coordinate of Q or of a partial, from the original's three; sign: what mirroring does to the partial. */
@@ -101,16 +99,15 @@ static const patch_ops affine_patch_methods = {
 patch *patch_affine_new(const patch *from, const affine *m)
 {
     affine_patch *q = calloc(1, sizeof *q);
-    const double x[3][3] = {{m->x.x, m->y.x, m->z.x}, {m->x.y, m->y.y, m->z.y}, {m->x.z, m->y.z, m->z.z}},
-                 o[3] = {m->o.x, m->o.y, m->o.z};
+    const bool mirrors = affine_volume(m) < 0;
     if (!q)
         return NULL;
-    q->base = *from;
+    *q = (affine_patch){.base = *from,
+                        .from = from,
+                        .M = {{m->x.x, m->y.x, m->z.x}, {m->x.y, m->y.y, m->z.y}, {m->x.z, m->y.z, m->z.z}},
+                        .o = {m->o.x, m->o.y, m->o.z},
+                        .mirror = mirrors ? -1 : 1,
+                        .u_ends_sum = mirrors ? from->u[0] + from->u[1] : 0};
     q->base.ops = &affine_patch_methods;
-    q->from = from;
-    q->mirror = affine_volume(m) < 0 ? -1 : 1;
-    q->u_ends_sum = q->mirror < 0 ? from->u[0] + from->u[1] : 0;
-    memcpy(q->M, x, sizeof x);
-    memcpy(q->o, o, sizeof o);
     return &q->base;
 }

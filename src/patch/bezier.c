@@ -116,16 +116,10 @@ static void restrict_net(const double *restrict p, double (*restrict a)[4], doub
             z[4 * j + i] = b[j][0] * rows[i] + b[j][1] * rows[4 + i] + b[j][2] * rows[8 + i] + b[j][3] * rows[12 + i];
 }
 
-/* The range of no number. */
-#define EMPTY                                                                                                          \
-    {                                                                                                                  \
-        HUGE_VAL, -HUGE_VAL                                                                                            \
-    }
-
 static void extend(double range[2], double x)
 {
-    range[0] = x < range[0] ? x : range[0];
-    range[1] = x > range[1] ? x : range[1];
+    range[0] = lesser(x, range[0]);
+    range[1] = greater(x, range[1]);
 }
 
 /* Widen by `air` and scale. */
@@ -138,21 +132,20 @@ static void widen_and_scale(double range[2], double k, double air)
 /* Quu, Quw and Qww are in the hulls of the second differences of the control points p. */
 static void bezier_hessians(const double p[16], double air, double du, double dw, expr_hessians *z)
 {
-    double uu[2] = EMPTY, uw[2] = EMPTY, ww[2] = EMPTY;
+    *z = (expr_hessians){{HUGE_VAL, -HUGE_VAL}, {HUGE_VAL, -HUGE_VAL}, {HUGE_VAL, -HUGE_VAL}};
     for (int j = 0; j < 4; j++)
         for (int i = 0; i < 4; i++) {
             const double *q = p + 4 * j + i;
             if (i < 2)
-                extend(uu, q[2] - 2 * q[1] + q[0]);
+                extend(z->uu, q[2] - 2 * q[1] + q[0]);
             if (i < 3 && j < 3)
-                extend(uw, q[5] - q[4] - q[1] + q[0]);
+                extend(z->uw, q[5] - q[4] - q[1] + q[0]);
             if (j < 2)
-                extend(ww, q[8] - 2 * q[4] + q[0]);
+                extend(z->ww, q[8] - 2 * q[4] + q[0]);
         }
-    widen_and_scale(uu, 6 / (du * du), 4 * air);
-    widen_and_scale(uw, 9 / (du * dw), 4 * air);
-    widen_and_scale(ww, 6 / (dw * dw), 4 * air);
-    *z = (expr_hessians){{uu[0], uu[1]}, {uw[0], uw[1]}, {ww[0], ww[1]}};
+    widen_and_scale(z->uu, 6 / (du * du), 4 * air);
+    widen_and_scale(z->uw, 9 / (du * dw), 4 * air);
+    widen_and_scale(z->ww, 6 / (dw * dw), 4 * air);
 }
 
 /* Q is in the hull of the control points over the box, Qu and Qw in those of their differences. */
@@ -169,23 +162,22 @@ static void bezier_bound(const patch *base, int part, const double u[2], const d
         net p;
         double most = 0;
         for (int i = 0; i < 16; i++)
-            most = fabs(all[i]) > most ? fabs(all[i]) : most;
+            most = greater(fabs(all[i]), most);
         restrict_net(all, a, b, p);
         const double air = ROUNDING * most, du = u[1] - u[0], dw = w[1] - w[0];
-        double qv[2] = EMPTY, qu[2] = EMPTY, qw[2] = EMPTY;
+        *z = (expr_bounds){{HUGE_VAL, -HUGE_VAL}, {HUGE_VAL, -HUGE_VAL}, {HUGE_VAL, -HUGE_VAL}};
         for (int j = 0; j < 4; j++)
             for (int i = 0; i < 4; i++) {
                 const double here = p[4 * j + i];
-                extend(qv, here);
+                extend(z->v, here);
                 if (i < 3)
-                    extend(qu, p[4 * j + i + 1] - here);
+                    extend(z->u, p[4 * j + i + 1] - here);
                 if (j < 3)
-                    extend(qw, p[4 * j + i + 4] - here);
+                    extend(z->w, p[4 * j + i + 4] - here);
             }
-        widen_and_scale(qv, 1, air);
-        widen_and_scale(qu, 3 / du, 2 * air);
-        widen_and_scale(qw, 3 / dw, 2 * air);
-        *z = (expr_bounds){{qv[0], qv[1]}, {qu[0], qu[1]}, {qw[0], qw[1]}};
+        widen_and_scale(z->v, 1, air);
+        widen_and_scale(z->u, 3 / du, 2 * air);
+        widen_and_scale(z->w, 3 / dw, 2 * air);
         if (second)
             bezier_hessians(p, air, du, dw, &second->axis[k]);
     }

@@ -41,13 +41,12 @@ static const patch_ops function_methods = {.eval = function_eval, .bound = funct
 
 patch *patch_function_new(const char *kind, expr *const xyz[3], const double u[2], const double w[2])
 {
-    function *q = calloc(1, sizeof *q);
-    for (int k = 0; k < 3; k++) {
+    function *q = xyz[0] && xyz[1] && xyz[2] ? calloc(1, sizeof *q) : NULL;
+    for (int k = 0; k < 3; k++)
         if (q)
             q->axis[k] = xyz[k];
         else
             expr_free(xyz[k]);
-    }
     if (!q)
         return NULL;
     q->base = (patch){&function_methods, kind, 1, {u[0], u[1]}, {w[0], w[1]}, 0};

@@ -1,12 +1,12 @@
 /* Where a ray meets a patch: Q(u,w) = r + s t.
  *
- * The hierarchy names the pieces that the ray may meet. For each pair of ray and piece there is a proof that they miss
- * each other, or that they meet at most once (piece_intersect). Where neither is proved, as where the ray grazes, the
- * piece is subdivided for this ray. So no hit is lost, and none depends on how small the pieces are. Each pair that is
- * left has one root. Newton's iteration finds it in three or four steps, many pairs side by side.
+ * The hierarchy reports the pieces that the ray may meet. For each pair of ray and piece there is a proof that they
+ * miss each other, or that they meet at most once (piece_intersect). Where neither is proved, as where the ray grazes,
+ * the piece is subdivided for this ray. So no hit is lost, and none depends on how small the pieces are. Each pair that
+ * is left has one root. Newton's iteration finds it in three or four steps, many pairs side by side.
  *
- * A ray's first root depends neither on the order in which the hierarchy names pieces nor on the pieces that it names
- * in vain: the pictures are the same on every processor.
+ * A ray's first root depends neither on the order in which the hierarchy reports pieces nor on how many it reports too
+ * many: the pictures are the same on every processor.
  */
 #include "patch/query.h"
 
@@ -18,7 +18,7 @@
 enum {
     STEPS = 24,      /* of Newton's iteration; four are usual, and those that begin far off need more */
     DEPTH = 128,     /* of the stack of halves; each halving adds one, and 64 in u and in w leave no digit to halve */
-    HALVINGS = 4096, /* of one piece for one ray: then a patch with jumps is tried as it is, and others have no root */
+    HALVINGS = 4096, /* of one piece for one ray; what is left is tried as it is on a patch with jumps, else dropped */
     QUEUE = 1024,    /* undecided pieces that wait: 8 for each ray of a wave */
 };
 
@@ -38,9 +38,8 @@ typedef struct pairs {
     int n;
     int32_t lane[PATCH_BATCH], part[PATCH_BATCH];
     double u[PATCH_BATCH], w[PATCH_BATCH], t[PATCH_BATCH];
-    double mu[PATCH_BATCH], mw[PATCH_BATCH], hu[PATCH_BATCH],
-        hw[PATCH_BATCH];     /* the range: its middle and half its width */
-    double close_u, close_w; /* smaller steps are rounding */
+    double mu[PATCH_BATCH], mw[PATCH_BATCH], hu[PATCH_BATCH], hw[PATCH_BATCH]; /* the range: middle, half width */
+    double close_u, close_w;                                                   /* smaller steps are rounding */
     double rx[PATCH_BATCH], ry[PATCH_BATCH], rz[PATCH_BATCH], sx[PATCH_BATCH], sy[PATCH_BATCH], sz[PATCH_BATCH];
     double open[PATCH_BATCH]; /* 1: not converged yet; 0: converged; -1: has left its range for good */
     bool tried[PATCH_BATCH];  /* it is not proved that there is one root at most */

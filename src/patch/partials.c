@@ -1,5 +1,5 @@
-/* Q and its partials on a patch surface, in the tracer's numbers; and what stands for Qu and Qw where they have no two
- * directions. */
+/* Q and its partials on a patch surface, rounded to `real`. Where Qu and Qw are parallel or 0, substitutes give n its
+ * limit. */
 #include "patch/surface.h"
 
 #include "base/real.h"

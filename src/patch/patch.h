@@ -1,6 +1,6 @@
-/* A parametric patch: Q(u,w) over a range of (u,w), in one or several parts. A patch is evaluated at points and bounded
- * over boxes of (u,w), nothing more; patch/surface.c makes a surface of it. All in double, whatever `real` is. A patch
- * does not change once it is made, and any number of threads may use it.
+/* A parametric patch: Q(u,w) over a range of (u,w), in one or several parts. It can be evaluated at points and bounded
+ * over boxes of (u,w); patch/surface.c makes a surface of it. All in double, whatever `real` is. A patch does not
+ * change once it is made, and any number of threads may use it.
  */
 #ifndef KAGE_PATCH_PATCH_H
 #define KAGE_PATCH_PATCH_H
@@ -41,8 +41,8 @@ typedef struct patch_hessians {
 typedef struct patch patch;
 
 typedef struct patch_ops {
-    /* Q at n places; order 1: also Qu and Qw; order 2: also Quu, Quw and Qww. No place affects another. (u,w) may lie
-     * beyond the range, where the same formula holds. No allocation. */
+    /* Q at n places; order 1: also Qu and Qw; order 2: also Quu, Quw and Qww. Each result depends on its own place
+     * only. (u,w) may lie beyond the range, where the same formula holds. No allocation. */
     void (*eval)(const patch *q, int n, const int32_t *part, const double *u, const double *w, int order,
                  patch_jets *out);
 
@@ -59,11 +59,11 @@ struct patch {
     const char *kind; /* as in the scene file */
     int parts;
     double u[2], w[2]; /* the range, of every part */
-    int threads;       /* that share making it ready (piece.c); 0: all processors */
+    int threads;       /* that subdivide it (piece.c); 0: one for each processor */
 };
 
-/* Q from three expressions over u[0]..u[1], w[0]..w[1]. Owns them, also on failure. `kind` must outlive it. NULL: out
- * of memory. */
+/* Q from three expressions over u[0]..u[1], w[0]..w[1]. Owns them, also on failure. `kind` must outlive it. NULL: an
+ * expression is NULL, or out of memory. */
 patch *patch_function_new(const char *kind, expr *const xyz[3], const double u[2], const double w[2]);
 
 /* Bicubic Bezier patches, each a part over 0..1 in u and in w, from 16 control points each: point 4 j + i goes with the

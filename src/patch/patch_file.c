@@ -1,4 +1,4 @@
-/* Reading files of Bezier patches, with the place of what is wrong. */
+/* Reads files of Bezier patches; errors have line and column. */
 #include "patch/patch_file.h"
 
 #include "yaml/text.h"

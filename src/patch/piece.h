@@ -1,5 +1,5 @@
-/* A patch subdivided into pieces, each nearly a parallelogram with a proven error. A ray misses a piece, or meets it at
- * most once, or is undecided; which of the three is proved for each ray. The error of a piece is such that
+/* A patch subdivided into pieces, each nearly a parallelogram with a proven error. For a ray and a piece it is proved
+ * that they miss each other, or that they meet at most once, or neither is. The error of a piece is such that
  *
  *     | Q(u,w) - (c + a A + b B) | <= e,   a and b the place in the piece's range, -1..1 from end to end,
  *     | Qu half - A | <= ea, | Qw half - B | <= eb,   half the range's width in u, in w.
@@ -42,7 +42,7 @@ typedef struct pieces {
 } pieces;
 
 /* Subdivide a patch, with several threads. flat: by how much, in radians or as a share, Qu and Qw may change within a
- * piece that is not very small. False: out of memory, or Q has no bounds or no extent: then *bounded is false, too.
+ * piece that is not very small. False: out of memory, or, with *bounded false, Q has no bounds or is a point. Call
  * pieces_free in either case. */
 bool pieces_of(const patch *q, double flat, pieces *out, bool *bounded);
 void pieces_free(pieces *l);

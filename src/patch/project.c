@@ -11,11 +11,9 @@
 enum { STEPS = 16 }; /* of the iteration; three or four are usual */
 
 #define CONVERGED 1e-9 /* a step, as a share of the piece's range: the next one is of double's rounding */
-#define DAMPING                                                                                                        \
-    1e-14            /* keeps u or w in place where Qu or Qw is 0, as at a sphere's pole; else it is below rounding    \
-                      */
-#define MARGIN 1e-6f /* of the search in the hierarchy, in radii: more than float's rounding there */
-#define FARTHEST2 4  /* the square of the largest distance from the centre, in radii, that is looked up */
+#define DAMPING 1e-14  /* keeps u or w in place where Qu or Qw is 0, as at a pole; else below rounding */
+#define MARGIN 1e-6f   /* of the search in the hierarchy, in radii: more than float's rounding there */
+#define FARTHEST2 4    /* the square of the largest distance from the centre, in radii, that is looked up */
 
 /* Pairs of a point and a piece that wait to be solved, side by side. */
 typedef struct pairs {
@@ -72,7 +70,8 @@ static bool any_open(const pairs *p)
     return false;
 }
 
-/* Of two that are as close, the lower part, u or w wins, so that the hierarchy's order does not matter. */
+/* Of two results at one distance the lower part, then u, then w counts, so that the hierarchy's order does not matter.
+ */
 static bool better(const search *e, int i, int lane)
 {
     const pairs *p = &e->p;

@@ -9,80 +9,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void store_hits(const patch_query *k, int n, int32_t id, hits *h, patch_counts *c)
-{
-    c->evaluations += k->evaluations;
-    for (int i = 0; i < n; i++) {
-        const real t = (real)(k->to[i] + k->start[i]);
-        if (k->found[i] && t > 0 && t < h->t[i]) {
-            h->t[i] = t;
-            h->id[i] = id;
-            c->unsure += k->unsure[i];
-        }
-    }
-}
-
-void patch_surface_intersect(const patch_surface *f, int n, const rays *x, int32_t id, hits *h, patch_counts *c)
-{
-    patch_query k;
-    patch_query_begin(&k, f, false);
-    for (int i = 0; i < n; i++)
-        patch_query_add(&k, i, vec3s_get(&x->r, i), vec3s_get(&x->s, i), 0, (double)h->t[i]);
-    patch_query_run(&k, n);
-    store_hits(&k, n, id, h, c);
-}
-
-static void patch_hit(const surface *base, int n, const rays *x, int32_t id, hits *h)
-{
-    patch_counts c = {0};
-    patch_surface_intersect((const patch_surface *)base, n, x, id, h, &c);
-}
-
-static void patch_locate(const surface *base, int n, const rays *x, const real *t, int32_t *part, real *u, real *w)
-{
-    const patch_surface *f = (const patch_surface *)base;
-    projections p;
-    for (int i = 0; i < n; i++) {
-        const vec3 r = vec3s_get(&x->r, i), way = vec3_scale(vec3s_get(&x->s, i), (double)t[i]);
-        p.place[i] = vec3_add(r, way);
-        p.off[i] = REAL_ROUNDING * (vec3_length(r) + vec3_length(way));
-    }
-    patch_project(f, n, NULL, &p);
-    for (int i = 0; i < n; i++) {
-        part[i] = p.part[i];
-        u[i] = (real)p.u[i];
-        w[i] = (real)p.w[i];
-    }
-}
-
-/* ---- shadows ---- */
-
-static void store_shadows(const patch_query *k, int n, real *lit, patch_counts *c)
-{
-    c->evaluations += k->evaluations;
-    for (int i = 0; i < n; i++)
-        if (k->found[i]) {
-            lit[i] = 0;
-            c->unsure += k->unsure[i];
-        }
-}
-
-void patch_surface_occlude(const patch_surface *f, int n, const rays *x, real *lit, patch_counts *c)
-{
-    patch_query k;
-    patch_query_begin(&k, f, true);
-    for (int i = 0; i < n; i++) /* what is in shadow already has an empty range */
-        patch_query_add(&k, i, vec3s_get(&x->r, i), vec3s_get(&x->s, i), 0, lit[i] > 0 ? 1 : -1);
-    patch_query_run(&k, n);
-    store_shadows(&k, n, lit, c);
-}
-
-static void patch_occlude(const surface *base, int n, const rays *x, real *lit)
-{
-    patch_counts c = {0};
-    patch_surface_occlude((const patch_surface *)base, n, x, lit, &c);
-}
-
 /* Rays that start on the surface itself. The start is projected to Q(u,w) in double. Then the ray's own root is t = 0,
  * up to the error of Newton's iteration there: a rounding over the sine of the ray's angle to the surface. Roots beyond
  * that error are other roots, however near. A ray at so flat an angle that its roots have no digits is not searched:
@@ -116,61 +42,123 @@ static void find_own_starts(const patch_surface *f, int n, const vec3s *at, cons
     }
 }
 
-void patch_surface_intersect_own(const patch_surface *f, int n, const rays *x, const ray_origins *from, int32_t id,
-                                 hits *h, patch_counts *c)
+/* The same for the rays of a wave that start on object `id`, one after another. */
+static void gather_own_starts(const patch_surface *f, int n, const rays *x, const ray_origins *from, int32_t id,
+                              own_starts *d)
 {
-    own_starts d;
     vec3s at = {0}, s = {0};
-    int32_t part[LANES] = {0};
+    int32_t part[LANES];
     int own = 0;
-    patch_query k;
-    patch_query_begin(&k, f, false);
     for (int i = 0; i < n; i++)
         if (from->id[i] == id) {
             part[own] = from->part[i];
             lane_set(&at, own, lane_get(&from->at, i));
             lane_set(&s, own++, lane_get(&x->s, i));
         }
-    find_own_starts(f, own, &at, &s, part, &d);
-    own = 0;
-    for (int i = 0; i < n; i++) {
-        const bool here = from->id[i] == id;
-        const vec3 way = vec3s_get(&x->s, i);
-        patch_query_add(&k, i, here ? d.r[own] : vec3s_get(&x->r, i), way, here ? d.beyond[own] / vec3_length(way) : 0,
-                        (double)h->t[i]);
-        own += here;
+    find_own_starts(f, own, &at, &s, part, d);
+}
+
+/* ---- hits and shadows ---- */
+
+void patch_surface_intersect(const patch_surface *f, int n, const rays *x, const ray_origins *from, int32_t id, hits *h,
+                             patch_counts *c)
+{
+    own_starts d;
+    patch_query k;
+    patch_query_begin(&k, f, false);
+    if (from)
+        gather_own_starts(f, n, x, from, id, &d);
+    for (int i = 0, own = 0; i < n; i++) {
+        const vec3 s = vec3s_get(&x->s, i);
+        if (from && from->id[i] == id) {
+            patch_query_add(&k, i, d.r[own], s, d.beyond[own] / vec3_length(s), (double)h->t[i]);
+            own++;
+        } else
+            patch_query_add(&k, i, vec3s_get(&x->r, i), s, 0, (double)h->t[i]);
     }
     patch_query_run(&k, n);
-    store_hits(&k, n, id, h, c);
+    c->evaluations += k.evaluations;
+    for (int i = 0; i < n; i++) {
+        const real t = (real)(k.to[i] + k.start[i]);
+        if (k.found[i] && t > 0 && t < h->t[i]) {
+            h->t[i] = t;
+            h->id[i] = id;
+            c->unsure += k.unsure[i];
+        }
+    }
+}
+
+static void patch_hit(const surface *base, int n, const rays *x, int32_t id, hits *h)
+{
+    patch_counts c = {0};
+    patch_surface_intersect((const patch_surface *)base, n, x, NULL, id, h, &c);
 }
 
 static void patch_hit_own(const surface *base, int n, const rays *x, const ray_origins *from, int32_t id, hits *h)
 {
     patch_counts c = {0};
-    patch_surface_intersect_own((const patch_surface *)base, n, x, from, id, h, &c);
+    patch_surface_intersect((const patch_surface *)base, n, x, from, id, h, &c);
 }
 
-void patch_surface_occlude_own(const patch_surface *f, int n, const rays *x, const int32_t *part, real *lit,
-                               patch_counts *c)
+void patch_surface_occlude(const patch_surface *f, int n, const rays *x, bool own, const int32_t *part, real *lit,
+                           patch_counts *c)
 {
     own_starts d;
     patch_query k;
     patch_query_begin(&k, f, true);
-    find_own_starts(f, n, &x->r, &x->s, part, &d);
+    if (own)
+        find_own_starts(f, n, &x->r, &x->s, part, &d);
     for (int i = 0; i < n; i++) {
-        const vec3 s =
-            vec3_sub(vec3_add(vec3s_get(&x->r, i), vec3s_get(&x->s, i)), d.r[i]); /* still ends at the light */
-        patch_query_add(&k, i, d.r[i], s, d.beyond[i] / vec3_length(s), lit[i] > 0 ? 1 : -1);
+        vec3 r = vec3s_get(&x->r, i), s = vec3s_get(&x->s, i);
+        double from = 0;
+        if (own) {
+            s = vec3_sub(vec3_add(r, s), d.r[i]); /* still ends at the light */
+            r = d.r[i];
+            from = d.beyond[i] / vec3_length(s);
+        }
+        patch_query_add(&k, i, r, s, from, lit[i] > 0 ? 1 : -1); /* in shadow already: an empty range */
     }
     patch_query_run(&k, n);
-    store_shadows(&k, n, lit, c);
+    c->evaluations += k.evaluations;
+    for (int i = 0; i < n; i++)
+        if (k.found[i]) {
+            lit[i] = 0;
+            c->unsure += k.unsure[i];
+        }
+}
+
+static void patch_occlude(const surface *base, int n, const rays *x, real *lit)
+{
+    patch_counts c = {0};
+    patch_surface_occlude((const patch_surface *)base, n, x, false, NULL, lit, &c);
 }
 
 static void patch_occlude_own(const surface *base, int n, const rays *x, const int32_t *part, real *lit)
 {
     patch_counts c = {0};
-    patch_surface_occlude_own((const patch_surface *)base, n, x, part, lit, &c);
+    patch_surface_occlude((const patch_surface *)base, n, x, true, part, lit, &c);
 }
+
+/* ---- (u,w) and size ---- */
+
+static void patch_locate(const surface *base, int n, const rays *x, const real *t, int32_t *part, real *u, real *w)
+{
+    const patch_surface *f = (const patch_surface *)base;
+    projections p;
+    for (int i = 0; i < n; i++) {
+        const vec3 r = vec3s_get(&x->r, i), way = vec3_scale(vec3s_get(&x->s, i), (double)t[i]);
+        p.place[i] = vec3_add(r, way);
+        p.off[i] = REAL_ROUNDING * (vec3_length(r) + vec3_length(way));
+    }
+    patch_project(f, n, NULL, &p);
+    for (int i = 0; i < n; i++) {
+        part[i] = p.part[i];
+        u[i] = (real)p.u[i];
+        w[i] = (real)p.w[i];
+    }
+}
+
+/* ---- shadows ---- */
 
 static void patch_extent(const surface *base, int part, double u[2], double w[2])
 {
@@ -231,9 +219,10 @@ static surface_ops *methods_of(const patch *q)
     return ops;
 }
 
-static patch_surface *make(patch *q, double flat, bool *bounded)
+patch_surface *patch_surface_make(patch *q, double flat, bool *bounded)
 {
     patch_surface *f = calloc(1, sizeof *f);
+    *bounded = true;
     if (!f) {
         q->ops->free(q);
         return NULL;
@@ -243,17 +232,17 @@ static patch_surface *make(patch *q, double flat, bool *bounded)
     f->base.ops = f->methods = methods_of(q);
     if (f->base.ops && pieces_of(q, flat, &f->l, bounded))
         f->tree = tree_of(&f->l);
-    if (!f->tree) {
-        patch_free(&f->base);
-        return NULL;
-    }
-    return f;
+    if (f->tree)
+        return f;
+    patch_free(&f->base);
+    return NULL;
 }
 
-patch_surface *patch_surface_make(patch *q, double flat)
+surface *patch_surface_new_bounded(patch *q, bool *bounded)
 {
-    bool bounded;
-    return make(q, flat, &bounded);
+    const double FLAT = 0.045; /* 2.6 degrees: few pieces stay undecided. Only speed depends on it. */
+    patch_surface *f = patch_surface_make(q, FLAT, bounded);
+    return f ? &f->base : NULL;
 }
 
 surface *patch_surface_new(patch *q)
@@ -262,12 +251,17 @@ surface *patch_surface_new(patch *q)
     return patch_surface_new_bounded(q, &bounded);
 }
 
-surface *patch_surface_new_bounded(patch *q, bool *bounded)
+surface *patch_surface_formula(const char *kind, const form_formula *f, int threads)
 {
-    *bounded = true;
-    const double FLAT = 0.045; /* 2.6 degrees: few pieces stay undecided. Only speed depends on it. */
-    patch_surface *f = make(q, FLAT, bounded);
-    return f ? &f->base : NULL;
+    expr *e[3];
+    expr_error wrong;
+    for (int k = 0; k < 3; k++)
+        e[k] = expr_parse(f->xyz[k], &wrong);
+    patch *q = patch_function_new(kind, e, f->u, f->w);
+    if (!q)
+        return NULL;
+    q->threads = threads;
+    return patch_surface_new(q);
 }
 
 surface *patch_surface_affine(const surface *base, const affine *m)

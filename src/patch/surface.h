@@ -12,45 +12,41 @@ typedef struct patch_surface {
     patch *q;             /* owned */
     pieces l;
     bvh *tree;   /* over the pieces, in l.space */
-    bool broken; /* Q or its normal may jump: nothing can be proved of pieces there, however small they are */
+    bool broken; /* Q or its normal may jump, and there nothing is proved of pieces of any size */
 } patch_surface;
 
 /* Whether a surface is one. */
 bool patch_surface_is(const surface *f);
 
-/* Q(u,w) from its points alone (patch.h): three expressions, or Bezier patches, each a part. n = Qu x Qw is outward by
- * definition. Owns q, also on failure. NULL where Q has no bounds over its range, or is all in one place (then only: or
- * out of memory). */
+/* The surface of a patch; n = Qu x Qw counts as outward. Owns q, also on failure. NULL: Q has no bounds over its range,
+ * or is a point, or out of memory. */
 surface *patch_surface_new(patch *q);
 
-/* The same; *bounded is false where it is NULL because Q has no bounds, or no extent. */
+/* The same; *bounded is false where Q has no bounds or is a point. */
 surface *patch_surface_new_bounded(patch *q, bool *bounded);
 
-/* The image of such a surface by an affine map, in pieces of its own: what surface_transformed makes of it has no true
- * displacement. `from` must outlive it; as there, where the map mirrors u runs the other way. NULL: as
- * patch_surface_new. */
-surface *patch_surface_affine(const surface *base, const affine *m);
+/* The image of a patch surface by an affine map, which unlike that by surface_transformed can be displaced. `from` must
+ * outlive it. Where the map mirrors, u runs the other way. NULL: as patch_surface_new. */
+surface *patch_surface_affine(const surface *from, const affine *m);
 
-/* A closed form's formula as a patch surface (formula.c); kind: a constant. threads: as patch.threads. NULL: out of
- * memory. */
+/* A closed form's formula as a patch surface, for true displacement of shapes whose closest points have no closed form.
+ * `kind` must outlive it; threads: as patch.threads. NULL: out of memory. */
 surface *patch_surface_formula(const char *kind, const form_formula *f, int threads);
 
-/* As patch_surface_new, with pieces as flat as that (pieces_of). */
-patch_surface *patch_surface_make(patch *q, double flat);
+/* As patch_surface_new_bounded, with the flatness of its pieces (pieces_of). */
+patch_surface *patch_surface_make(patch *q, double flat, bool *bounded);
 
 /* Counts of work: evaluations of the patch, and hits that are not proved to be the first. */
 typedef struct patch_counts {
     long evaluations, unsure;
 } patch_counts;
 
-/* The methods of a patch surface that count: work is added to *c. */
-void patch_surface_intersect(const patch_surface *f, int n, const rays *x, int32_t id, hits *h, patch_counts *c);
-void patch_surface_intersect_own(const patch_surface *f, int n, const rays *x, const ray_origins *from, int32_t id,
-                                 hits *h, patch_counts *c);
-void patch_surface_occlude(const patch_surface *f, int n, const rays *x, real *lit, patch_counts *c);
-/* part: of each start; NULL: any part. */
-void patch_surface_occlude_own(const patch_surface *f, int n, const rays *x, const int32_t *part, real *lit,
-                               patch_counts *c);
+/* Hits of rays and shadows of segments, as the members of surface_ops; work is added to *c. from: NULL where no ray
+ * starts on the surface. own: whether all segments do, and then part[i], or NULL: on any part. */
+void patch_surface_intersect(const patch_surface *f, int n, const rays *x, const ray_origins *from, int32_t id, hits *h,
+                             patch_counts *c);
+void patch_surface_occlude(const patch_surface *f, int n, const rays *x, bool own, const int32_t *part, real *lit,
+                           patch_counts *c);
 
 /* In partials.c: as the member of surface_ops. */
 void patch_surface_eval(const surface *base, int n, const int32_t *part, const real *u, const real *w, int order,

@@ -179,7 +179,7 @@ static void a_reader_that_breaks_down_is_an_error_of_the_scene(void **state)
     const kage_load_options o = {.model_reader = "/bin/true"};
     assert_int_equal(kage_scene_parse(MODEL, strlen(MODEL), "m", KAGE_TESTS_DIR "/../scenes/data", &o, &s, &e),
                      KAGE_BAD_INPUT);
-    assert_non_null(strstr(kage_errors_get(e, 0)->text, "its reader broke down"));
+    assert_non_null(strstr(kage_errors_get(e, 0)->text, "its reader failed"));
     kage_errors_free(e);
 }
 

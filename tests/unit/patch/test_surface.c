@@ -8,7 +8,6 @@
 #include "support/golden_json.h"
 #include "wave/lane.h"
 #include "displaced/offset.h"
-#include "displaced/offset_patch.h"
 #include "patch/patch_file.h"
 #include "support/odd_rays.h"
 #include "support/properties.h"
