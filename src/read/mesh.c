@@ -1,4 +1,4 @@
-/* The scene reader's meshes: a model file, how its normals are made, and whether it can be used. */
+/* Meshes: a model file, how its normals are made, and whether it can be used. */
 #include "read/parts.h"
 
 #include "mesh/mesh.h"
@@ -7,8 +7,7 @@
 
 static bool read_normals(reader *r, node *at, mesh_normals *normals, double *crease)
 {
-    node *k = yaml_get(at, "normals");
-    const int which = k ? yaml_word(r->y, k, "file smooth flat", "file, smooth or flat") : 0;
+    const int which = reader_word(r, at, "normals", "file smooth flat", "file, smooth or flat");
     *normals = which > 0 ? (mesh_normals)which : MESH_NORMALS_FILE;
     return reader_number(r, at, "crease", 0, false, 180, "an angle of 0 to 180 degrees", crease) && which >= 0;
 }
@@ -52,11 +51,9 @@ surface *reader_mesh(reader *r, node *at, shape_spec *spec)
         mesh_data_free(&d);
         return NULL;
     }
-    surface *f = mesh_new(&d, r->from->progress);
-    if (!f) {
-        errors_add(r->e, "out of memory");
+    surface *f = reader_made(r, mesh_new(&d, r->from->progress));
+    if (!f)
         return NULL;
-    }
     *spec = (shape_spec){
         .kind = SHAPE_MESH, .file = reader_copy(r, name), .triangles = ((mesh *)f)->d.n, .found = ((mesh *)f)->d.notes};
     return f;

@@ -1,4 +1,4 @@
-/* The scene reader's objects: their shapes, materials, bumps and transforms, and what is copied from others. */
+/* Objects: their shapes, materials, bumps and transforms, and copies of other objects. */
 #include "base/spelling.h"
 #include "displaced/displaced.h"
 #include "read/parts.h"
@@ -6,26 +6,31 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The index of the thing that the node names. Each thing is a struct that begins with its name. -1 with an error. */
+/* The name of thing i: each is a struct of `size` bytes that begins with its name, or NULL. */
+static const char *name_of(const void *things, size_t size, int i)
+{
+    return *(char *const *)(const void *)((const char *)things + (size_t)i * size);
+}
+
+/* The index of the thing that the node names. `what`: "the name of a material"; `among`: the key of the things. -1 with
+ * an error. */
 static int find(reader *r, node *at, const char *what, const char *among, const void *things, size_t size, int n)
 {
     const char *name = yaml_text(r->y, at, what), *thing = strrchr(what, ' ') + 1;
     char near[64], *names = NULL;
     size_t length = 1;
     for (int i = 0; name && i < n; i++) {
-        char *const *its = (char *const *)(const void *)((const char *)things + (size_t)i * size);
-        if (*its && strcmp(name, *its) == 0)
+        const char *its = name_of(things, size, i);
+        if (its && strcmp(name, its) == 0)
             return i;
-        length += *its ? strlen(*its) + 1 : 0;
+        length += its ? strlen(its) + 1 : 0;
     }
     if (!name)
         return -1;
     if ((names = calloc(1, length)))
-        for (int i = 0; i < n; i++) {
-            char *const *its = (char *const *)(const void *)((const char *)things + (size_t)i * size);
-            if (*its)
-                strcat(strcat(names, *names ? " " : ""), *its);
-        }
+        for (int i = 0; i < n; i++)
+            if (name_of(things, size, i))
+                strcat(strcat(names, *names ? " " : ""), name_of(things, size, i));
     spelling_nearest(name, names ? names : "", near, sizeof near);
     yaml_error(r->y, at, "no %s '%.60s'%s%s%s%s", thing, name,
                *near ? ", did you mean '" : ", expected one of those under '", *near ? near : among, "'",
@@ -44,7 +49,7 @@ static int find_material(reader *r, node *at)
     return k < 0 ? 0 : k;
 }
 
-/* Objects are read in order, except that what is copied is read before its copies. */
+/* Objects are read in order, but an object is read before its copies. */
 typedef struct queue {
     node *at;
     char *state; /* of each object */
@@ -54,7 +59,7 @@ enum { WAITING, BEGUN, DONE };
 
 static void read_object(reader *r, const queue *q, int i);
 
-/* What object i copies, after reading it. NULL with an error. */
+/* The object that object i copies; reads it first if need be. NULL with an error. */
 static const object *read_original(reader *r, const queue *q, node *copy, int i)
 {
     const scene *s = r->s;
@@ -71,7 +76,7 @@ static const object *read_original(reader *r, const queue *q, node *copy, int i)
     return &s->object[k];
 }
 
-/* Shape, material and bump of another object. The copy's own keys then replace them. */
+/* Copy shape, material and bump of another object. The copy's own keys later replace them. */
 static void take(object *o, const object *from)
 {
     char *name = o->name;
@@ -83,7 +88,7 @@ static void take(object *o, const object *from)
     o->shares_bump = true;
 }
 
-/* Make the shape again where a transform, or true displacement, needs another surface than the object's own. */
+/* Make another surface than the object's own if a transform or true displacement needs one. */
 static void place(reader *r, node *v, object *o)
 {
     node *transform = yaml_get(v, "transform"), *copy = yaml_get(v, "copy");
@@ -132,9 +137,8 @@ static void read_object(reader *r, const queue *q, int i)
         if ((at_bump = yaml_get(v, "bump")) && o->own)
             read_own_bump(r, at_bump, o);
         place(r, v, o);
-        if (o->shape && o->bump && scene_wants_truth(s) && displaced_has_form(o->shape) &&
-            !(o->displaced = displaced_new(o->shape, o->bump)))
-            errors_add(r->e, "out of memory");
+        if (o->shape && o->bump && scene_wants_truth(s) && displaced_has_form(o->shape))
+            o->displaced = reader_made(r, displaced_new(o->shape, o->bump));
     }
     q->state[i] = DONE;
 }
@@ -146,10 +150,8 @@ void reader_objects(reader *r)
     node *key;
     if (!q.at)
         return;
-    if (!(q.state = calloc((size_t)s->objects + 1, 1))) {
-        errors_add(r->e, "out of memory");
+    if (!(q.state = reader_made(r, calloc((size_t)s->objects + 1, 1))))
         return;
-    }
     for (int i = 0; i < s->objects; i++) {
         yaml_pair(q.at, i, &key);
         s->object[i].name = reader_name(r, q.at, key);

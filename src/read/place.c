@@ -1,7 +1,7 @@
-/* The image of an object's shape by its transform, and whether its size and place keep enough digits in float.
+/* The object's shape after its transform; errors if float has too few digits for its size or place.
  *
- * True displacement needs closest points in closed form, or a patch. A shape without closed forms for them that has a
- * formula becomes a patch.
+ * True displacement needs closest points in closed form, or a patch. A shape that lacks the first but has a formula
+ * becomes a patch.
  */
 #include "displaced/displaced.h"
 #include "mesh/mesh.h"
@@ -11,14 +11,15 @@
 /* How much more one direction may be stretched than another: float has 7 digits, and hits need 3 of them. */
 #define STRETCH 1e4
 
-/* A transform rounds lengths, so those at the limits for keys, 1e-6 and 1e6, may pass them by this factor. */
+/* By this factor a transformed length may pass the limits for keys, 1e-6 and 1e6. */
 #define ROUNDED 4
 
 static double length(const vec3s *v) { return vec3_length(vec3s_get(v, 0)); }
 
 static bool is_size(double x) { return x >= SMALL / ROUNDED && x <= BIG * ROUNDED; }
 
-/* The lengths of Qu and Qw in the middle of each part, within what a shape's own keys allow. */
+/* Whether Qu and Qw in the middle of each part have lengths that keys may have; otherwise *wrong is one that has not.
+ */
 static bool is_sized(const surface *f, double *wrong)
 {
     for (int32_t part = 0; part < f->ops->parts; part++) {
@@ -40,7 +41,7 @@ static bool is_sized(const surface *f, double *wrong)
     return true;
 }
 
-/* A mesh has no edges of its own: its size is that of the sphere around it. */
+/* The same for a mesh, by the radius of its bounding sphere. */
 static bool is_mesh_sized(const surface *f, const affine *m, double *wrong)
 {
     const double longest = fmax(vec3_length(m->x), fmax(vec3_length(m->y), vec3_length(m->z)));
@@ -48,7 +49,7 @@ static bool is_mesh_sized(const surface *f, const affine *m, double *wrong)
     return is_size(*wrong);
 }
 
-/* A closed form as a patch about the origin; NULL: it has no formula, or out of memory. */
+/* A closed form as a patch about the origin. NULL: it has no formula, or out of memory. */
 static surface *as_patch(const object *o, int threads)
 {
     form_formula formula;
@@ -58,7 +59,7 @@ static surface *as_patch(const object *o, int threads)
                : NULL;
 }
 
-/* The image of a closed form, which the values describe about the origin. */
+/* A closed form with these values, which are about the origin, mapped by m. NULL: out of memory. */
 static surface *image_of_closed(object *o, const shape_values *values, const affine *m, bool truth, int threads)
 {
     form_fault fault;
@@ -73,7 +74,7 @@ static surface *image_of_closed(object *o, const shape_values *values, const aff
     return patch_surface_affine(searched, m);
 }
 
-/* The image of the object's own shape; of a closed form that of `values`, about the origin. NULL: out of memory. */
+/* The object's own shape mapped by m; of a closed form, the one with `values`. NULL: out of memory. */
 static surface *image_of(object *o, const shape_values *values, const affine *m, bool truth, int threads)
 {
     if (o->shape_spec.kind == SHAPE_CLOSED)
@@ -92,7 +93,7 @@ bool reader_place(reader *r, node *at, object *o)
     affine whole = affine_identity();
     shape_values values = {.open = false};
     double wrong = 0;
-    /* closed forms are mapped from the origin: far from it float would lose digits before the transform */
+    /* far from the origin float would lose digits before the transform */
     if (o->shape_spec.kind == SHAPE_CLOSED)
         values = shape_centred(o->shape_spec.form, &o->shape_spec.values, &whole.o);
     const vec3 to = affine_point(m, is_mesh ? ((const mesh *)o->own)->space.centre : whole.o);
@@ -103,8 +104,8 @@ bool reader_place(reader *r, node *at, object *o)
         return yaml_error(r->y, at, "one way is stretched more than %g times as much as another, expected less",
                           STRETCH);
     whole = affine_then(&whole, m);
-    if (!(o->shape = image_of(o, &values, &whole, truth, r->from->threads)))
-        return errors_add(r->e, "out of memory");
+    if (!(o->shape = reader_made(r, image_of(o, &values, &whole, truth, r->from->threads))))
+        return false;
     if (!(is_mesh ? is_mesh_sized(o->own, m, &wrong) : is_sized(o->shape, &wrong)))
         return yaml_error(r->y, at, "an edge or a radius of %.4g scene units comes from this, expected 1e-6 to 1e6",
                           wrong);

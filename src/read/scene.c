@@ -1,12 +1,12 @@
-/* The scene reader: a YAML file (docs/scene.md) becomes a scene. Every value is checked here, and every error has its
- * place in the file; the tracer can rely on the scene.
+/* Reads a YAML file (docs/scene.md) into a scene. The reader checks every value, so the tracer need not; every error
+ * has its place in the file.
  */
 #include "read/parts.h"
 #include "scene/object_bvh.h"
 
 #include <stdlib.h>
 
-/* Whether any object sends rays on, or lets light through. All objects are good: each has a material. */
+/* Note whether any object mirrors or refracts, or is transparent. */
 static void note_secondary(scene *s)
 {
     for (int k = 0; k < s->objects; k++) {

@@ -1,4 +1,4 @@
-/* The scene reader's transforms: steps one after the other, each about the scene's origin and axes, as in POV-Ray. */
+/* Transforms: steps in order, each about the scene's origin and axes, as in POV-Ray. */
 #include "math/kmath.h"
 #include "read/parts.h"
 
@@ -58,28 +58,17 @@ static bool scale(reader *r, node *at, affine *m)
     return true;
 }
 
-/* Place the object as a camera: the origin goes to `from`, +z points to `at`, and +y as far up as it can. */
+/* Place the object like a camera: the origin goes to `from`, +z points to `at`, +y is closest to `up`. */
 static bool look(reader *r, node *at, affine *m)
 {
     vec3 from = {0, 0, 0}, to = {0, 0, 0}, up = {0, 1, 0};
     if (!yaml_map(r->y, at, "look", "from at up"))
         return false;
-    bool good = reader_need_all(r, at, "from at", "look");
-    good = reader_vector(r, at, "from", "where the origin goes " PLACE, &from) && good;
-    good = reader_vector(r, at, "at", "the place looked at " PLACE, &to) && good;
-    good = reader_vector(r, at, "up", "a direction " PLACE, &up) && good;
-    if (!good)
+    if (!reader_look(r, at, "it", "look", &from, &to, &up))
         return false;
-    node *at_up = yaml_get(at, "up");
-    const vec3 way = vec3_sub(to, from);
-    if (vec3_length(way) < SMALL)
-        return yaml_error(r->y, yaml_get(at, "at"), "it looks at its own place, expected 'at' apart from 'from'");
-    if (!reader_has_length(r, at, "up", "a vector", up))
-        return false;
-    const vec3 z = vec3_unit(way), x = vec3_cross(vec3_unit(up), z);
+    const vec3 z = vec3_unit(vec3_sub(to, from)), x = vec3_cross(vec3_unit(up), z);
     if (vec3_length(x) < SMALL)
-        return yaml_error(r->y, at_up ? at_up : at, "'up' is along the view, expected a direction across it%s",
-                          at_up ? "" : " (it is [0, 1, 0])");
+        return reader_up_along(r, at);
     *m = (affine){vec3_unit(x), vec3_cross(z, vec3_unit(x)), z, from};
     return true;
 }
