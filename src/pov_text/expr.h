@@ -4,8 +4,8 @@
 
 #include "expr/expr.h"
 
-/* The text, owned by the caller (free). NULL where there is none: POV-Ray has no such noise as ours, nor numbers that
- * are not finite; where it would be longer than 256 KiB; and where memory is out. */
+/* The text, owned by the caller (free). NULL: it has noise or numbers that are not finite, which POV-Ray lacks; it is
+ * longer than 256 KiB; or out of memory. */
 char *expr_pov(const expr *e);
 
 #endif

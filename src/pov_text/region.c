@@ -1,11 +1,12 @@
-/* The part of a displaced, unbounded plane that the picture can show, or that can shade what it shows. */
+/* The part of a displaced, unbounded plane that the picture can show, or that can cast shadows there. */
 #include "pov_text/flat.h"
 
 typedef struct region {
-    vec3 O, Du, Dw; /* u = Du.(p - O) */
+    vec3 O, Du, Dw; /* u = Du.(p - O), w = Dw.(p - O) */
     double u[2], w[2];
 } region;
 
+/* Extend the region to hold a place. */
 static void hold(region *r, double u, double w)
 {
     r->u[0] = fmin(r->u[0], u);
@@ -20,8 +21,7 @@ static void hold_place(region *r, vec3 p)
     hold(r, vec3_dot(r->Du, d), vec3_dot(r->Dw, d));
 }
 
-/* Add what can cast shadows onto the range: towards the light, by the share of the way that the bumps reach up to it.
- */
+/* Add what can cast shadows onto the region: it lies towards the light at (u,w), at most `share` of the way. */
 static void hold_casters(region *r, double u, double w, double share)
 {
     const double u0 = r->u[0], u1 = r->u[1], w0 = r->w[0], w1 = r->w[1];
@@ -29,21 +29,20 @@ static void hold_casters(region *r, double u, double w, double share)
     hold(r, u1 + share * (u - u1), w1 + share * (w - w1));
 }
 
-/* How far an orthographic camera's ray is followed to the plane: from its start on, with a limit where it runs along.
- */
+/* How far to follow an orthographic camera's ray, which meets the plane at t: a grazing ray has a limit. */
 static double meet(const scene *s, double t)
 {
     double end = 100 * (s->view.width + vec3_length(vec3_sub(s->view.at, s->camera.from)));
     return t > 0 ? fmin(t, end) : 0;
 }
 
-/* What is seen from the camera: the planes at P's least and greatest value. */
+/* The camera, and the planes at P's least and greatest value. */
 typedef struct view {
     const scene *s;
     vec3 n;          /* unit normal of the plane */
     double eye;      /* the camera's height over it */
     double level[2]; /* Pmin, Pmax */
-    double far;      /* farther away along the plane all is within half a pixel of the horizon */
+    double far;      /* along the plane; what is farther away is within half a pixel of the horizon */
 } view;
 
 /* The places where the ray through (x,y) of the picture, each in -1..1, meets both planes. */
@@ -70,7 +69,7 @@ static void hold_ray(region *r, const view *v, double x, double y)
     }
 }
 
-/* The edge of what is seen: rays through the picture's edge. */
+/* Add what is seen, by rays through the picture's edge. */
 static void hold_view(region *r, const view *v)
 {
     enum { STEPS = 32 };

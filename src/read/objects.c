@@ -39,16 +39,6 @@ static int find(reader *r, node *at, const char *what, const char *among, const 
     return -1;
 }
 
-static int find_material(reader *r, node *at)
-{
-    const scene *s = r->s;
-    /* no materials at all is an error already */
-    int k = s->material
-                ? find(r, at, "the name of a material", "materials", s->material, sizeof *s->material, s->materials)
-                : 0;
-    return k < 0 ? 0 : k;
-}
-
 /* Objects are read in order, but an object is read before its copies. */
 typedef struct queue {
     node *at;
@@ -120,6 +110,7 @@ static void read_object(reader *r, const queue *q, int i)
     scene *s = r->s;
     object *o = &s->object[i];
     node *key, *v = yaml_pair(q->at, i, &key), *m, *at_bump, *copy;
+    int k;
     q->state[i] = BEGUN;
     o->placed = affine_identity();
     if (yaml_map(r->y, v, "an object", READER_SHAPES " material bump transform copy")) {
@@ -129,8 +120,11 @@ static void read_object(reader *r, const queue *q, int i)
                 take(o, from);
         } else
             o->shape = o->own = reader_shape(r, v, &o->shape_spec);
-        if ((m = copy ? yaml_get(v, "material") : yaml_need(r->y, v, "material", "an object")))
-            o->material = find_material(r, m);
+        m = copy ? yaml_get(v, "material") : yaml_need(r->y, v, "material", "an object");
+        if (m && s->material) { /* without materials there is an error already */
+            k = find(r, m, "the name of a material", "materials", s->material, sizeof *s->material, s->materials);
+            o->material = k < 0 ? 0 : k;
+        }
         o->color = NULL;
         if ((m || copy) && o->own && s->material)
             reader_color_texture(r, m ? m : copy, o);

@@ -49,23 +49,17 @@ static bool is_mesh_sized(const surface *f, const affine *m, double *wrong)
     return is_size(*wrong);
 }
 
-/* A closed form as a patch about the origin. NULL: it has no formula, or out of memory. */
-static surface *as_patch(const object *o, int threads)
-{
-    form_formula formula;
-    const shape_spec *f = &o->shape_spec;
-    return f->form->formula && f->form->formula(&f->values, &formula)
-               ? patch_surface_formula(f->form->name, &formula, threads)
-               : NULL;
-}
-
 /* A closed form with these values, which are about the origin, mapped by m. NULL: out of memory. */
 static surface *image_of_closed(object *o, const shape_values *values, const affine *m, bool truth, int threads)
 {
     form_fault fault;
-    o->centred = o->shape_spec.form->make(values, &fault);
-    surface *f = o->centred ? surface_transformed(o->centred, m) : NULL,
-            *searched = f && truth && !displaced_has_form(f) ? as_patch(o, threads) : NULL;
+    form_formula formula;
+    const closed_form *form = o->shape_spec.form;
+    o->centred = form->make(values, &fault);
+    surface *f = o->centred ? surface_transformed(o->centred, m) : NULL;
+    if (!f || !truth || displaced_has_form(f) || !form->formula || !form->formula(&o->shape_spec.values, &formula))
+        return f;
+    surface *searched = patch_surface_formula(form->name, &formula, threads);
     if (!searched)
         return f;
     surface_free(f);

@@ -16,14 +16,6 @@ static void note_secondary(scene *s)
     }
 }
 
-static void make_bvh(reader *r)
-{
-    bool good = true;
-    r->s->object_bvh = object_bvh_new(r->s, &good);
-    if (!good)
-        errors_add(r->e, "out of memory");
-}
-
 scene *scene_read(const scene_source *from, errors *e)
 {
     reader r = {.e = e, .from = from, .s = calloc(1, sizeof *r.s)};
@@ -42,7 +34,10 @@ scene *scene_read(const scene_source *from, errors *e)
             reader_objects(&r);
             if (e->count == before) {
                 note_secondary(r.s);
-                make_bvh(&r);
+                bool good = true;
+                r.s->object_bvh = object_bvh_new(r.s, &good);
+                if (!good)
+                    errors_add(e, "out of memory");
             }
         }
         yaml_close(r.y);

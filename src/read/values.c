@@ -96,7 +96,7 @@ bool reader_either(reader *r, node *map, const char *noun, const char *a, const 
 bool reader_look(reader *r, node *map, const char *who, const char *what, vec3 *from, vec3 *to, vec3 *up)
 {
     bool good = reader_need_all(r, map, "from at", what);
-    good = reader_vector(r, map, "from", "the place looked from [x, y, z]", from) && good;
+    good = reader_vector(r, map, "from", "the eye's place [x, y, z]", from) && good;
     good = reader_vector(r, map, "at", "the place looked at [x, y, z]", to) && good;
     good = reader_vector(r, map, "up", "a direction [x, y, z]", up) && good;
     if (good && vec3_length(vec3_sub(*to, *from)) < SMALL)
