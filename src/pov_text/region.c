@@ -29,13 +29,6 @@ static void hold_casters(region *r, double u, double w, double share)
     hold(r, u1 + share * (u - u1), w1 + share * (w - w1));
 }
 
-/* How far to follow an orthographic camera's ray, which meets the plane at t: a grazing ray has a limit. */
-static double meet(const scene *s, double t)
-{
-    double end = 100 * (s->view.width + vec3_length(vec3_sub(s->view.at, s->camera.from)));
-    return t > 0 ? fmin(t, end) : 0;
-}
-
 /* The camera, and the planes at P's least and greatest value. */
 typedef struct view {
     const scene *s;
@@ -57,8 +50,10 @@ static void hold_ray(region *r, const view *v, double x, double y)
     const double t_far = v->far / fmax(vec3_length(along), 1e-9);
     for (int k = 0; k < 2; k++) {
         double t = (v->level[k] - vec3_dot(v->n, vec3_sub(start, r->O))) / slope;
-        if (c->orthographic) {
-            hold_place(r, vec3_add(start, vec3_scale(along, meet(v->s, t))));
+        if (c->orthographic) { /* a grazing ray has a limit */
+            const camera_view *seen = &v->s->view;
+            const double end = 100 * (seen->width + vec3_length(vec3_sub(seen->at, c->from)));
+            hold_place(r, vec3_add(start, vec3_scale(along, t > 0 ? fmin(t, end) : 0)));
             continue;
         }
         t = t > 0 && t < t_far ? t : t_far;

@@ -28,11 +28,13 @@ bool pov_function(pov_text *t, const object *o, const char *name)
 
 /* ---- the bound of the gradient ---- */
 
+/* Of height - P where the directions of height, u and w are at right angles; u and w: bounds of P's partials. */
+static double gradient(double u, double w) { return sqrt(1 + u * u + w * w); }
+
 static double of_flat(const object *o, int part)
 {
-    pov_flat p = pov_flat_of(o, part);
-    double x = (double)o->bump->Pu_max / vec3_length(p.U), z = (double)o->bump->Pw_max / vec3_length(p.W);
-    return sqrt(1 + x * x + z * z);
+    const pov_flat p = pov_flat_of(o, part);
+    return gradient((double)o->bump->Pu_max / vec3_length(p.U), (double)o->bump->Pw_max / vec3_length(p.W));
 }
 
 /* The bound between two latitudes: |grad u| = 1/(r sin w), |grad w| = 1/r. */
@@ -91,30 +93,19 @@ static double of_sphere(const object *o)
 /* A bound of P's change in scene units, where P changes by `slope` a radian about an axis or centre at distance r. */
 static double turning(double slope, double r) { return r > 0 ? slope / ((1 - LEVEL) * r) : HUGE_VAL; }
 
-/* The directions of height, u and w are at right angles. */
-static double of_cylinder(const object *o)
-{
-    double u = turning((double)o->bump->Pu_max, least_within(o)), w = (double)o->bump->Pw_max / pov_scale(o);
-    return sqrt(1 + u * u + w * w);
-}
-
-static double of_torus(const object *o)
-{
-    double u = turning((double)o->bump->Pu_max, least_hole(o)), w = turning((double)o->bump->Pw_max, least_within(o));
-    return sqrt(1 + u * u + w * w);
-}
-
 static double of_part(const object *o, int part)
 {
     const shape_spec *f = &o->shape_spec;
+    const double u = (double)o->bump->Pu_max, w = (double)o->bump->Pw_max;
     if (pov_is_flat(f, part))
         return of_flat(o, part);
     if (f->form == &form_sphere)
         return of_sphere(o);
     if (f->form == &form_torus)
-        return of_torus(o);
-    /* a displaced cone's side ends on cones, and containers are boxes or spheres */
-    return f->values.r[0] == pov_rim(f, 1) ? of_cylinder(o) : HUGE_VAL;
+        return gradient(turning(u, least_hole(o)), turning(w, least_within(o)));
+    if (f->values.r[0] != pov_rim(f, 1))
+        return HUGE_VAL; /* a displaced cone's side ends on cones, and containers are boxes or spheres */
+    return gradient(turning(u, least_within(o)), w / pov_scale(o));
 }
 
 double pov_isosurface_gradient(const object *o, int part)

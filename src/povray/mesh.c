@@ -56,13 +56,6 @@ static bool begin(pile *p, int faces)
     return p->v && p->face && p->table;
 }
 
-static void end(pile *p)
-{
-    free(p->v);
-    free(p->face);
-    free(p->table);
-}
-
 /* u, where mirrored, reflected back (texture/mirrored_uv.h). */
 static double reflected(const mesh *f, double u)
 {
@@ -86,11 +79,6 @@ static void add_smooth(pile *p, const mesh *f)
 
 /* ---- displaced ---- */
 
-static vec3 middle(const mesh_triangle *x)
-{
-    return vec3_scale(vec3_add(x->at[0], vec3_add(x->at[1], x->at[2])), 1.0 / 3);
-}
-
 /* The longest side of a triangle in pixels; 0 if it is behind the eye. */
 static double pixels_of(const scene *s, const mesh_triangle *x)
 {
@@ -98,7 +86,8 @@ static double pixels_of(const scene *s, const mesh_triangle *x)
     double side = 0;
     for (int i = 0; i < 3; i++)
         side = fmax(side, vec3_length(vec3_sub(x->at[(i + 1) % 3], x->at[i])));
-    const double depth = c->orthographic ? 1 : vec3_dot(vec3_sub(middle(x), c->from), c->forward);
+    const vec3 middle = vec3_scale(vec3_add(x->at[0], vec3_add(x->at[1], x->at[2])), 1.0 / 3);
+    const double depth = c->orthographic ? 1 : vec3_dot(vec3_sub(middle, c->from), c->forward);
     return depth > 0 ? side / fmax(depth, 0.5 * side) * s->width / (2 * vec3_length(c->right)) : 0;
 }
 
@@ -191,7 +180,9 @@ bool pov_triangle_mesh(pov_text *t, const scene *s, const object *o)
         pov_print(t, "\n");
         pov_mesh2(t, p.v, p.vertices, pov_by_uv(s, o), p.faces, (const int32_t(*)[3])p.face);
     }
-    end(&p);
+    free(p.v);
+    free(p.face);
+    free(p.table);
     if (good && o->moved && !rough)
         pov_matrix(t, o->placed.x, o->placed.y, o->placed.z, o->placed.o, " // its transform\n");
     return good;

@@ -76,15 +76,11 @@ static double pixels_between(const scene *s, const float a[3], const float b[3])
     return depth > step ? step / depth * s->width / (2 * vec3_length(c->right)) : PIXELS;
 }
 
-static double turn_between(const float a[3], const float b[3])
-{
-    const double turn = vec3_length(difference(a, b));
-    return turn < HUGE_VAL ? turn : 0; /* 0: there is no normal */
-}
-
 static void probe(const pov_vertex *a, const pov_vertex *b, const grid *g, double *most)
 {
-    *most = fmax(*most, fmax(pixels_between(g->s, a->at, b->at) / PIXELS, turn_between(a->normal, b->normal) / TURN));
+    const double turn = vec3_length(difference(a->normal, b->normal));
+    *most = fmax(*most, pixels_between(g->s, a->at, b->at) / PIXELS);
+    *most = fmax(*most, turn < HUGE_VAL ? turn / TURN : 0); /* not finite: there is no normal */
 }
 
 /* Set n so that the largest cell is fine enough, measured on a grid of probes on each part. False: out of memory. */

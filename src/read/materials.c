@@ -72,8 +72,7 @@ static void read_reflection(reader *r, node *at, material *m)
         m->reflection = yaml_is_list(at) ? (vec3){x[0], x[1], x[2]} : (vec3){x[0], x[0], x[0]};
 }
 
-/* Transparency. */
-static void read_clear(reader *r, node *v, material *m)
+static void read_transparency(reader *r, node *v, material *m)
 {
     bool good = reader_number(r, v, "filter", 0, false, 1,
                               "the share of light that it lets through in its colour, 0 to 1", &m->filter);
@@ -110,7 +109,7 @@ void reader_materials(reader *r)
         reader_number(r, v, "roughness", SMALL, false, BIG, "a number of 1e-6 or more; small is sharp", &m->roughness);
         if ((k = yaml_get(v, "reflection")))
             read_reflection(r, k, m);
-        read_clear(r, v, m);
+        read_transparency(r, v, m);
     }
 }
 

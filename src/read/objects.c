@@ -17,16 +17,16 @@ static const char *name_of(const void *things, size_t size, int i)
 static int find(reader *r, node *at, const char *what, const char *among, const void *things, size_t size, int n)
 {
     const char *name = yaml_text(r->y, at, what), *thing = strrchr(what, ' ') + 1;
-    char near[64], *names = NULL;
+    char near[64], *names;
     size_t length = 1;
-    for (int i = 0; name && i < n; i++) {
+    if (!name)
+        return -1;
+    for (int i = 0; i < n; i++) {
         const char *its = name_of(things, size, i);
         if (its && strcmp(name, its) == 0)
             return i;
         length += its ? strlen(its) + 1 : 0;
     }
-    if (!name)
-        return -1;
     if ((names = calloc(1, length)))
         for (int i = 0; i < n; i++)
             if (name_of(things, size, i))

@@ -14,8 +14,6 @@
 /* By this factor a transformed length may pass the limits for keys, 1e-6 and 1e6. */
 #define ROUNDED 4
 
-static double length(const vec3s *v) { return vec3_length(vec3s_get(v, 0)); }
-
 static bool is_size(double x) { return x >= SMALL / ROUNDED && x <= BIG * ROUNDED; }
 
 /* Whether Qu and Qw in the middle of each part have lengths that keys may have; otherwise *wrong is one that has not.
@@ -31,7 +29,7 @@ static bool is_sized(const surface *f, double *wrong)
         const real u = U[1] < HUGE_VAL ? (real)(0.5 * (U[0] + U[1])) : 0,
                    w = W[1] < HUGE_VAL ? (real)(0.5 * (W[0] + W[1])) : 0;
         f->ops->eval(f, 1, &part, &u, &w, 1, &q);
-        const double l[2] = {length(&q.Qu), length(&q.Qw)};
+        const double l[2] = {vec3_length(vec3s_get(&q.Qu, 0)), vec3_length(vec3s_get(&q.Qw, 0))};
         for (int k = 0; k < 2; k++)
             if (!is_size(l[k])) {
                 *wrong = l[k];
