@@ -4,15 +4,12 @@
  * POV-Ray 3.7 has pow, as in C, instead of ^; mod is C's fmod, ln the natural logarithm, and select compares with 0 as
  * ours does.
  */
-#include "pov_text/expr.h"
-
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/errors.h"
 #include "expr/operation.h"
 #include "pov_text/text.h"
 

@@ -3,8 +3,9 @@
 #ifndef KAGE_POV_TEXT_TEXT_H
 #define KAGE_POV_TEXT_TEXT_H
 
-#include "base/affine.h"
 #include "base/file_writer.h"
+#include "base/vec3.h"
+#include "expr/expr.h"
 
 typedef struct pov_text {
     file_writer file;
@@ -41,5 +42,9 @@ typedef struct pov_identifier {
 } pov_identifier;
 
 pov_identifier pov_identify(const char *kind, const char *name, int index);
+
+/* (expr.c) An expression in the syntax of POV-Ray's functions of u and w, owned by the caller (free). NULL: it has
+ * noise or numbers that are not finite, which POV-Ray lacks; it is longer than 256 KiB; or out of memory. */
+char *expr_pov(const expr *e);
 
 #endif

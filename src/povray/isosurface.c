@@ -4,7 +4,6 @@
  * low makes holes, because POV-Ray skips intervals of a ray where by this bound the function can't reach 0.
  */
 #include "math/kmath.h"
-#include "pov_text/expr.h"
 #include "pov_text/flat.h"
 #include "povray/parts.h"
 

@@ -57,8 +57,7 @@ static const object *read_original(reader *r, const queue *q, node *copy, int i)
     if (k == i)
         yaml_error(r->y, copy, "'%s' copies itself, expected another object", s->object[i].name);
     else if (k >= 0 && q->state[k] == BEGUN)
-        yaml_error(r->y, copy, "'%s' is a copy of this one, expected an object that does not lead back here",
-                   s->object[k].name);
+        yaml_error(r->y, copy, "'%s' is itself a copy of this object, expected one that is not", s->object[k].name);
     if (k < 0 || q->state[k] == BEGUN)
         return NULL;
     if (q->state[k] == WAITING)

@@ -8,7 +8,7 @@
 #include "patch/surface.h"
 #include "read/parts.h"
 
-/* How much more one direction may be stretched than another: float has 7 digits, and hits need 3 of them. */
+/* The largest ratio of the scales of two directions: float has 7 digits, and hits need 3 of them. */
 #define STRETCH 1e4
 
 /* By this factor a transformed length may pass the limits for keys, 1e-6 and 1e6. */
@@ -91,20 +91,21 @@ bool reader_place(reader *r, node *at, object *o)
     const vec3 to = affine_point(m, is_mesh ? ((const mesh *)o->own)->space.centre : whole.o);
     const double far = fmax(fabs(to.x), fmax(fabs(to.y), fabs(to.z)));
     if (!(far <= BIG))
-        return yaml_error(r->y, at, "it goes %.4g scene units away, expected 1000000 at most", far);
+        return yaml_error(r->y, at, "a coordinate of %.4g scene units after the transform, expected at most 1000000",
+                          far);
     if (!(square(m) * square(&back) <= STRETCH * STRETCH))
-        return yaml_error(r->y, at, "one way is stretched more than %g times as much as another, expected less",
+        return yaml_error(r->y, at, "one direction is scaled more than %g times as much as another, expected less",
                           STRETCH);
     whole = affine_then(&whole, m);
     if (!(o->shape = reader_made(r, image_of(o, &values, &whole, truth, r->from->threads))))
         return false;
     if (!(is_mesh ? is_mesh_sized(o->own, m, &wrong) : is_sized(o->shape, &wrong)))
-        return yaml_error(r->y, at, "an edge or a radius of %.4g scene units comes from this, expected 1e-6 to 1e6",
+        return yaml_error(r->y, at, "an edge or a radius of %.4g scene units after the transform, expected 1e-6 to 1e6",
                           wrong);
     if (truth && !displaced_has_form(o->shape))
         return yaml_error(r->y, at,
-                          "a %s with caps and a bump is stretched more one way than another, expected the same scale "
-                          "all ways, or 'open: true', for %s",
+                          "a %s with caps and a bump is scaled differently along its axes, expected equal scales, or "
+                          "'open: true', for %s",
                           o->shape->ops->kind, r->s->displaced ? "surface displaced" : "shadow exact");
     return true;
 }

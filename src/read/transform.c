@@ -50,7 +50,7 @@ static bool scale(reader *r, node *at, affine *m)
         return false;
     for (int k = 0; k < (three ? 3 : 1); k++)
         if (fabs(v[k]) < SMALL)
-            return yaml_error(r->y, three ? yaml_item(at, k) : at, "a scale of %g leaves nothing, expected " SCALE,
+            return yaml_error(r->y, three ? yaml_item(at, k) : at, "a scale of %g has no extent, expected " SCALE,
                               v[k]);
     if (!three)
         v[1] = v[2] = v[0];
@@ -73,34 +73,31 @@ static bool look(reader *r, node *at, affine *m)
     return true;
 }
 
-bool reader_transform(reader *r, node *at, affine *m)
+static bool read_step(reader *r, node *at, affine *m)
 {
     static const struct {
         const char *name;
         bool (*read)(reader *r, node *at, affine *m);
     } steps[] = {{"translate", translate}, {"rotate", rotate}, {"scale", scale}, {"look", look}};
+    int k = 0;
+    affine next;
+    if (!yaml_map(r->y, at, "a step", "translate rotate scale look"))
+        return false;
+    if (yaml_size(at) != 1)
+        return yaml_error(r->y, at, "a step with %d keys, expected one, since the order matters", yaml_size(at));
+    while (!yaml_get(at, steps[k].name))
+        k++;
+    if (!steps[k].read(r, yaml_get(at, steps[k].name), &next))
+        return false;
+    *m = affine_then(m, &next);
+    return true;
+}
+
+bool reader_transform(reader *r, node *at, affine *m)
+{
     const int n = yaml_list(r->y, at, "a list of steps, such as [{rotate: [0, 45, 0]}, {translate: [1, 0, 0]}]");
     bool good = n >= 0;
-    for (int i = 0; i < n; i++) {
-        node *step = yaml_item(at, i);
-        if (!yaml_map(r->y, step, "a step", "translate rotate scale look")) {
-            good = false;
-            continue;
-        }
-        if (yaml_size(step) != 1) {
-            good = yaml_error(r->y, step, "a step with %d keys, expected one: which is first matters", yaml_size(step));
-            continue;
-        }
-        for (int k = 0; k < (int)(sizeof steps / sizeof *steps); k++) {
-            node *v = yaml_get(step, steps[k].name);
-            affine next;
-            if (!v)
-                continue;
-            if (steps[k].read(r, v, &next))
-                *m = affine_then(m, &next);
-            else
-                good = false;
-        }
-    }
+    for (int i = 0; i < n; i++)
+        good = read_step(r, yaml_item(at, i), m) && good;
     return good;
 }
