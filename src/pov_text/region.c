@@ -35,7 +35,7 @@ typedef struct view {
     vec3 n;          /* unit normal of the plane */
     double eye;      /* the camera's height over it */
     double level[2]; /* Pmin, Pmax */
-    double far;      /* along the plane; what is farther away is within half a pixel of the horizon */
+    double far;      /* a distance along the plane, beyond which all is within half a pixel of the horizon */
 } view;
 
 /* The places where the ray through (x,y) of the picture, each in -1..1, meets both planes. */
@@ -64,7 +64,7 @@ static void hold_ray(region *r, const view *v, double x, double y)
     }
 }
 
-/* Add what is seen, by rays through the picture's edge. */
+/* Add the visible region, by rays through the picture's edge. */
 static void hold_view(region *r, const view *v)
 {
     enum { STEPS = 32 };

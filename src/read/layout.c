@@ -52,7 +52,7 @@ bool reader_textured(reader *r, node *at, const object *o)
     if (f->kind != SHAPE_MESH || f->found.bare == 0)
         return true;
     return yaml_error(
-        r->y, at, "%d of the %d triangles of '%s' have no texture coordinates, expected them for what lies on (u,w)",
+        r->y, at, "%d of the %d triangles of '%s' have no texture coordinates, expected them for a bump or a pattern",
         f->found.bare, f->triangles, f->file);
 }
 

@@ -52,8 +52,8 @@ double block_pixels(const tessellation *x, const corners *c)
     return longest;
 }
 
-/* How far the normal in a facet that is the whole block can be from that of the surface: what lies between three
- * normals on unit length is a plane, where the slopes are bilinear and unit length is not linear. */
+/* A facet interpolates its slopes linearly and normalises them; the surface's slopes are bilinear. The first term is
+ * the difference of the slopes, the second that of the normalised length. */
 double block_tilt(const corners *c)
 {
     double worst = 0;
@@ -62,7 +62,7 @@ double block_tilt(const corners *c)
         double most = fmax(fmax(g[0], g[1]), fmax(g[2], g[3])), least = fmin(fmin(g[0], g[1]), fmin(g[2], g[3]));
         worst = fmax(worst, fabs(g[0] - g[1] + g[2] - g[3]) / 4 + (most - least) * (most - least) / 8);
     }
-    return worst < 1 ? worst : 1; /* at a pole u has no length */
+    return worst < 1 ? worst : 1; /* at a pole slopes are infinite */
 }
 
 double block_twist(const corners *c)
