@@ -1,29 +1,26 @@
-/* From the program back to a text: each operation joins the texts of its operands, which nothing else uses. Sums stay
- * in the order in which kage adds, so parentheses stand wherever POV-Ray, from left to right, would add otherwise.
+/* Decompiles an expression's program to text: each operation joins the texts of its operands, which are used once.
+ * Parentheses keep the order of kage's sums, since POV-Ray adds from left to right.
  *
- * Seen in POV-Ray 3.7: its functions have no ^ but pow, which is C's; mod is C's fmod, ln the natural logarithm, and
- * select compares with 0 as ours does.
+ * POV-Ray 3.7 has pow, as in C, instead of ^; mod is C's fmod, ln the natural logarithm, and select compares with 0 as
+ * ours does.
  */
-#include "pov_text/expr.h"
-
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/errors.h"
 #include "expr/operation.h"
 #include "pov_text/text.h"
 
-/* A formula that has an operand twice doubles its text, and so on for each that is nested in another. This is far more
- * than any other expression of EXPR_MAX_TEXT bytes needs. */
+/* In bytes. Nested formulas that have an operand twice double its text each time; other expressions of EXPR_MAX_TEXT
+ * bytes need far less. */
 enum { LONGEST = 1 << 18 };
 
 enum binding { SUM, PRODUCT, ATOM };
 
 typedef struct piece {
-    char *text; /* owned; NULL: there is none */
+    char *text; /* owned; NULL: failed */
     enum binding binds;
 } piece;
 
@@ -42,13 +39,20 @@ static piece make(enum binding binds, const char *fmt, ...)
     return p;
 }
 
+/* z, after freeing a text that went into it. */
+static piece freeing(piece a, piece z)
+{
+    free(a.text);
+    return z;
+}
+
 static piece number(double k)
 {
     pov_digits d = pov_exact(k);
     return !isfinite(k) ? (piece){0} : k == KM_PI ? make(ATOM, "pi") : make(k < 0 ? SUM : ATOM, "%s", d.text);
 }
 
-/* `a op b`; on the right what does not bind closer, or begins with a sign, is put in parentheses. */
+/* `a op b`. The right operand has parentheses unless it binds closer and begins without a sign. */
 static piece infix(piece a, const char *op, piece b, enum binding binds)
 {
     bool left = a.binds < binds, right = b.binds <= binds || b.text[0] == '-';
@@ -62,16 +66,13 @@ static piece multiply_k(double k, piece a)
         return a.binds < ATOM ? make(PRODUCT, "-(%s)", a.text) : make(PRODUCT, "-%s", a.text);
     piece b = number(k);
     b.binds = ATOM; /* a leading sign needs no parentheses */
-    piece z = b.text ? infix(b, "*", a, PRODUCT) : (piece){0};
-    free(b.text);
-    return z;
+    return b.text ? freeing(b, infix(b, "*", a, PRODUCT)) : b;
 }
 
 static piece add_k(piece a, double k)
 {
-    piece b = number(fabs(k)), z = b.text ? infix(a, k < 0 ? " - " : " + ", b, SUM) : (piece){0};
-    free(b.text);
-    return z;
+    piece b = number(fabs(k));
+    return b.text ? freeing(b, infix(a, k < 0 ? " - " : " + ", b, SUM)) : b;
 }
 
 /* The operands $1 to $4 put into a formula. */
@@ -81,32 +82,24 @@ static piece formula(const char *text, const piece *x)
     while (z.text && *text) {
         const size_t n = strcspn(text, "$");
         const char *put = text[n] ? x[text[n + 1] - '1'].text : "";
-        piece more = make(ATOM, text[n] ? "%s%.*s(%s)" : "%s%.*s%s", z.text, (int)n, text, put);
-        free(z.text);
-        z = more;
+        z = freeing(z, make(ATOM, text[n] ? "%s%.*s(%s)" : "%s%.*s%s", z.text, (int)n, text, put));
         text += text[n] ? n + 2 : n;
     }
-    piece closed = z.text ? make(ATOM, "%s)", z.text) : z;
-    free(z.text);
-    return closed;
+    return z.text ? freeing(z, make(ATOM, "%s)", z.text)) : z;
 }
 
 static piece call(const char *name, int n, const piece *x)
 {
     piece z = make(ATOM, "%s(%s", name, x[0].text);
-    for (int i = 1; z.text && i <= n; i++) {
-        piece more = i < n ? make(ATOM, "%s, %s", z.text, x[i].text) : make(ATOM, "%s)", z.text);
-        free(z.text);
-        z = more;
-    }
-    return z;
+    for (int i = 1; z.text && i < n; i++)
+        z = freeing(z, make(ATOM, "%s, %s", z.text, x[i].text));
+    return z.text ? freeing(z, make(ATOM, "%s)", z.text)) : z;
 }
 
 static piece power_k(piece a, double k)
 {
-    piece b = number(k), z = b.text ? call("pow", 2, (piece[]){a, b}) : (piece){0};
-    free(b.text);
-    return z;
+    piece b = number(k);
+    return b.text ? freeing(b, call("pow", 2, (piece[]){a, b})) : b;
 }
 
 static piece operation(const expr_code *c, const piece *x)

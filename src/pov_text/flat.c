@@ -1,4 +1,4 @@
-/* Frames of flat parts, and what transforms make of lengths. */
+/* Frames of flat parts, and how transforms scale and mirror. */
 #include "pov_text/flat.h"
 
 static bool flat_part_of(const shape_spec *f, int part, flat_part *out)
@@ -31,8 +31,7 @@ void pov_clip_rim(pov_text *t, const object *o, int part)
     double y[2];
     pov_levels(o, y);
     pov_print(t, "  clipped_by { cylinder { <0, %g, 0>, <0, %g, 0>, %g\n  ", y[0], y[1], pov_rim(&o->shape_spec, part));
-    pov_matrix(t, p.U, p.y, p.W, p.O);
-    pov_print(t, " } }\n");
+    pov_matrix(t, p.U, p.y, p.W, p.O, " } }\n");
 }
 
 double pov_scale(const object *o) { return o->moved ? affine_scale(&o->placed) : 1; }
@@ -52,7 +51,7 @@ shape_values pov_sized(const object *o)
     return v;
 }
 
-/* Where the transform mirrors, u runs the other way through the same range. */
+/* A transform that mirrors reverses u within its range. */
 static void mirror(const object *o, int part, flat_part *p)
 {
     double u[2], w[2];
@@ -71,7 +70,5 @@ pov_flat pov_flat_of(const object *o, int part)
     if (o->moved)
         f = (flat_part){affine_point(&o->placed, f.O), affine_vector(&o->placed, f.U), affine_vector(&o->placed, f.W),
                         f.rim};
-    return (pov_flat){
-        f.O, f.U, f.W, vec3_unit(f.U), vec3_unit(vec3_cross(f.U, f.W)), vec3_unit(f.W),
-    };
+    return (pov_flat){f.O, f.U, f.W, vec3_unit(f.U), vec3_unit(vec3_cross(f.U, f.W)), vec3_unit(f.W)};
 }

@@ -1,11 +1,12 @@
-/* The part of a displaced, unbounded plane that the picture can show, or that can shade what it shows. */
+/* The part of a displaced, unbounded plane that the picture can show, or that can cast shadows there. */
 #include "pov_text/flat.h"
 
 typedef struct region {
-    vec3 O, Du, Dw; /* u = Du.(p - O) */
+    vec3 O, Du, Dw; /* u = Du.(p - O), w = Dw.(p - O) */
     double u[2], w[2];
 } region;
 
+/* Extend the region to hold a place. */
 static void hold(region *r, double u, double w)
 {
     r->u[0] = fmin(r->u[0], u);
@@ -20,8 +21,7 @@ static void hold_place(region *r, vec3 p)
     hold(r, vec3_dot(r->Du, d), vec3_dot(r->Dw, d));
 }
 
-/* Add what can cast shadows onto the range: towards the light, by the share of the way that the bumps reach up to it.
- */
+/* Add what can cast shadows onto the region: it lies towards the light at (u,w), at most `share` of the way. */
 static void hold_casters(region *r, double u, double w, double share)
 {
     const double u0 = r->u[0], u1 = r->u[1], w0 = r->w[0], w1 = r->w[1];
@@ -29,21 +29,13 @@ static void hold_casters(region *r, double u, double w, double share)
     hold(r, u1 + share * (u - u1), w1 + share * (w - w1));
 }
 
-/* How far an orthographic camera's ray is followed to the plane: from its start on, with a limit where it runs along.
- */
-static double meet(const scene *s, double t)
-{
-    double end = 100 * (s->view.width + vec3_length(vec3_sub(s->view.at, s->camera.from)));
-    return t > 0 ? fmin(t, end) : 0;
-}
-
-/* What is seen from the camera: the planes at P's least and greatest value. */
+/* The camera, and the planes at P's least and greatest value. */
 typedef struct view {
     const scene *s;
     vec3 n;          /* unit normal of the plane */
     double eye;      /* the camera's height over it */
     double level[2]; /* Pmin, Pmax */
-    double far;      /* farther away along the plane all is within half a pixel of the horizon */
+    double far;      /* a distance along the plane, beyond which all is within half a pixel of the horizon */
 } view;
 
 /* The places where the ray through (x,y) of the picture, each in -1..1, meets both planes. */
@@ -58,8 +50,10 @@ static void hold_ray(region *r, const view *v, double x, double y)
     const double t_far = v->far / fmax(vec3_length(along), 1e-9);
     for (int k = 0; k < 2; k++) {
         double t = (v->level[k] - vec3_dot(v->n, vec3_sub(start, r->O))) / slope;
-        if (c->orthographic) {
-            hold_place(r, vec3_add(start, vec3_scale(along, meet(v->s, t))));
+        if (c->orthographic) { /* a grazing ray has a limit */
+            const camera_view *seen = &v->s->view;
+            const double end = 100 * (seen->width + vec3_length(vec3_sub(seen->at, c->from)));
+            hold_place(r, vec3_add(start, vec3_scale(along, t > 0 ? fmin(t, end) : 0)));
             continue;
         }
         t = t > 0 && t < t_far ? t : t_far;
@@ -70,7 +64,7 @@ static void hold_ray(region *r, const view *v, double x, double y)
     }
 }
 
-/* The edge of what is seen: rays through the picture's edge. */
+/* Add the visible region, by rays through the picture's edge. */
 static void hold_view(region *r, const view *v)
 {
     enum { STEPS = 32 };

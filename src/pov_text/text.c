@@ -1,4 +1,4 @@
-/* Writing the text of a POV-Ray file. */
+/* The text of a POV-Ray file: the buffer, numbers, and identifiers. */
 #include "pov_text/text.h"
 
 #include <stdarg.h>
@@ -39,7 +39,7 @@ void pov_put(pov_text *t, const char *from, size_t n)
     }
 }
 
-/* In some locales the decimal sign is another one, even of several bytes. */
+/* In some locales the decimal sign is not a point, and may have several bytes. */
 pov_digits pov_number(double x, int digits)
 {
     pov_digits d;
@@ -67,12 +67,6 @@ pov_digits pov_exact(double x)
     return pov_number(x, digits);
 }
 
-static void put_number(pov_text *t, double x)
-{
-    pov_digits d = pov_number(x, 9);
-    pov_put(t, d.text, strlen(d.text));
-}
-
 void pov_print(pov_text *t, const char *fmt, ...)
 {
     va_list args;
@@ -89,30 +83,23 @@ void pov_print(pov_text *t, const char *fmt, ...)
         } else if (c[1] == 'd') {
             char text[16];
             pov_put(t, text, (size_t)snprintf(text, sizeof text, "%d", va_arg(args, int)));
-        } else if (c[1] == 'g')
-            put_number(t, va_arg(args, double));
-        else {
-            vec3 v = va_arg(args, vec3);
-            pov_put(t, "<", 1);
-            put_number(t, v.x);
-            pov_put(t, ", ", 2);
-            put_number(t, v.y);
-            pov_put(t, ", ", 2);
-            put_number(t, v.z);
-            pov_put(t, ">", 1);
+        } else if (c[1] == 'g') {
+            const pov_digits d = pov_number(va_arg(args, double), 9);
+            pov_put(t, d.text, strlen(d.text));
+        } else {
+            const vec3 v = va_arg(args, vec3);
+            pov_print(t, "<%g, %g, %g>", v.x, v.y, v.z);
         }
         c += 2;
     }
     va_end(args);
 }
 
-void pov_matrix(pov_text *t, vec3 x, vec3 y, vec3 z, vec3 origin)
+void pov_matrix(pov_text *t, vec3 x, vec3 y, vec3 z, vec3 origin, const char *after)
 {
-    pov_print(t, "  matrix <%g, %g, %g,  %g, %g, %g,  %g, %g, %g,  %g, %g, %g>", x.x, x.y, x.z, y.x, y.y, y.z, z.x, z.y,
-              z.z, origin.x, origin.y, origin.z);
+    pov_print(t, "  matrix <%g, %g, %g,  %g, %g, %g,  %g, %g, %g,  %g, %g, %g>%s", x.x, x.y, x.z, y.x, y.y, y.z, z.x,
+              z.y, z.z, origin.x, origin.y, origin.z, after);
 }
-
-void pov_affine(pov_text *t, const affine *m) { pov_matrix(t, m->x, m->y, m->z, m->o); }
 
 pov_identifier pov_identify(const char *kind, const char *name, int index)
 {

@@ -1,9 +1,11 @@
-/* The text of a POV-Ray file: buffered, the same in every locale, and under another name until it is complete. */
+/* Writes the text of a POV-Ray file: buffered, the same in every locale, under a temporary name until it is complete.
+ */
 #ifndef KAGE_POV_TEXT_TEXT_H
 #define KAGE_POV_TEXT_TEXT_H
 
-#include "base/affine.h"
 #include "base/file_writer.h"
+#include "base/vec3.h"
+#include "expr/expr.h"
 
 typedef struct pov_text {
     file_writer file;
@@ -12,16 +14,16 @@ typedef struct pov_text {
     char buffer[1 << 16];
 } pov_text;
 
-/* False with a message in *e; then there is nothing to end. */
+/* False with an error in *e; then pov_end must not be called. */
 bool pov_begin(pov_text *t, const char *path, errors *e);
 
-/* With `why` NULL the file takes its place, otherwise it is dropped; errors as from file_writer_close. */
+/* Complete the file; or, where `why` is not NULL, remove it with that as the error. Errors as in file_writer_close. */
 bool pov_end(pov_text *t, const char *why, errors *e);
 
 /* Add n bytes. */
 void pov_put(pov_text *t, const char *from, size_t n);
 
-/* Add a text in which %s is a string, %d an int, %g a double, %v a vec3, all with a point in numbers. */
+/* Add a text in which %s is a string, %d an int, %g a double, %v a vec3. The decimal sign is always a point. */
 void pov_print(pov_text *t, const char *fmt, ...);
 
 typedef struct pov_digits {
@@ -31,15 +33,18 @@ typedef struct pov_digits {
 pov_digits pov_number(double x, int digits); /* significant digits */
 pov_digits pov_exact(double x);              /* as many as give x again */
 
-/* POV-Ray's `matrix` that takes the unit vectors to x, y, z and 0 to the origin; that of an affine map. No new line. */
-void pov_matrix(pov_text *t, vec3 x, vec3 y, vec3 z, vec3 origin);
-void pov_affine(pov_text *t, const affine *m);
+/* POV-Ray's `matrix` that maps the unit vectors to x, y, z and 0 to the origin, followed by the text `after`. */
+void pov_matrix(pov_text *t, vec3 x, vec3 y, vec3 z, vec3 origin, const char *after);
 
-/* The name of a thing of the scene as an identifier of POV-Ray, which has no '-'; `index` keeps a-b and a_b apart. */
+/* The name of a scene's material or object as a POV-Ray identifier, without '-'. `index` tells a-b from a_b. */
 typedef struct pov_identifier {
     char text[96];
 } pov_identifier;
 
 pov_identifier pov_identify(const char *kind, const char *name, int index);
+
+/* (expr.c) An expression in the syntax of POV-Ray's functions of u and w, owned by the caller (free). NULL: it has
+ * noise or numbers that are not finite, which POV-Ray lacks; it is longer than 256 KiB; or out of memory. */
+char *expr_pov(const expr *e);
 
 #endif

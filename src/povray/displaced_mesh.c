@@ -1,12 +1,10 @@
-/* Displaced objects as meshes: maps, and functions that POV-Ray cannot evaluate.
+/* Displaced objects with a map, or with a function that POV-Ray cannot evaluate, as meshes.
  *
- * The lattice has the map's own samples, so that a mesh is the bilinear surface between them and no other. A cell is
- * divided so that its facets are below half a pixel on the screen, into a power of two. Of an unbounded plane only what
- * the camera sees, and what casts shadows there, is made; far away cells are joined. Where that would be too many
- * triangles, a ladder of coarser rules is tried.
+ * The tessellation's lattice has the map's samples, between which the map is bilinear. Cells are divided until facets
+ * cover less than half a pixel. Of an unbounded plane only what the camera sees, and what casts shadows there, is made,
+ * and far cells are joined. If there are too many triangles, coarser settings are tried in order: the rungs.
  */
 #include "pov_text/flat.h"
-#include "povray/material.h"
 #include "povray/parts.h"
 #include "tessellate/tessellation.h"
 
@@ -14,8 +12,8 @@
 
 enum { FIRST_MET = 7, FIRST_STEEP = 14, FIRST_WIDE = 22, FIRST_JOINED = 28, RUNGS = 60 }; /* see rung() */
 
-#define SHAPE 0.005 /* of heights, in sides of a cell */
-#define TILT 0.003  /* by how much a facet's normals may be off, against unit length: less than a step of 1/255 */
+#define SHAPE 0.005 /* allowed error of heights, in sides of a cell */
+#define TILT 0.003  /* allowed error of a facet's unit normals: less than a step of 1/255 */
 #define COARSER 1.4
 
 static void all_parts(tessellation *x)
@@ -30,10 +28,9 @@ static void all_parts(tessellation *x)
     }
 }
 
-/* The ladder. First normals are given up a little. Then, in a picture of rays through the pixels' middles, all that
- * these do not meet: of the rest only the shape is kept, which casts shadows, and of that less and less. From
- * FIRST_STEEP on the mesh is coarse: normals, then facets, then cells are given up. The last rung is one quad for a
- * part. */
+/* The settings of rung k. Up to FIRST_MET normals get less exact. Then, if rays go through pixel centres only, cells
+ * that no ray meets keep only the shape that casts shadows, and less of it with each rung. From FIRST_STEEP on the mesh
+ * is coarse: normals, then facets, then cells. The last rung is one quad for a part. */
 static fineness rung(const tessellation *x, int k)
 {
     fineness f = {.tolerance = FINE, .tilt = TILT, .shape = SHAPE};
@@ -61,7 +58,7 @@ static bool fits(tessellation *x, int k)
     return !x->full;
 }
 
-/* The finest rung that fits, by bisection: 8 rounds at most, and each ends where MOST_TRIANGLES are counted. */
+/* The finest rung that fits, by bisection in at most 8 rounds. Counting ends at MOST_TRIANGLES. */
 static int fit(tessellation *x)
 {
     if (fits(x, 0))

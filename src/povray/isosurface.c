@@ -1,17 +1,15 @@
 /* Displaced objects as isosurfaces of (height over the smooth surface) - P.
  *
- * max_gradient is a proven bound: from P's Lipschitz constants, on a sphere by interval arithmetic. POV-Ray skips an
- * interval of a ray where by this bound the function can't reach 0, so one that is too low makes holes.
+ * max_gradient is a proven bound: from P's Lipschitz constants, on a sphere by interval arithmetic. A value that is too
+ * low makes holes, because POV-Ray skips intervals of a ray where by this bound the function can't reach 0.
  */
-#include "pov_text/expr.h"
 #include "math/kmath.h"
 #include "pov_text/flat.h"
-#include "povray/material.h"
 #include "povray/parts.h"
 
 #include <stdlib.h>
 
-#define STEEPEST 30.0 /* a bound above this makes an isosurface slower than a mesh */
+#define STEEPEST 30.0 /* with a bound above this an isosurface is slower than a mesh */
 
 bool pov_function(pov_text *t, const object *o, const char *name)
 {
@@ -29,14 +27,16 @@ bool pov_function(pov_text *t, const object *o, const char *name)
 
 /* ---- the bound of the gradient ---- */
 
+/* Of height - P where the directions of height, u and w are at right angles; u and w: bounds of P's partials. */
+static double gradient(double u, double w) { return sqrt(1 + u * u + w * w); }
+
 static double of_flat(const object *o, int part)
 {
-    pov_flat p = pov_flat_of(o, part);
-    double x = (double)o->bump->Pu_max / vec3_length(p.U), z = (double)o->bump->Pw_max / vec3_length(p.W);
-    return sqrt(1 + x * x + z * z);
+    const pov_flat p = pov_flat_of(o, part);
+    return gradient((double)o->bump->Pu_max / vec3_length(p.U), (double)o->bump->Pw_max / vec3_length(p.W));
 }
 
-/* The steepest place between two latitudes: |grad u| = 1/(r sin w), |grad w| = 1/r. */
+/* The bound between two latitudes: |grad u| = 1/(r sin w), |grad w| = 1/r. */
 static double of_zone(const expr *e, double scale, double r, double w0, double w1)
 {
     enum { CELLS = 64 };
@@ -51,13 +51,12 @@ static double of_zone(const expr *e, double scale, double r, double w0, double w
     return worst;
 }
 
-/* Angles change without bound near an axis or a centre, and rays do come there: in glass, through a torus's hole, from
- * an eye inside. So the function of a round shape is cut off at this share of the distance between there and the
- * displaced surface. */
+/* Near an axis or a centre angles change without bound. Rays do pass there, in glass or through a torus's hole. So the
+ * function of a round shape is constant within this share of the distance from there to the displaced surface. */
 #define LEVEL 0.25
 
-/* The least distance of the displaced surface from a sphere's centre, a cylinder's axis, or the circle within a torus's
- * tube; then from a torus's own axis. */
+/* The least distance of the displaced surface from a sphere's centre, a cylinder's axis, or the circle in the middle of
+ * a torus's tube. least_hole: from a torus's axis. */
 static double least_within(const object *o)
 {
     const shape_values f = pov_sized(o);
@@ -70,8 +69,8 @@ static double least_hole(const object *o)
     return f.r[0] - f.r[1] - (double)o->bump->Pmax;
 }
 
-/* Near a pole u changes ever faster, and the gradient has no bound if P depends on u. Zones that narrow towards the
- * poles bound it, except for a cap of CAP radians: a thousandth of the radius is less than a pixel. */
+/* If P depends on u, the gradient has no bound at a pole. So the bound is over zones that narrow towards the poles, and
+ * leaves out CAP radians there, which are less than a pixel. */
 static double of_sphere(const object *o)
 {
     const double CAP = 1e-3, GROWTH = 1.05, WIDEST = 0.05, half = KM_PI / 2;
@@ -90,33 +89,22 @@ static double of_sphere(const object *o)
     return worst;
 }
 
-/* How fast P can change with an angle about an axis or centre that the displaced surface keeps a distance r from. */
+/* A bound of P's change in scene units, where P changes by `slope` a radian about an axis or centre at distance r. */
 static double turning(double slope, double r) { return r > 0 ? slope / ((1 - LEVEL) * r) : HUGE_VAL; }
-
-/* The directions of height, u and w are at right angles. */
-static double of_cylinder(const object *o)
-{
-    double u = turning((double)o->bump->Pu_max, least_within(o)), w = (double)o->bump->Pw_max / pov_scale(o);
-    return sqrt(1 + u * u + w * w);
-}
-
-static double of_torus(const object *o)
-{
-    double u = turning((double)o->bump->Pu_max, least_hole(o)), w = turning((double)o->bump->Pw_max, least_within(o));
-    return sqrt(1 + u * u + w * w);
-}
 
 static double of_part(const object *o, int part)
 {
     const shape_spec *f = &o->shape_spec;
+    const double u = (double)o->bump->Pu_max, w = (double)o->bump->Pw_max;
     if (pov_is_flat(f, part))
         return of_flat(o, part);
     if (f->form == &form_sphere)
         return of_sphere(o);
     if (f->form == &form_torus)
-        return of_torus(o);
-    /* a displaced cone ends on cones, which no container does */
-    return f->values.r[0] == pov_rim(f, 1) ? of_cylinder(o) : HUGE_VAL;
+        return gradient(turning(u, least_hole(o)), turning(w, least_within(o)));
+    if (f->values.r[0] != pov_rim(f, 1))
+        return HUGE_VAL; /* a displaced cone's side ends on cones, and containers are boxes or spheres */
+    return gradient(turning(u, least_within(o)), w / pov_scale(o));
 }
 
 double pov_isosurface_gradient(const object *o, int part)
@@ -129,11 +117,17 @@ double pov_isosurface_gradient(const object *o, int part)
 
 /* ---- writing ---- */
 
-/* Mirrors and glass multiply the error of a hit. */
+/* The isosurface's accuracy in scene units. Mirrors and glass multiply the error of a hit. */
 static double accuracy(const scene *s, const object *o)
 {
     return (material_sends(&s->material[o->material]) ? 2e-9 : 1e-7) *
            vec3_length(vec3_sub(s->view.at, s->camera.from));
+}
+
+static void put_limits(pov_text *t, const scene *s, const object *o, int part, const char *note)
+{
+    pov_print(t, "  accuracy %g\n  max_gradient %g // a bound%s\n", accuracy(s, o), pov_isosurface_gradient(o, part),
+              note);
 }
 
 static void put_over(pov_text *t, const char *x, double length)
@@ -160,27 +154,24 @@ static void put_flat(pov_text *t, const scene *s, const object *o, int part, con
     put_over(t, "x", lu);
     pov_print(t, ", ");
     put_over(t, "z", lw);
-    pov_print(t, ") }\n  contained_by { box { <%g, %g, %g>, <%g, %g, %g> } }\n", u[0] * lu, y[0], w[0] * lw, u[1] * lu,
-              y[1], w[1] * lw);
-    pov_print(t, "  open\n  accuracy %g\n  max_gradient %g // a bound: none is steeper\n", accuracy(s, o),
-              pov_isosurface_gradient(o, part));
-    pov_matrix(t, p.x, p.y, p.z, p.O);
-    pov_print(t, " // x along u, y the height, z along w, origin\n");
+    pov_print(t, ") }\n  contained_by { box { <%g, %g, %g>, <%g, %g, %g> } }\n  open\n", u[0] * lu, y[0], w[0] * lw,
+              u[1] * lu, y[1], w[1] * lw);
+    put_limits(t, s, o, part, ": none is steeper");
+    pov_matrix(t, p.x, p.y, p.z, p.O, " // x along u, y the height, z along w, origin\n");
     if (rim >= 0)
         pov_clip_rim(t, o, part);
 }
 
-/* From the object's space to the scene's. The size is in the shape already (pov_sized). */
+/* The object's transform without its scale, which is in the shape (pov_sized). */
 static void put_motion(pov_text *t, const object *o)
 {
     const double k = 1 / pov_scale(o);
-    if (!o->moved)
-        return;
-    pov_matrix(t, vec3_scale(o->placed.x, k), vec3_scale(o->placed.y, k), vec3_scale(o->placed.z, k), o->placed.o);
-    pov_print(t, " // the object's transform\n");
+    if (o->moved)
+        pov_matrix(t, vec3_scale(o->placed.x, k), vec3_scale(o->placed.y, k), vec3_scale(o->placed.z, k), o->placed.o,
+                   " // the object's transform\n");
 }
 
-/* The begin and the end of a round shape's function, with its cut-offs. */
+/* The beginning and the end of a round shape's function, with the values near an axis or a centre (LEVEL). */
 static void begin_function(pov_text *t, const object *o)
 {
     pov_print(t, "isosurface {\n  function {\n    %smax(", o->shape_spec.form == &form_torus ? "min(" : "");
@@ -203,9 +194,9 @@ static void put_sphere(pov_text *t, const scene *s, const object *o, const char 
     pov_print(t, "sqrt(x*x + y*y + z*z) - %s\n    - %s(%s, atan2(sqrt(x*x + z*z), y))", pov_exact(radius).text, name,
               pov_around(o));
     end_function(t, o);
-    pov_print(t, "  contained_by { sphere { 0, %g } }\n  accuracy %g\n", radius + y[1], accuracy(s, o));
-    pov_print(t, "  max_gradient %g // a bound but for 0.001 radians around the poles\n  translate %v\n",
-              pov_isosurface_gradient(o, 0), f.v[0]);
+    pov_print(t, "  contained_by { sphere { 0, %g } }\n", radius + y[1]);
+    put_limits(t, s, o, 0, " but for 0.001 radians around the poles");
+    pov_print(t, "  translate %v\n", f.v[0]);
     put_motion(t, o);
 }
 
@@ -223,12 +214,10 @@ static void put_side(pov_text *t, const scene *s, const object *o, const char *n
     put_over(t, "", pov_scale(o));
     pov_print(t, ")");
     end_function(t, o);
-    pov_print(t, "  contained_by { box { <%g, 0, %g>, <%g, %g, %g> } }\n", -radius - y[1], -radius - y[1],
+    pov_print(t, "  contained_by { box { <%g, 0, %g>, <%g, %g, %g> } }\n  open\n", -radius - y[1], -radius - y[1],
               radius + y[1], length, radius + y[1]);
-    pov_print(t, "  open\n  accuracy %g\n  max_gradient %g // a bound: none is steeper\n", accuracy(s, o),
-              pov_isosurface_gradient(o, 0));
-    pov_matrix(t, a.x, a.y, a.z, f.v[0]);
-    pov_print(t, " // y is the axis\n");
+    put_limits(t, s, o, 0, ": none is steeper");
+    pov_matrix(t, a.x, a.y, a.z, f.v[0], " // y is the axis\n");
     put_motion(t, o);
 }
 
@@ -245,10 +234,8 @@ static void put_torus(pov_text *t, const scene *s, const object *o, const char *
     pov_print(t, "    - %s(%s, atan2(-y, sqrt(x*x + z*z) - %s))", name, pov_around(o), major.text);
     end_function(t, o);
     pov_print(t, "  contained_by { box { <%g, %g, %g>, <%g, %g, %g> } }\n", -wide, -high, -wide, wide, high, wide);
-    pov_print(t, "  accuracy %g\n  max_gradient %g // a bound: none is steeper\n", accuracy(s, o),
-              pov_isosurface_gradient(o, 0));
-    pov_matrix(t, a.x, a.y, a.z, f.v[0]);
-    pov_print(t, " // y is the axis\n");
+    put_limits(t, s, o, 0, ": none is steeper");
+    pov_matrix(t, a.x, a.y, a.z, f.v[0], " // y is the axis\n");
     put_motion(t, o);
 }
 

@@ -1,11 +1,9 @@
-/* Materials for POV-Ray. A colour that is not constant becomes a pigment in the surface's (u,w): on a flat surface in
- * its frame; on a round one by a POV-Ray warp about y, whose x is u/2pi in 0..1; on a mesh by its vertices' (u,w).
+/* Materials for POV-Ray. A pattern becomes a pigment in the surface's (u,w): on a flat part in its frame; on a round
+ * one by a POV-Ray warp about y, with u/2pi as x; on a mesh by the (u,w) of its vertices.
  */
-#include "povray/material.h"
-
 #include "patch/surface.h"
 #include "pov_text/flat.h"
-#include "povray/povray.h"
+#include "povray/parts.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -51,21 +49,14 @@ static void put_color(pov_text *t, const material *m, vec3 color)
         pov_print(t, "color rgb %v", color);
 }
 
-static void put_finish(pov_text *t, const material *m, const char *in)
+static void put_finish(pov_text *t, const material *m)
 {
     pov_print(t,
-              "%sfinish {\n%s  ambient %g\n%s  diffuse %g\n%s  phong %g phong_size %g\n%s  specular %g roughness %g\n",
-              in, in, m->ambient, in, m->diffuse, in, m->phong, m->phong_size, in, m->specular, m->roughness);
+              "  finish {\n    ambient %g\n    diffuse %g\n    phong %g phong_size %g\n    specular %g roughness %g\n",
+              m->ambient, m->diffuse, m->phong, m->phong_size, m->specular, m->roughness);
     if (material_mirrors(m))
-        pov_print(t, "%s  reflection { rgb %v }\n", in, m->reflection);
-    pov_print(t, "%s}\n", in);
-}
-
-static void put_plain(pov_text *t, const material *m, const char *name)
-{
-    pov_print(t, "#declare %s = texture {\n  pigment { ", name);
-    put_color(t, m, m->color);
-    pov_print(t, " }\n");
+        pov_print(t, "    reflection { rgb %v }\n", m->reflection);
+    pov_print(t, "  }\n");
 }
 
 void pov_materials(pov_text *t, const scene *s)
@@ -76,9 +67,12 @@ void pov_materials(pov_text *t, const scene *s)
         checkers |= m->pattern == PATTERN_CHECKER;
         if (m->pattern)
             pov_print(t, "#declare %s =\n", pov_identify("Finish", m->name, k).text);
-        else
-            put_plain(t, m, pov_identify("Material", m->name, k).text);
-        put_finish(t, m, "  ");
+        else {
+            pov_print(t, "#declare %s = texture {\n  pigment { ", pov_identify("Material", m->name, k).text);
+            put_color(t, m, m->color);
+            pov_print(t, " }\n");
+        }
+        put_finish(t, m);
         pov_print(t, m->pattern ? "\n" : "}\n\n");
     }
     if (checkers)
@@ -90,9 +84,9 @@ void pov_materials(pov_text *t, const scene *s)
 
 /* ---- (u,w) on round surfaces ---- */
 
-/* In a frame about y, u is an angle from x to z, or, where a transform mirrors, from z to x. */
+/* (u,w) on a round surface about y: u is an angle from x to z, or from z to x if a transform mirrors. */
 typedef struct winding {
-    char w[160]; /* as a function of x, y and z */
+    char w[160]; /* a function of x, y and z */
     char warp[80];
     double low, rate; /* the warp's y is low + rate w */
     frame axes;
@@ -157,16 +151,7 @@ static void put_image_map(pov_text *t, const material *m)
     pov_print(t, "%s }", m->nearest ? "" : " interpolate 2");
 }
 
-/* In POV-Ray an image's lower left corner is in the origin. */
-static void put_flat_image(pov_text *t, const material *m, const map_layout *l)
-{
-    pov_print(t, "    ");
-    put_image_map(t, m);
-    pov_print(t, "\n    scale <1, -1, 1> translate y // its first row at the lowest w\n");
-    pov_print(t, "    scale <%g, %g, 1> translate <%g, %g, 0>\n", l->size[0], l->size[1], l->offset[0], l->offset[1]);
-}
-
-/* `turns`: 1 for angles below 0. */
+/* `turns`: added to u/2pi. */
 static void put_wound_image(pov_text *t, const object *o, const material *m, const winding *a, int turns)
 {
     const map_layout *l = &o->color_layout;
@@ -177,7 +162,7 @@ static void put_wound_image(pov_text *t, const object *o, const material *m, con
               a->low + a->rate * (l->offset[1] + l->size[1]), a->warp);
 }
 
-/* An image that does not close around the surface has its seam at u = pi, where z changes its sign behind the axis. */
+/* An image that does not repeat a whole number of times has its seam at u = pi, where z changes its sign. */
 static void put_round_image(pov_text *t, const object *o, const material *m, const winding *a)
 {
     const double times = 2 * PI / o->color_layout.size[0];
@@ -193,22 +178,18 @@ static void put_round_image(pov_text *t, const object *o, const material *m, con
     pov_print(t, "      ]\n    }\n");
 }
 
-/* Where x is u and y is w. */
+/* In a frame where x is u and y is w. In POV-Ray an image's lower left corner is at the origin. */
 static void put_plane_pigment(pov_text *t, const object *o, const material *m)
 {
-    if (m->pattern == PATTERN_CHECKER)
-        put_checker(t, m, &o->color_layout, "x", "y");
-    else
-        put_flat_image(t, m, &o->color_layout);
-}
-
-static void put_flat_pigment(pov_text *t, const object *o, const material *m, int part)
-{
-    const pov_flat p = pov_flat_of(o, part);
-    put_plane_pigment(t, o, m);
-    pov_print(t, "  ");
-    pov_matrix(t, p.U, p.W, p.y, p.O);
-    pov_print(t, "\n");
+    const map_layout *l = &o->color_layout;
+    if (m->pattern == PATTERN_CHECKER) {
+        put_checker(t, m, l, "x", "y");
+        return;
+    }
+    pov_print(t, "    ");
+    put_image_map(t, m);
+    pov_print(t, "\n    scale <1, -1, 1> translate y // its first row at the lowest w\n");
+    pov_print(t, "    scale <%g, %g, 1> translate <%g, %g, 0>\n", l->size[0], l->size[1], l->offset[0], l->offset[1]);
 }
 
 static void put_round_pigment(pov_text *t, const object *o, const material *m)
@@ -219,12 +200,10 @@ static void put_round_pigment(pov_text *t, const object *o, const material *m)
     else
         put_round_image(t, o, m, &a);
     pov_print(t, "  ");
-    pov_matrix(t, a.axes.x, a.axes.y, a.axes.z, o->shape_spec.values.v[0]);
-    pov_print(t, " // y is the axis\n");
+    pov_matrix(t, a.axes.x, a.axes.y, a.axes.z, o->shape_spec.values.v[0], " // y is the axis\n");
     if (o->moved) {
         pov_print(t, "  ");
-        pov_affine(t, &o->placed);
-        pov_print(t, "\n");
+        pov_matrix(t, o->placed.x, o->placed.y, o->placed.z, o->placed.o, "\n");
     }
 }
 
@@ -235,22 +214,19 @@ void pov_texture(pov_text *t, const scene *s, const object *o, int part)
         pov_print(t, "  texture { %s }\n", pov_identify("Material", m->name, o->material).text);
         return;
     }
-    /* uv_mapping in the pigment instead would not reach shadow rays */
+    /* POV-Ray ignores uv_mapping in the pigment for shadow rays */
     pov_print(t, "  texture {\n%s    pigment { // in (u, w)\n", pov_by_uv(s, o) ? "    uv_mapping\n" : "");
-    if (pov_by_uv(s, o))
+    const bool flat = pov_is_flat(&o->shape_spec, part), by_uv = pov_by_uv(s, o);
+    if (flat || by_uv)
         put_plane_pigment(t, o, m);
-    else if (pov_is_flat(&o->shape_spec, part))
-        put_flat_pigment(t, o, m, part);
     else
         put_round_pigment(t, o, m);
+    if (flat && !by_uv) {
+        const pov_flat p = pov_flat_of(o, part);
+        pov_print(t, "  ");
+        pov_matrix(t, p.U, p.W, p.y, p.O, "\n");
+    }
     pov_print(t, "    }\n    finish { %s }\n  }\n", pov_identify("Finish", m->name, o->material).text);
-}
-
-/* Whether POV-Ray has a way to lay a pattern on the shape: on each flat part as it is, on a round one by a warp. */
-static bool has_warp(const shape_spec *f)
-{
-    const closed_form *form = f->form;
-    return form->flat || form == &form_sphere || form == &form_torus;
 }
 
 bool pov_is_patch(const scene *s, const object *o)
@@ -259,12 +235,12 @@ bool pov_is_patch(const scene *s, const object *o)
     if (f->kind == SHAPE_MESH)
         return false;
     return f->kind == SHAPE_PATCH || !f->form->povray || (s->displaced && patch_surface_is(o->shape)) ||
-           (s->material[o->material].pattern && !has_warp(f));
+           (s->material[o->material].pattern && !f->form->flat && f->form != &form_sphere && f->form != &form_torus);
 }
 
 bool pov_by_uv(const scene *s, const object *o)
 {
-    /* no warp fits a displaced cone: w is that of the closest point on the smooth one */
+    /* no warp gives w on a displaced cone, which is w at the closest point of the smooth one */
     const bool cone = o->shape_spec.form == &form_cone && s->displaced && o->bump;
     return s->material[o->material].pattern && (cone || pov_is_patch(s, o) || o->shape_spec.kind == SHAPE_MESH);
 }

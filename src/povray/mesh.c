@@ -1,7 +1,6 @@
-/* Meshes from files, smooth or displaced, as one mesh2; equal vertices are written once. Displaced, each triangle
- * becomes k x k triangles with the displaced surface's normals; k is the same for all, so that there are no gaps.
+/* Meshes from files, smooth or displaced, as one mesh2; equal vertices are written once. A displaced triangle becomes
+ * n x n triangles with the displaced surface's normals; n is the same for all, so that there are no gaps.
  */
-#include "povray/material.h"
 #include "povray/parts.h"
 
 #include "displaced/prism.h"
@@ -57,19 +56,11 @@ static bool begin(pile *p, int faces)
     return p->v && p->face && p->table;
 }
 
-static void end(pile *p)
-{
-    free(p->v);
-    free(p->face);
-    free(p->table);
-}
-
-/* (u,w), with mirrored ones reflected back (texture/mirrored_uv.h). */
-static void put_texture(const mesh *f, double u, double w, float to[2])
+/* u, where mirrored, reflected back (texture/mirrored_uv.h). */
+static double reflected(const mesh *f, double u)
 {
     const double fold = 2 * f->u[1] - f->u[0];
-    to[0] = (float)(u > fold ? 2 * fold - u : u);
-    to[1] = (float)w;
+    return u > fold ? 2 * fold - u : u;
 }
 
 static void add_smooth(pile *p, const mesh *f)
@@ -79,7 +70,8 @@ static void add_smooth(pile *p, const mesh *f)
             pov_vertex v;
             memcpy(v.at, f->d.at[k][i], sizeof v.at);
             memcpy(v.normal, f->d.skin[k].normal[i], sizeof v.normal);
-            put_texture(f, (double)f->d.skin[k].uv[i][0], (double)f->d.skin[k].uv[i][1], v.uv);
+            v.uv[0] = (float)reflected(f, (double)f->d.skin[k].uv[i][0]);
+            v.uv[1] = f->d.skin[k].uv[i][1];
             p->face[k][i] = index_of(p, &v);
         }
     p->faces = f->d.n;
@@ -87,19 +79,15 @@ static void add_smooth(pile *p, const mesh *f)
 
 /* ---- displaced ---- */
 
-static vec3 middle(const mesh_triangle *x)
-{
-    return vec3_scale(vec3_add(x->at[0], vec3_add(x->at[1], x->at[2])), 1.0 / 3);
-}
-
-/* The longest side of a triangle in pixels; 0 behind the eye. */
+/* The longest side of a triangle in pixels; 0 if it is behind the eye. */
 static double pixels_of(const scene *s, const mesh_triangle *x)
 {
     const camera *c = &s->camera;
     double side = 0;
     for (int i = 0; i < 3; i++)
         side = fmax(side, vec3_length(vec3_sub(x->at[(i + 1) % 3], x->at[i])));
-    const double depth = c->orthographic ? 1 : vec3_dot(vec3_sub(middle(x), c->from), c->forward);
+    const vec3 middle = vec3_scale(vec3_add(x->at[0], vec3_add(x->at[1], x->at[2])), 1.0 / 3);
+    const double depth = c->orthographic ? 1 : vec3_dot(vec3_sub(middle, c->from), c->forward);
     return depth > 0 ? side / fmax(depth, 0.5 * side) * s->width / (2 * vec3_length(c->right)) : 0;
 }
 
@@ -114,28 +102,18 @@ static int division_of(const scene *s, const mesh *f)
     return (int)fmax(1, fmin(fmin(ceil(most), floor(room)), FINEST));
 }
 
-/* Row j of the lattice on a triangle has n - j + 1 places. */
+/* The index of the first place in row j of the lattice on a triangle. Row j has n - j + 1 places. */
 static int row_start(int n, int j) { return j * (n + 1) - j * (j - 1) / 2; }
-
-static void put_wide(float to[3], vec3 v)
-{
-    to[0] = (float)v.x;
-    to[1] = (float)v.y;
-    to[2] = (float)v.z;
-}
 
 static pov_vertex rough_vertex(const mesh *f, const mesh_triangle *x, real u, real w, real P, real Pu, real Pw)
 {
     double b, c;
     vec3 gu, gw;
-    pov_vertex v;
     mesh_shares(x, (double)u, (double)w, &b, &c);
     const prism_point p = prism_at(x, b, c, (double)P);
     prism_gradients(x, &p, vec3_dot(vec3_cross(p.Xb, p.Xc), p.N), &gu, &gw);
-    put_wide(v.at, p.place);
-    put_wide(v.normal, vec3_unit(vec3_sub(p.N, vec3_add(vec3_scale(gu, (double)Pu), vec3_scale(gw, (double)Pw)))));
-    put_texture(f, (double)u, (double)w, v.uv);
-    return v;
+    const vec3 n = vec3_sub(p.N, vec3_add(vec3_scale(gu, (double)Pu), vec3_scale(gw, (double)Pw)));
+    return pov_vertex_of(p.place, vec3_unit(n), reflected(f, (double)u), (double)w);
 }
 
 /* Evaluate all places of the lattice on a triangle, LANES at a time. */
@@ -161,10 +139,10 @@ static void rough_places(const object *o, const mesh *f, int index, int n, pov_v
 
 static void add_face(pile *p, const pov_vertex *a, const pov_vertex *b, const pov_vertex *c)
 {
-    const pov_vertex *const corner[3] = {a, b, c};
-    for (int i = 0; i < 3; i++)
-        p->face[p->faces][i] = index_of(p, corner[i]);
-    p->faces++;
+    int32_t *face = p->face[p->faces++];
+    face[0] = index_of(p, a);
+    face[1] = index_of(p, b);
+    face[2] = index_of(p, c);
 }
 
 static bool add_rough(pile *p, const object *o, const mesh *f, int n)
@@ -202,10 +180,10 @@ bool pov_triangle_mesh(pov_text *t, const scene *s, const object *o)
         pov_print(t, "\n");
         pov_mesh2(t, p.v, p.vertices, pov_by_uv(s, o), p.faces, (const int32_t(*)[3])p.face);
     }
-    end(&p);
-    if (good && o->moved && !rough) {
-        pov_affine(t, &o->placed);
-        pov_print(t, " // its transform\n");
-    }
+    free(p.v);
+    free(p.face);
+    free(p.table);
+    if (good && o->moved && !rough)
+        pov_matrix(t, o->placed.x, o->placed.y, o->placed.z, o->placed.o, " // its transform\n");
     return good;
 }

@@ -1,28 +1,45 @@
-/* The writers of one object, for the file as a whole. Each leaves the object's brace open. Private to the POV-Ray
- * writer. */
+/* The parts of the POV-Ray writer, which writer.c calls: materials, and one way to write an object for each of the
+ * other files. An object's brace stays open, so that its texture can follow. */
 #ifndef KAGE_POVRAY_PARTS_H
 #define KAGE_POVRAY_PARTS_H
 
-#include "povray/povray.h"
 #include "pov_text/text.h"
+#include "povray/povray.h"
 
-/* A closed form without bumps, in POV-Ray's own shapes, as its form says (closed_form.h). In that text, $ and the name
- * of a parameter stands for its value; $open for nothing or the word; $plane for a plane's normal and distance;
- * $rectangle for the whole shape; $axes for a matrix whose y is along the parameter that is a direction. */
+/* ---- material.c ---- */
+
+/* Declare all materials. */
+void pov_materials(pov_text *t, const scene *s);
+
+/* The material of an object, on a part of its surface. */
+void pov_texture(pov_text *t, const scene *s, const object *o, int part);
+
+/* Whether each part of the object has its own texture. pov_by_uv: whether its mesh needs (u,w) at vertices. */
+bool pov_by_parts(const scene *s, const object *o);
+bool pov_by_uv(const scene *s, const object *o);
+
+/* Whether pov_patch writes the object: POV-Ray lacks its shape, its displacement, or a warp for its material. */
+bool pov_is_patch(const scene *s, const object *o);
+
+/* ---- objects ---- */
+
+/* A closed form without bumps as a POV-Ray shape, from the template in closed_form.h. There, $ and the name of a
+ * parameter stands for its value; $open for " open" or nothing; $plane for a plane's normal and distance; $rectangle
+ * for a whole polygon; $axes for a matrix with y along the parameter that is a direction. */
 void pov_smooth(pov_text *t, const scene *s, const object *o);
 
-/* P as a POV-Ray function of u and w, named by `name`. False where there is none. */
+/* Declare P as a POV-Ray function of u and w. False: POV-Ray cannot evaluate it. */
 bool pov_function(pov_text *t, const object *o, const char *name);
 
-/* The displaced object as isosurfaces that call the function `name`. pov_isosurface_gradient: the bound of its
- * gradient, infinite where none is known or none serves. */
+/* The displaced object as isosurfaces of the function `name`. pov_isosurface_gradient: a bound of the gradient on a
+ * part; infinite: unknown, or too steep for an isosurface. */
 double pov_isosurface_gradient(const object *o, int part);
 void pov_isosurface(pov_text *t, const scene *s, const object *o, const char *name);
 
-/* The displaced object as one mesh. False: out of memory. */
+/* The displaced object as one mesh; *report gets the worst coarse one. False: out of memory. */
 bool pov_mesh(pov_text *t, const scene *s, const object *o, pov_report *report);
 
-/* An object without a shape of POV-Ray's, smooth or displaced as the scene says, as one mesh. False: out of memory. */
+/* An object that pov_is_patch, smooth or displaced, as one mesh. False: out of memory. */
 bool pov_patch(pov_text *t, const scene *s, const object *o);
 
 /* A mesh from a file, smooth or displaced. False: out of memory. */

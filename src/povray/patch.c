@@ -1,8 +1,6 @@
-/* Surfaces that POV-Ray has no shape for, smooth or displaced, as one mesh2: the vertices are on a grid over (u,w),
- * with the surface's own normals. The grid is the same on every part, so that parts that join have the same vertices
- * there.
+/* Surfaces that POV-Ray has no shape for, smooth or displaced, as one mesh2 on a grid over (u,w), with the surface's
+ * normals. All parts have the same grid, so that they share vertices where they join.
  */
-#include "povray/material.h"
 #include "povray/parts.h"
 
 #include "displaced/offset.h"
@@ -13,10 +11,10 @@
 
 enum { MOST_TRIANGLES = 1500000, PROBES = 64, LEAST = 8, FINEST = 4096 };
 
-#define PIXELS 3.0 /* a cell's side on the screen: what is bent less than TURN has no corner there */
-#define TURN                                                                                                           \
-    0.012 /* between the normals of neighbours, radians: a facet that shades its neighbour does so where light counts  \
-             for less than a step of 1/255 */
+/* The most that a cell's side may be, in pixels, and its normals may differ, in radians. At this angle a facet shades
+ * its neighbour only where the light is below 1/255. */
+#define PIXELS 3.0
+#define TURN 0.012
 
 typedef struct grid {
     const scene *s;
@@ -30,14 +28,14 @@ static double line(const double range[2], int i, int n)
     return i == n ? range[1] : range[0] + (range[1] - range[0]) * i / n;
 }
 
-static void put_lane(float to[3], bs_vec3 x)
+static vec3 wide(bs_vec3 x) { return (vec3){(double)x.x, (double)x.y, (double)x.z}; }
+
+static vec3 difference(const float a[3], const float b[3])
 {
-    to[0] = (float)x.x;
-    to[1] = (float)x.y;
-    to[2] = (float)x.z;
+    return (vec3){(double)b[0] - (double)a[0], (double)b[1] - (double)a[1], (double)b[2] - (double)a[2]};
 }
 
-/* A line of the grid along u: n[0] + 1 vertices. */
+/* The n[0] + 1 vertices of a line of the grid along u. */
 static void evaluate(const grid *g, int part, int row, pov_vertex *out)
 {
     double U[2], W[2];
@@ -61,11 +59,9 @@ static void evaluate(const grid *g, int part, int row, pov_vertex *out)
         for (int i = 0; i < n; i++) {
             const bs_vec3 Qu = lane_get(&q.Qu, i), Qw = lane_get(&q.Qw, i);
             const offset o = offset_of(Qu, Qw, lane_get(&q.Quu, i), lane_get(&q.Quw, i), lane_get(&q.Qww, i), h.P[i]);
-            put_lane(out[first + i].at, offset_mix(lane_get(&q.Q, i), h.P[i], o.n));
-            put_lane(out[first + i].normal,
-                     bs_regular(bs_normal(Qu, Qw), Qu, Qw) ? offset_normal(o, h.Pu[i], h.Pw[i]) : o.n);
-            out[first + i].uv[0] = (float)u[i];
-            out[first + i].uv[1] = (float)w[i];
+            const bs_vec3 normal = bs_regular(bs_normal(Qu, Qw), Qu, Qw) ? offset_normal(o, h.Pu[i], h.Pw[i]) : o.n;
+            out[first + i] = pov_vertex_of(wide(offset_mix(lane_get(&q.Q, i), h.P[i], o.n)), wide(normal), (double)u[i],
+                                           (double)w[i]);
         }
     }
 }
@@ -75,26 +71,19 @@ static void evaluate(const grid *g, int part, int row, pov_vertex *out)
 static double pixels_between(const scene *s, const float a[3], const float b[3])
 {
     const camera *c = &s->camera;
-    vec3 d = {(double)b[0] - (double)a[0], (double)b[1] - (double)a[1], (double)b[2] - (double)a[2]};
     vec3 to = vec3_sub((vec3){(double)a[0], (double)a[1], (double)a[2]}, c->from);
-    const double depth = vec3_dot(to, c->forward), step = vec3_length(d);
+    const double depth = vec3_dot(to, c->forward), step = vec3_length(difference(a, b));
     return depth > step ? step / depth * s->width / (2 * vec3_length(c->right)) : PIXELS;
-}
-
-static double turn_between(const float a[3], const float b[3])
-{
-    const double x = (double)b[0] - (double)a[0], y = (double)b[1] - (double)a[1], z = (double)b[2] - (double)a[2];
-    const double turn = sqrt(x * x + y * y + z * z);
-    return turn < HUGE_VAL ? turn : 0; /* where there is no normal */
 }
 
 static void probe(const pov_vertex *a, const pov_vertex *b, const grid *g, double *most)
 {
-    *most = fmax(*most, fmax(pixels_between(g->s, a->at, b->at) / PIXELS, turn_between(a->normal, b->normal) / TURN));
+    const double turn = vec3_length(difference(a->normal, b->normal));
+    *most = fmax(*most, pixels_between(g->s, a->at, b->at) / PIXELS);
+    *most = fmax(*most, turn < HUGE_VAL ? turn / TURN : 0); /* not finite: there is no normal */
 }
 
-/* The numbers of cells along u and w, so that the largest cell is fine enough: measured on a grid of probes on each
- * part. */
+/* Set n so that the largest cell is fine enough, measured on a grid of probes on each part. False: out of memory. */
 static bool measure(grid *g)
 {
     const int parts = g->o->shape->ops->parts;
@@ -123,7 +112,7 @@ static bool measure(grid *g)
     return true;
 }
 
-/* Put a map's samples on lines of the grid: between them the map is bilinear. */
+/* Increase n so that a map's samples are on lines of the grid: between them the map is bilinear. */
 static void fit_map(grid *g)
 {
     const object *o = g->o;

@@ -5,20 +5,20 @@
 #include "scene/scene.h"
 
 typedef struct pov_options {
-    const char *command; /* for the file's first lines: what made it */
+    const char *command; /* that made the file, for its first lines */
     bool no_cast;        /* objects without a bump cast no shadows */
 } pov_options;
 
-/* What the writer has to say besides. */
+/* The least accurate mesh of a file that was written. */
 typedef struct pov_report {
-    const char *coarse;    /* the object whose mesh is the worst of those that had to be coarse; NULL: none */
-    double height, pixels; /* what its heights are off at most: in scene units, on the screen */
+    const char *coarse;    /* the object whose mesh is coarse, since it had too many triangles; NULL: none is */
+    double height, pixels; /* the largest error of its heights, in scene units and in pixels */
 } pov_report;
 
-/* Whether POV-Ray has all that is in the scene. */
+/* Whether POV-Ray can show the scene. False with errors in *e. */
 bool pov_possible(const scene *s, errors *e);
 
-/* Write the scene to `path`, as scene->displaced says with bumps or without. False with the errors in *e. */
+/* Write the scene to `path`, displaced if scene->displaced, otherwise without bumps. False with errors in *e. */
 bool pov_write(const scene *s, const pov_options *o, const char *path, pov_report *report, errors *e);
 
 #endif

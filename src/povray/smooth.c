@@ -1,6 +1,5 @@
-/* Closed forms without bumps, in POV-Ray's own shapes. */
+/* Closed forms without bumps, as POV-Ray shapes. */
 #include "pov_text/flat.h"
-#include "povray/material.h"
 #include "povray/parts.h"
 
 #include <string.h>
@@ -10,16 +9,7 @@ static void put_rectangle(pov_text *t, vec3 O, vec3 U, vec3 W)
 {
     vec3 n = vec3_unit(vec3_cross(U, W));
     pov_print(t, "polygon {\n  5, <0, 0>, <1, 0>, <1, 1>, <0, 1>, <0, 0>\n");
-    pov_matrix(t, U, W, n, O);
-    pov_print(t, " // u, w, n, origin\n");
-}
-
-/* A disc, of which a transform may have made an ellipse; the brace stays open. */
-static void put_cap(pov_text *t, const pov_flat *p, double radius)
-{
-    pov_print(t, "disc {\n  0, z, %g\n", radius);
-    pov_matrix(t, p->U, p->W, p->y, p->O);
-    pov_print(t, " // u, w, n, origin\n");
+    pov_matrix(t, U, W, n, O, " // u, w, n, origin\n");
 }
 
 static void put_parameter(pov_text *t, const form_parameter *p, const shape_values *v)
@@ -40,11 +30,10 @@ static void put_axes(pov_text *t, const closed_form *form, const shape_values *v
         axis = p->type == FORM_DIRECTION ? v->v[p->slot] : axis;
     }
     const frame a = frame_about(axis);
-    pov_matrix(t, a.x, a.y, a.z, origin);
-    pov_print(t, " // y is the axis\n");
+    pov_matrix(t, a.x, a.y, a.z, origin, " // y is the axis\n");
 }
 
-/* What a word of the form's text, without its $, stands for. */
+/* The value of a word of the template, without its $. */
 static void put_word(pov_text *t, const closed_form *form, const shape_values *v, const char *word, size_t n)
 {
     flat_part f;
@@ -73,13 +62,11 @@ static void put_shape(pov_text *t, const object *o, const shape_values *v)
         put_word(t, form, v, c, n);
         c += n;
     }
-    if (o->moved) {
-        pov_affine(t, &o->placed);
-        pov_print(t, " // its transform\n");
-    }
+    if (o->moved)
+        pov_matrix(t, o->placed.x, o->placed.y, o->placed.z, o->placed.o, " // its transform\n");
 }
 
-/* A shape whose faces, or side and caps, have textures of their own, each where it is in the scene. */
+/* A shape whose parts have textures of their own: each flat part where it is in the scene, and the side. */
 static void put_parts(pov_text *t, const scene *s, const object *o)
 {
     shape_values side = o->shape_spec.values;
@@ -89,14 +76,14 @@ static void put_parts(pov_text *t, const scene *s, const object *o)
         const double rim = pov_rim(&o->shape_spec, part);
         if (rim == 0)
             continue;
+        const pov_flat p = pov_flat_of(o, part);
         if (!pov_is_flat(&o->shape_spec, part))
             put_shape(t, o, &side);
+        else if (rim < 0)
+            put_rectangle(t, p.O, p.U, p.W);
         else {
-            const pov_flat p = pov_flat_of(o, part);
-            if (rim < 0)
-                put_rectangle(t, p.O, p.U, p.W);
-            else
-                put_cap(t, &p, rim);
+            pov_print(t, "disc {\n  0, z, %g\n", rim);
+            pov_matrix(t, p.U, p.W, p.y, p.O, " // u, w, n, origin\n");
         }
         pov_texture(t, s, o, part);
         pov_print(t, "}\n");

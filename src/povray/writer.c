@@ -1,5 +1,4 @@
-/* The POV-Ray file as a whole: camera, lights, materials, and each object by the part that can write it. */
-#include "povray/material.h"
+/* The POV-Ray file as a whole: camera, lights, materials, and each object by the file that can write it. */
 #include "povray/parts.h"
 
 #include <stdio.h>
@@ -65,13 +64,6 @@ static void put_light(pov_text *t, const light *l)
     pov_print(t, " } // %s\n", l->name);
 }
 
-static void put_lights(pov_text *t, const scene *s)
-{
-    for (int k = 0; k < s->lights; k++)
-        put_light(t, &s->light[k]);
-    pov_print(t, "\n");
-}
-
 static void put_object_end(pov_text *t, const scene *s, const pov_options *how, const object *o)
 {
     const material *m = &s->material[o->material];
@@ -107,7 +99,9 @@ bool pov_write(const scene *s, const pov_options *how, const char *path, pov_rep
         return false;
     put_head(&t, s, how);
     put_camera(&t, s);
-    put_lights(&t, s);
+    for (int k = 0; k < s->lights; k++)
+        put_light(&t, &s->light[k]);
+    pov_print(&t, "\n");
     pov_materials(&t, s);
     for (int k = 0; good && k < s->objects; k++) {
         const object *o = &s->object[k];

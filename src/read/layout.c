@@ -1,9 +1,9 @@
-/* Where maps and images lie on a surface, and meshes whose texture is partly mirrored. */
-#include "read/layout.h"
+/* Where height maps and images lie in (u,w), and textures that are mirrored on part of a mesh. */
+#include "read/parts.h"
 
 #include "texture/mirrored_uv.h"
 
-/* By the map's size in (u,w), or by how often it goes into the surface's extent. */
+/* The map's size in (u,w): given, or the surface's extent divided by `repeat`. */
 static bool read_size(reader *r, node *at, const double extent[2], double size_of[2])
 {
     node *size = yaml_get(at, "size"), *repeat = yaml_get(at, "repeat");
@@ -14,8 +14,8 @@ static bool read_size(reader *r, node *at, const double extent[2], double size_o
         return yaml_numbers(r->y, size, 2, SMALL, BIG, "the size of the map [in u, in w], 1e-6 or more", size_of);
     if (!(extent[0] < HUGE_VAL))
         return yaml_error(r->y, repeat ? repeat : at, "a map on an unbounded surface, expected 'size: [in u, in w]'");
-    const bool good = !repeat || yaml_numbers(r->y, repeat, 2, SMALL, BIG,
-                                              "how often the map goes into the surface [in u, in w], 1e-6 or more", n);
+    const bool good =
+        reader_pair(r, at, "repeat", SMALL, "how often the map goes into the surface [in u, in w], 1e-6 or more", n);
     for (int a = 0; a < 2; a++)
         size_of[a] = extent[a] / n[a];
     return good;
@@ -26,23 +26,15 @@ bool reader_layout(reader *r, node *at, const double u[2], const double w[2], ma
     const double extent[2] = {u[1] - u[0], w[1] - w[0]};
     const bool bounded = extent[0] < HUGE_VAL;
     double shift[2] = {0, 0};
-    node *k;
     bool good = read_size(r, at, extent, l->size);
-    if ((k = yaml_get(at, "offset")))
-        good = yaml_numbers(r->y, k, 2, -BIG, BIG, "where the map begins [in u, in w]", shift) && good;
+    good = reader_pair(r, at, "offset", -BIG, "where the map begins [in u, in w]", shift) && good;
     l->offset[0] = (bounded ? u[0] : 0) + shift[0];
     l->offset[1] = (bounded ? w[0] : 0) + shift[1];
-    if ((k = yaml_get(at, "wrap"))) {
-        const int word = yaml_word(r->y, k, "repeat clamp mirror", "repeat, clamp or mirror");
-        good = word >= 0 && good;
-        l->wrap = word < 0 ? MAP_REPEAT : (map_wrap)word;
-    }
-    if ((k = yaml_get(at, "samples"))) {
-        const int word = yaml_word(r->y, k, "cells corners", "cells or corners");
-        good = word >= 0 && good;
-        l->corners = word == 1;
-    }
-    return good;
+    const int wrap = reader_word(r, at, "wrap", "repeat clamp mirror", "repeat, clamp or mirror");
+    const int samples = reader_word(r, at, "samples", "cells corners", "cells or corners");
+    l->wrap = wrap < 0 ? MAP_REPEAT : (map_wrap)wrap;
+    l->corners = samples == 1;
+    return good && wrap >= 0 && samples >= 0;
 }
 
 void reader_extent(const surface *f, const shape_spec *spec, double u[2], double w[2])
@@ -60,12 +52,11 @@ bool reader_textured(reader *r, node *at, const object *o)
     if (f->kind != SHAPE_MESH || f->found.bare == 0)
         return true;
     return yaml_error(
-        r->y, at, "%d of the %d triangles of '%s' have no texture coordinates, expected them for what lies on (u,w)",
+        r->y, at, "%d of the %d triangles of '%s' have no texture coordinates, expected them for a bump or a pattern",
         f->found.bare, f->triangles, f->file);
 }
 
-/* What is mirrored has its (u,w) in a range of the same width beyond the surface's own, on both sides of it: a
- * transform that mirrors exchanges them. */
+/* Whether a mesh has mirrored triangles. These have u above *hi, or below *lo after a transform that mirrors. */
 static bool has_mirrored(const object *o, double *lo, double *hi)
 {
     double u[2], w[2];
@@ -80,15 +71,11 @@ static bool has_mirrored(const object *o, double *lo, double *hi)
 bump *reader_mirror_bump(reader *r, const object *o, bump *p)
 {
     double lo, hi;
-    if (p && has_mirrored(o, &lo, &hi) && !(p = bump_mirrored_uv(p, lo, hi)))
-        errors_add(r->e, "out of memory");
-    return p;
+    return p && has_mirrored(o, &lo, &hi) ? reader_made(r, bump_mirrored_uv(p, lo, hi)) : p;
 }
 
 color_texture *reader_mirror_color(reader *r, const object *o, color_texture *c)
 {
     double lo, hi;
-    if (c && has_mirrored(o, &lo, &hi) && !(c = color_mirrored_uv(c, lo, hi)))
-        errors_add(r->e, "out of memory");
-    return c;
+    return c && has_mirrored(o, &lo, &hi) ? reader_made(r, color_mirrored_uv(c, lo, hi)) : c;
 }

@@ -1,4 +1,4 @@
-/* The scene reader's lights: points, spots, parallel light and areas, and how they fade. */
+/* Lights: points, spots, parallel light and areas, and how they fade. */
 #include "read/parts.h"
 
 /* The direction of a spot or a parallel light. */
@@ -46,19 +46,12 @@ static void read_fade(reader *r, node *at, light *l)
 
 static void read_area(reader *r, node *at, light *l)
 {
-    double n[2] = {1, 1};
     if (!yaml_map(r->y, at, "area", "u w samples"))
         return;
     bool good = reader_need_all(r, at, "u w samples", "area");
     good = reader_vector(r, at, "u", "one side of the area, [x, y, z]", &l->u) && good;
     good = reader_vector(r, at, "w", "the other side of the area, [x, y, z]", &l->w) && good;
-    node *k = yaml_get(at, "samples");
-    if (k && yaml_numbers(r->y, k, 2, 1, LIGHT_MAX_SIDE, "how many samples [along u, along w], 1 to 64 each", n)) {
-        if (n[0] != (int)n[0] || n[1] != (int)n[1])
-            yaml_error(r->y, k, "no whole numbers, expected how many samples [along u, along w]");
-        l->samples[0] = (int)n[0];
-        l->samples[1] = (int)n[1];
-    }
+    reader_counts(r, at, "samples", LIGHT_MAX_SIDE, "how many samples [along u, along w], 1 to 64 each", l->samples);
     if (good && l->kind == LIGHT_PARALLEL)
         yaml_error(r->y, at, "an area of a parallel light, expected a point light or a spot");
 }

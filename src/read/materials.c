@@ -1,4 +1,4 @@
-/* The scene reader's materials; and the color texture of an object, which depends on its surface. */
+/* Materials, and the color texture of an object, which depends on its surface. */
 #include "read/parts.h"
 
 #include <math.h>
@@ -6,19 +6,15 @@
 
 static void read_checker(reader *r, node *at, material *m)
 {
-    node *k;
     m->pattern = PATTERN_CHECKER;
     m->layout.size[0] = m->layout.size[1] = 1;
     if (!yaml_map(r->y, at, "checker", "even odd size offset"))
         return;
-    if (yaml_need(r->y, at, "even", "checker"))
-        reader_color(r, at, "even", &m->field[0]);
-    if (yaml_need(r->y, at, "odd", "checker"))
-        reader_color(r, at, "odd", &m->field[1]);
-    if ((k = yaml_get(at, "size")))
-        yaml_numbers(r->y, k, 2, SMALL, BIG, "the size of a field [in u, in w], 1e-6 or more", m->layout.size);
-    if ((k = yaml_get(at, "offset")))
-        yaml_numbers(r->y, k, 2, -BIG, BIG, "where a field begins [in u, in w]", m->layout.offset);
+    reader_need_all(r, at, "even odd", "checker");
+    reader_color(r, at, "even", &m->field[0]);
+    reader_color(r, at, "odd", &m->field[1]);
+    reader_pair(r, at, "size", SMALL, "the size of a field [in u, in w], 1e-6 or more", m->layout.size);
+    reader_pair(r, at, "offset", -BIG, "where a field begins [in u, in w]", m->layout.offset);
 }
 
 static void read_pixels(reader *r, node *file, image_encoding encoding, material *m)
@@ -29,58 +25,43 @@ static void read_pixels(reader *r, node *file, image_encoding encoding, material
     errors e = {0};
     if (!path)
         return;
-    if (!image_read_color(path, encoding, &pixels, &m->exr, &e))
-        yaml_error(r->y, file, "'%s' can't be used: %.*s", name, e.size ? (int)e.size - 1 : 0, e.text ? e.text : "");
-    else if (pixels.width < 2 || pixels.height < 2)
-        yaml_error(r->y, file, "'%s' has %d x %d pixels, expected at least 2 x 2", name, pixels.width, pixels.height);
-    else if (!(m->texels = texels_new(&pixels, &m->layout)))
-        errors_add(r->e, "out of memory");
+    const bool was_read = image_read_color(path, encoding, &pixels, &m->exr, &e);
+    if (reader_usable(r, file, name, was_read, &pixels, "pixels", &e))
+        m->texels = reader_made(r, texels_new(&pixels, &m->layout));
     m->file = reader_copy(r, name);
-    errors_free(&e);
     free(pixels.v);
     free(path);
 }
 
-/* The layout is checked here, once, on a surface that has ends: only the lack of a size depends on the object. */
+/* Checks the layout once, on a bounded surface. lay_image() checks the size for each object. */
 static void read_image(reader *r, node *at, material *m)
 {
     const double whole[2] = {0, 1};
-    node *k, *file;
-    image_encoding encoding = IMAGE_BY_KIND;
     m->pattern = PATTERN_IMAGE;
     if (!yaml_map(r->y, at, "image", "file encoding size repeat offset wrap interpolation"))
         return;
-    bool good = reader_layout(r, at, whole, whole, &m->layout);
-    if ((k = yaml_get(at, "encoding"))) {
-        int word = yaml_word(r->y, k, "srgb linear", "srgb or linear");
-        encoding = word == 0 ? IMAGE_SRGB : IMAGE_LINEAR;
-        m->linear = word == 1;
-        good = word >= 0 && good;
-    }
-    if ((k = yaml_get(at, "interpolation")))
-        m->nearest = yaml_word(r->y, k, "bilinear nearest", "bilinear or nearest") == 1;
-    if ((file = yaml_need(r->y, at, "file", "image")) && good)
-        read_pixels(r, file, encoding, m);
+    const bool good = reader_layout(r, at, whole, whole, &m->layout);
+    const int word = reader_word(r, at, "encoding", "srgb linear", "srgb or linear");
+    m->linear = word == 1;
+    m->nearest = reader_word(r, at, "interpolation", "bilinear nearest", "bilinear or nearest") == 1;
+    node *file = yaml_need(r->y, at, "file", "image");
+    if (file && word >= 0 && good)
+        read_pixels(r, file, !yaml_get(at, "encoding") ? IMAGE_BY_KIND : m->linear ? IMAGE_LINEAR : IMAGE_SRGB, m);
 }
 
 static void read_color(reader *r, node *material_node, material *m)
 {
-    node *at = yaml_get(material_node, "color"), *checker, *pixels;
+    node *at = yaml_get(material_node, "color");
     if (!at || !yaml_is_map(at)) {
         reader_color(r, material_node, "color", &m->color);
         return;
     }
-    if (!yaml_map(r->y, at, "color", "checker image"))
+    if (!yaml_map(r->y, at, "color", "checker image") || !reader_either(r, at, "a color", "checker", "image"))
         return;
-    checker = yaml_get(at, "checker");
-    pixels = yaml_get(at, "image");
-    if (!checker == !pixels)
-        yaml_error(r->y, at, "a color with %s, expected either 'checker' or 'image'",
-                   pixels ? "both checker and image" : "neither checker nor image");
-    else if (checker)
-        read_checker(r, checker, m);
+    if (yaml_get(at, "checker"))
+        read_checker(r, yaml_get(at, "checker"), m);
     else
-        read_image(r, pixels, m);
+        read_image(r, yaml_get(at, "image"), m);
 }
 
 static void read_reflection(reader *r, node *at, material *m)
@@ -91,8 +72,7 @@ static void read_reflection(reader *r, node *at, material *m)
         m->reflection = yaml_is_list(at) ? (vec3){x[0], x[1], x[2]} : (vec3){x[0], x[0], x[0]};
 }
 
-/* How much of the light from behind comes through. */
-static void read_clear(reader *r, node *v, material *m)
+static void read_transparency(reader *r, node *v, material *m)
 {
     bool good = reader_number(r, v, "filter", 0, false, 1,
                               "the share of light that it lets through in its colour, 0 to 1", &m->filter);
@@ -125,12 +105,11 @@ void reader_materials(reader *r)
         reader_number(r, v, "phong", 0, false, BIG, "a share of light, 0 or more", &m->phong);
         reader_number(r, v, "phong_size", 0, true, BIG, "an exponent above 0", &m->phong_size);
         reader_number(r, v, "specular", 0, false, BIG, "a share of light, 0 or more", &m->specular);
-        reader_number(
-            r, v, "roughness", SMALL, false, BIG, "a number of 1e-6 or more; small is sharp",
-            &m->roughness); /* the least: a cosine a few ulp above 1 to the power 1e6 is still finite in float */
+        /* from 1e-6 on, a cosine a few ulp above 1 has a finite power in float */
+        reader_number(r, v, "roughness", SMALL, false, BIG, "a number of 1e-6 or more; small is sharp", &m->roughness);
         if ((k = yaml_get(v, "reflection")))
             read_reflection(r, k, m);
-        read_clear(r, v, m);
+        read_transparency(r, v, m);
     }
 }
 
@@ -161,7 +140,5 @@ void reader_color_texture(reader *r, node *at, object *o)
         o->color = color_image_new(m->texels, &o->color_layout, m->nearest);
     else
         return;
-    if (!o->color)
-        errors_add(r->e, "out of memory");
-    o->color = reader_mirror_color(r, o, o->color);
+    o->color = reader_mirror_color(r, o, reader_made(r, o->color));
 }

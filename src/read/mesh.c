@@ -1,17 +1,9 @@
-/* The scene reader's meshes: a model file, how its normals are made, and whether it can be used. */
+/* Meshes: a model file, how its normals are made, and whether it can be used. */
 #include "read/parts.h"
 
 #include "mesh/mesh.h"
 
 #include <stdlib.h>
-
-static bool read_normals(reader *r, node *at, mesh_normals *normals, double *crease)
-{
-    node *k = yaml_get(at, "normals");
-    const int which = k ? yaml_word(r->y, k, "file smooth flat", "file, smooth or flat") : 0;
-    *normals = which > 0 ? (mesh_normals)which : MESH_NORMALS_FILE;
-    return reader_number(r, at, "crease", 0, false, 180, "an angle of 0 to 180 degrees", crease) && which >= 0;
-}
 
 static bool is_large(const mesh_data *d)
 {
@@ -29,20 +21,20 @@ static bool is_large(const mesh_data *d)
 surface *reader_mesh(reader *r, node *at, shape_spec *spec)
 {
     mesh_data d = {0};
-    mesh_normals normals;
     double crease = 40;
     char why[MESH_WHY];
     if (!yaml_map(r->y, at, "mesh", "file normals crease"))
         return NULL;
     node *file = yaml_need(r->y, at, "file", "mesh");
     const char *name = file ? yaml_text(r->y, file, "the file of a model") : NULL;
-    if (!read_normals(r, at, &normals, &crease) || !name)
+    const int normals = reader_word(r, at, "normals", "file smooth flat", "file, smooth or flat");
+    if (!reader_number(r, at, "crease", 0, false, 180, "an angle of 0 to 180 degrees", &crease) || normals < 0 || !name)
         return NULL;
     char *path = reader_beside(r, name);
     bool good = path && mesh_file_read(path, r->from->model_reader, r->from->progress, &r->s->made_from, &d, why);
     if (good)
         progress_show(r->from->progress, "checking", 1);
-    good = good && mesh_clean(&d, normals, crease, BIG, why);
+    good = good && mesh_clean(&d, (mesh_normals)normals, crease, BIG, why);
     if (path && !good)
         yaml_error(r->y, file, "'%s' can't be used: %s", name, why);
     else if (path && !is_large(&d))
@@ -52,11 +44,9 @@ surface *reader_mesh(reader *r, node *at, shape_spec *spec)
         mesh_data_free(&d);
         return NULL;
     }
-    surface *f = mesh_new(&d, r->from->progress);
-    if (!f) {
-        errors_add(r->e, "out of memory");
+    surface *f = reader_made(r, mesh_new(&d, r->from->progress));
+    if (!f)
         return NULL;
-    }
     *spec = (shape_spec){
         .kind = SHAPE_MESH, .file = reader_copy(r, name), .triangles = ((mesh *)f)->d.n, .found = ((mesh *)f)->d.notes};
     return f;

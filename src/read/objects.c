@@ -1,4 +1,4 @@
-/* The scene reader's objects: their shapes, materials, bumps and transforms, and what is copied from others. */
+/* Objects: their shapes, materials, bumps and transforms, and copies of other objects. */
 #include "base/spelling.h"
 #include "displaced/displaced.h"
 #include "read/parts.h"
@@ -6,26 +6,31 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The index of the thing that the node names. Each thing is a struct that begins with its name. -1 with an error. */
+/* The name of thing i: each is a struct of `size` bytes that begins with its name, or NULL. */
+static const char *name_of(const void *things, size_t size, int i)
+{
+    return *(char *const *)(const void *)((const char *)things + (size_t)i * size);
+}
+
+/* The index of the thing that the node names. `what`: "the name of a material"; `among`: the key of the things. -1 with
+ * an error. */
 static int find(reader *r, node *at, const char *what, const char *among, const void *things, size_t size, int n)
 {
     const char *name = yaml_text(r->y, at, what), *thing = strrchr(what, ' ') + 1;
-    char near[64], *names = NULL;
+    char near[64], *names;
     size_t length = 1;
-    for (int i = 0; name && i < n; i++) {
-        char *const *its = (char *const *)(const void *)((const char *)things + (size_t)i * size);
-        if (*its && strcmp(name, *its) == 0)
-            return i;
-        length += *its ? strlen(*its) + 1 : 0;
-    }
     if (!name)
         return -1;
+    for (int i = 0; i < n; i++) {
+        const char *its = name_of(things, size, i);
+        if (its && strcmp(name, its) == 0)
+            return i;
+        length += its ? strlen(its) + 1 : 0;
+    }
     if ((names = calloc(1, length)))
-        for (int i = 0; i < n; i++) {
-            char *const *its = (char *const *)(const void *)((const char *)things + (size_t)i * size);
-            if (*its)
-                strcat(strcat(names, *names ? " " : ""), *its);
-        }
+        for (int i = 0; i < n; i++)
+            if (name_of(things, size, i))
+                strcat(strcat(names, *names ? " " : ""), name_of(things, size, i));
     spelling_nearest(name, names ? names : "", near, sizeof near);
     yaml_error(r->y, at, "no %s '%.60s'%s%s%s%s", thing, name,
                *near ? ", did you mean '" : ", expected one of those under '", *near ? near : among, "'",
@@ -34,17 +39,7 @@ static int find(reader *r, node *at, const char *what, const char *among, const 
     return -1;
 }
 
-static int find_material(reader *r, node *at)
-{
-    const scene *s = r->s;
-    /* no materials at all is an error already */
-    int k = s->material
-                ? find(r, at, "the name of a material", "materials", s->material, sizeof *s->material, s->materials)
-                : 0;
-    return k < 0 ? 0 : k;
-}
-
-/* Objects are read in order, except that what is copied is read before its copies. */
+/* Objects are read in order, but an object is read before its copies. */
 typedef struct queue {
     node *at;
     char *state; /* of each object */
@@ -54,7 +49,7 @@ enum { WAITING, BEGUN, DONE };
 
 static void read_object(reader *r, const queue *q, int i);
 
-/* What object i copies, after reading it. NULL with an error. */
+/* The object that object i copies; reads it first if need be. NULL with an error. */
 static const object *read_original(reader *r, const queue *q, node *copy, int i)
 {
     const scene *s = r->s;
@@ -62,8 +57,7 @@ static const object *read_original(reader *r, const queue *q, node *copy, int i)
     if (k == i)
         yaml_error(r->y, copy, "'%s' copies itself, expected another object", s->object[i].name);
     else if (k >= 0 && q->state[k] == BEGUN)
-        yaml_error(r->y, copy, "'%s' is a copy of this one, expected an object that does not lead back here",
-                   s->object[k].name);
+        yaml_error(r->y, copy, "'%s' is itself a copy of this object, expected one that is not", s->object[k].name);
     if (k < 0 || q->state[k] == BEGUN)
         return NULL;
     if (q->state[k] == WAITING)
@@ -71,7 +65,7 @@ static const object *read_original(reader *r, const queue *q, node *copy, int i)
     return &s->object[k];
 }
 
-/* Shape, material and bump of another object. The copy's own keys then replace them. */
+/* Copy shape, material and bump of another object. The copy's own keys later replace them. */
 static void take(object *o, const object *from)
 {
     char *name = o->name;
@@ -83,7 +77,7 @@ static void take(object *o, const object *from)
     o->shares_bump = true;
 }
 
-/* Make the shape again where a transform, or true displacement, needs another surface than the object's own. */
+/* Make another surface than the object's own if a transform or true displacement needs one. */
 static void place(reader *r, node *v, object *o)
 {
     node *transform = yaml_get(v, "transform"), *copy = yaml_get(v, "copy");
@@ -115,6 +109,7 @@ static void read_object(reader *r, const queue *q, int i)
     scene *s = r->s;
     object *o = &s->object[i];
     node *key, *v = yaml_pair(q->at, i, &key), *m, *at_bump, *copy;
+    int k;
     q->state[i] = BEGUN;
     o->placed = affine_identity();
     if (yaml_map(r->y, v, "an object", READER_SHAPES " material bump transform copy")) {
@@ -124,17 +119,19 @@ static void read_object(reader *r, const queue *q, int i)
                 take(o, from);
         } else
             o->shape = o->own = reader_shape(r, v, &o->shape_spec);
-        if ((m = copy ? yaml_get(v, "material") : yaml_need(r->y, v, "material", "an object")))
-            o->material = find_material(r, m);
+        m = copy ? yaml_get(v, "material") : yaml_need(r->y, v, "material", "an object");
+        if (m && s->material) { /* without materials there is an error already */
+            k = find(r, m, "the name of a material", "materials", s->material, sizeof *s->material, s->materials);
+            o->material = k < 0 ? 0 : k;
+        }
         o->color = NULL;
         if ((m || copy) && o->own && s->material)
             reader_color_texture(r, m ? m : copy, o);
         if ((at_bump = yaml_get(v, "bump")) && o->own)
             read_own_bump(r, at_bump, o);
         place(r, v, o);
-        if (o->shape && o->bump && scene_wants_truth(s) && displaced_has_form(o->shape) &&
-            !(o->displaced = displaced_new(o->shape, o->bump)))
-            errors_add(r->e, "out of memory");
+        if (o->shape && o->bump && scene_wants_truth(s) && displaced_has_form(o->shape))
+            o->displaced = reader_made(r, displaced_new(o->shape, o->bump));
     }
     q->state[i] = DONE;
 }
@@ -146,10 +143,8 @@ void reader_objects(reader *r)
     node *key;
     if (!q.at)
         return;
-    if (!(q.state = calloc((size_t)s->objects + 1, 1))) {
-        errors_add(r->e, "out of memory");
+    if (!(q.state = reader_made(r, calloc((size_t)s->objects + 1, 1))))
         return;
-    }
     for (int i = 0; i < s->objects; i++) {
         yaml_pair(q.at, i, &key);
         s->object[i].name = reader_name(r, q.at, key);

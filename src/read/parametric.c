@@ -1,4 +1,4 @@
-/* The scene reader's surfaces without closed forms: three functions of u and w, Bezier patches. */
+/* Surfaces without closed forms: three functions of u and w, and Bezier patches. */
 #include "read/parts.h"
 
 #include "patch/patch_file.h"
@@ -9,9 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* An end of a range: a number, or an expression without u and w, such as 2*pi. So a surface that closes does so
- * exactly.
- */
+/* An end of a range: a number, or an expression without u and w, such as 2*pi, so that the surface can close
+ * exactly. */
 static bool read_end(reader *r, node *at, double *x)
 {
     const double u[2] = {0.3, 0.7}, w[2] = {0.6, 0.2};
@@ -43,7 +42,7 @@ static bool read_range(reader *r, node *at, const char *key, double x[2])
     return good;
 }
 
-/* The patch as a surface; takes the patch. NULL with an error, `what` where the patch has no bounds or no size. */
+/* The patch as a surface, which owns the patch. NULL with an error: `what` if the patch has no bounds or no size. */
 static surface *search(reader *r, node *at, patch *q, const char *what)
 {
     if (q)
@@ -113,8 +112,8 @@ static vec3 *read_points(reader *r, node *at, int *patches)
         yaml_error(r->y, at, "%d patches, expected 1 to %d", *patches, PATCHES_MAX);
         return NULL;
     }
-    vec3 *point = malloc(sizeof *point * 16 * (size_t)*patches);
-    bool good = point || errors_add(r->e, "out of memory");
+    vec3 *point = reader_made(r, malloc(sizeof *point * 16 * (size_t)*patches));
+    bool good = point;
     for (int k = 0; point && k < *patches; k++)
         good = read_patch(r, yaml_item(at, k), point + 16 * k) && good;
     if (!good) {
@@ -143,15 +142,12 @@ surface *reader_patches(reader *r, node *at, shape_spec *spec)
 {
     if (!yaml_map(r->y, at, "patches", "file points"))
         return NULL;
-    node *file = yaml_get(at, "file"), *points = yaml_get(at, "points");
+    node *file = yaml_get(at, "file");
     int n = 0;
-    if (!file == !points) {
-        yaml_error(r->y, at, "patches with %s, expected either 'file' or 'points'",
-                   file ? "both file and points" : "neither file nor points");
+    if (!reader_either(r, at, "patches", "file", "points"))
         return NULL;
-    }
     *spec = (shape_spec){.kind = SHAPE_PATCH};
-    vec3 *point = file ? read_file(r, file, &n) : read_points(r, points, &n);
+    vec3 *point = file ? read_file(r, file, &n) : read_points(r, yaml_get(at, "points"), &n);
     if (!point)
         return NULL;
     patch *q = patch_bezier_new(n, point);

@@ -1,43 +1,60 @@
-/* The parts of the scene reader, in the order in which they build on each other: transforms, lights and materials on
- * values.h and layout.h; shapes on these; objects on all. Each adds its errors to the reader's and returns false, or
- * NULL, with one.
+/* The parts of the scene reader, one for each kind of thing in a scene. scene.c calls those for the scene's keys;
+ * objects.c calls those for an object. Each returns false, or NULL, with an error in the reader's list.
  */
 #ifndef KAGE_READ_PARTS_H
 #define KAGE_READ_PARTS_H
 
-#include "read/layout.h"
+#include "read/values.h"
 
 /* The keys image, camera and render. */
 void reader_view(reader *r);
 
 void reader_lights(reader *r);
-
-/* The materials. Then, for an object whose material has a pattern, its color texture; `at`: the object's material, for
- * errors. */
 void reader_materials(reader *r);
+
+/* The objects; after the materials, which they use. */
+void reader_objects(reader *r);
+
+/* ---- layout.c: where a height map or an image lies in (u,w) ---- */
+
+/* The keys size or repeat, offset, wrap and samples, on a surface with the extent u and w. Those that are absent leave
+ * the defaults, which *l must hold. */
+bool reader_layout(reader *r, node *at, const double u[2], const double w[2], map_layout *l);
+
+/* The extent that a map without a size covers: that of part 0; on a mesh 0..1, the range of texture coordinates. */
+void reader_extent(const surface *f, const shape_spec *spec, double u[2], double w[2]);
+
+/* Whether the object has (u,w) everywhere. `at`: the bump or material that needs them. */
+bool reader_textured(reader *r, node *at, const object *o);
+
+/* Wrap a bump or a color for a mesh with mirrored texture (texture/mirrored_uv.h). The result owns the argument, or is
+ * the argument. NULL of NULL. */
+bump *reader_mirror_bump(reader *r, const object *o, bump *p);
+color_texture *reader_mirror_color(reader *r, const object *o, color_texture *c);
+
+/* ---- the parts of an object ---- */
+
+/* Set the object's color texture if its material has a pattern. `at`: the object's material. */
 void reader_color_texture(reader *r, node *at, object *o);
 
-/* A list of steps: *m becomes *m followed by them. */
+/* Append a list of steps to *m. */
 bool reader_transform(reader *r, node *at, affine *m);
 
-/* Make the object's shape: the image of its own by `placed`; where true displacement needs it, as a patch. The bump
- * must have been read. Errors are at the node. */
+/* Make the object's shape from its own by the transform `placed`, after the bump; as a patch if true displacement needs
+ * one. */
 bool reader_place(reader *r, node *at, object *o);
 
-/* The surface of an object, from the one shape key that it has; *spec: what the file says of it. */
+/* The surface under the object's one shape key; *spec becomes what the file says about it. */
 #define READER_SHAPES CLOSED_FORM_NAMES "parametric patches mesh"
 surface *reader_shape(reader *r, node *at, shape_spec *spec);
-bool reader_no_shape(reader *r, node *at); /* whether it has none; otherwise an error */
+bool reader_no_shape(reader *r, node *at); /* true: it has no shape key */
 
-/* The shapes without closed forms; `at`: what is under their key. */
+/* The shapes without closed forms; `at`: the value of their key. */
 surface *reader_parametric(reader *r, node *at, shape_spec *spec);
 surface *reader_patches(reader *r, node *at, shape_spec *spec);
 surface *reader_mesh(reader *r, node *at, shape_spec *spec);
 
-/* The bump of an object that has its own surface; fills in its bump_spec and map, too. */
+/* The bump of an object that has its own surface. Also sets its bump_spec and map. */
 bump *reader_bump(reader *r, node *at, object *o);
-
-/* The objects with their surfaces and bumps; after the materials, whose names they give. */
-void reader_objects(reader *r);
 
 #endif

@@ -1,24 +1,23 @@
-/* The image of an object's shape by its transform, and whether its size and place keep enough digits in float.
+/* The object's shape after its transform; errors if float has too few digits for its size or place.
  *
- * True displacement needs closest points in closed form, or a patch. A shape without closed forms for them that has a
- * formula becomes a patch.
+ * True displacement needs closest points in closed form, or a patch. A shape that lacks the first but has a formula
+ * becomes a patch.
  */
 #include "displaced/displaced.h"
 #include "mesh/mesh.h"
 #include "patch/surface.h"
 #include "read/parts.h"
 
-/* How much more one direction may be stretched than another: float has 7 digits, and hits need 3 of them. */
+/* The largest ratio of the scales of two directions: float has 7 digits, and hits need 3 of them. */
 #define STRETCH 1e4
 
-/* A transform rounds lengths, so those at the limits for keys, 1e-6 and 1e6, may pass them by this factor. */
+/* By this factor a transformed length may pass the limits for keys, 1e-6 and 1e6. */
 #define ROUNDED 4
-
-static double length(const vec3s *v) { return vec3_length(vec3s_get(v, 0)); }
 
 static bool is_size(double x) { return x >= SMALL / ROUNDED && x <= BIG * ROUNDED; }
 
-/* The lengths of Qu and Qw in the middle of each part, within what a shape's own keys allow. */
+/* Whether Qu and Qw in the middle of each part have lengths that keys may have; otherwise *wrong is one that has not.
+ */
 static bool is_sized(const surface *f, double *wrong)
 {
     for (int32_t part = 0; part < f->ops->parts; part++) {
@@ -30,7 +29,7 @@ static bool is_sized(const surface *f, double *wrong)
         const real u = U[1] < HUGE_VAL ? (real)(0.5 * (U[0] + U[1])) : 0,
                    w = W[1] < HUGE_VAL ? (real)(0.5 * (W[0] + W[1])) : 0;
         f->ops->eval(f, 1, &part, &u, &w, 1, &q);
-        const double l[2] = {length(&q.Qu), length(&q.Qw)};
+        const double l[2] = {vec3_length(vec3s_get(&q.Qu, 0)), vec3_length(vec3s_get(&q.Qw, 0))};
         for (int k = 0; k < 2; k++)
             if (!is_size(l[k])) {
                 *wrong = l[k];
@@ -40,7 +39,7 @@ static bool is_sized(const surface *f, double *wrong)
     return true;
 }
 
-/* A mesh has no edges of its own: its size is that of the sphere around it. */
+/* The same for a mesh, by the radius of its bounding sphere. */
 static bool is_mesh_sized(const surface *f, const affine *m, double *wrong)
 {
     const double longest = fmax(vec3_length(m->x), fmax(vec3_length(m->y), vec3_length(m->z)));
@@ -48,23 +47,17 @@ static bool is_mesh_sized(const surface *f, const affine *m, double *wrong)
     return is_size(*wrong);
 }
 
-/* A closed form as a patch about the origin; NULL: it has no formula, or out of memory. */
-static surface *as_patch(const object *o, int threads)
-{
-    form_formula formula;
-    const shape_spec *f = &o->shape_spec;
-    return f->form->formula && f->form->formula(&f->values, &formula)
-               ? patch_surface_formula(f->form->name, &formula, threads)
-               : NULL;
-}
-
-/* The image of a closed form, which the values describe about the origin. */
+/* A closed form with these values, which are about the origin, mapped by m. NULL: out of memory. */
 static surface *image_of_closed(object *o, const shape_values *values, const affine *m, bool truth, int threads)
 {
     form_fault fault;
-    o->centred = o->shape_spec.form->make(values, &fault);
-    surface *f = o->centred ? surface_transformed(o->centred, m) : NULL,
-            *searched = f && truth && !displaced_has_form(f) ? as_patch(o, threads) : NULL;
+    form_formula formula;
+    const closed_form *form = o->shape_spec.form;
+    o->centred = form->make(values, &fault);
+    surface *f = o->centred ? surface_transformed(o->centred, m) : NULL;
+    if (!f || !truth || displaced_has_form(f) || !form->formula || !form->formula(&o->shape_spec.values, &formula))
+        return f;
+    surface *searched = patch_surface_formula(form->name, &formula, threads);
     if (!searched)
         return f;
     surface_free(f);
@@ -73,7 +66,7 @@ static surface *image_of_closed(object *o, const shape_values *values, const aff
     return patch_surface_affine(searched, m);
 }
 
-/* The image of the object's own shape; of a closed form that of `values`, about the origin. NULL: out of memory. */
+/* The object's own shape mapped by m; of a closed form, the one with `values`. NULL: out of memory. */
 static surface *image_of(object *o, const shape_values *values, const affine *m, bool truth, int threads)
 {
     if (o->shape_spec.kind == SHAPE_CLOSED)
@@ -92,26 +85,27 @@ bool reader_place(reader *r, node *at, object *o)
     affine whole = affine_identity();
     shape_values values = {.open = false};
     double wrong = 0;
-    /* closed forms are mapped from the origin: far from it float would lose digits before the transform */
+    /* far from the origin float would lose digits before the transform */
     if (o->shape_spec.kind == SHAPE_CLOSED)
         values = shape_centred(o->shape_spec.form, &o->shape_spec.values, &whole.o);
     const vec3 to = affine_point(m, is_mesh ? ((const mesh *)o->own)->space.centre : whole.o);
     const double far = fmax(fabs(to.x), fmax(fabs(to.y), fabs(to.z)));
     if (!(far <= BIG))
-        return yaml_error(r->y, at, "it goes %.4g scene units away, expected 1000000 at most", far);
+        return yaml_error(r->y, at, "a coordinate of %.4g scene units after the transform, expected at most 1000000",
+                          far);
     if (!(square(m) * square(&back) <= STRETCH * STRETCH))
-        return yaml_error(r->y, at, "one way is stretched more than %g times as much as another, expected less",
+        return yaml_error(r->y, at, "one direction is scaled more than %g times as much as another, expected less",
                           STRETCH);
     whole = affine_then(&whole, m);
-    if (!(o->shape = image_of(o, &values, &whole, truth, r->from->threads)))
-        return errors_add(r->e, "out of memory");
+    if (!(o->shape = reader_made(r, image_of(o, &values, &whole, truth, r->from->threads))))
+        return false;
     if (!(is_mesh ? is_mesh_sized(o->own, m, &wrong) : is_sized(o->shape, &wrong)))
-        return yaml_error(r->y, at, "an edge or a radius of %.4g scene units comes from this, expected 1e-6 to 1e6",
+        return yaml_error(r->y, at, "an edge or a radius of %.4g scene units after the transform, expected 1e-6 to 1e6",
                           wrong);
     if (truth && !displaced_has_form(o->shape))
         return yaml_error(r->y, at,
-                          "a %s with caps and a bump is stretched more one way than another, expected the same scale "
-                          "all ways, or 'open: true', for %s",
+                          "a %s with caps and a bump is scaled differently along its axes, expected equal scales, or "
+                          "'open: true', for %s",
                           o->shape->ops->kind, r->s->displaced ? "surface displaced" : "shadow exact");
     return true;
 }

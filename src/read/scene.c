@@ -1,12 +1,12 @@
-/* The scene reader: a YAML file (docs/scene.md) becomes a scene. Every value is checked here, and every error has its
- * place in the file; the tracer can rely on the scene.
+/* Reads a YAML file (docs/scene.md) into a scene. The reader checks every value, so the tracer need not; every error
+ * has its place in the file.
  */
 #include "read/parts.h"
 #include "scene/object_bvh.h"
 
 #include <stdlib.h>
 
-/* Whether any object sends rays on, or lets light through. All objects are good: each has a material. */
+/* Note whether any object mirrors or refracts, or is transparent. */
 static void note_secondary(scene *s)
 {
     for (int k = 0; k < s->objects; k++) {
@@ -14,14 +14,6 @@ static void note_secondary(scene *s)
         s->sends |= material_sends(m);
         s->clear |= material_clear(m);
     }
-}
-
-static void make_bvh(reader *r)
-{
-    bool good = true;
-    r->s->object_bvh = object_bvh_new(r->s, &good);
-    if (!good)
-        errors_add(r->e, "out of memory");
 }
 
 scene *scene_read(const scene_source *from, errors *e)
@@ -42,7 +34,10 @@ scene *scene_read(const scene_source *from, errors *e)
             reader_objects(&r);
             if (e->count == before) {
                 note_secondary(r.s);
-                make_bvh(&r);
+                bool good = true;
+                r.s->object_bvh = object_bvh_new(r.s, &good);
+                if (!good)
+                    errors_add(e, "out of memory");
             }
         }
         yaml_close(r.y);

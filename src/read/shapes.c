@@ -1,6 +1,4 @@
-/* The scene reader's shapes: those with closed forms by their parameters, which geometry/closed_form.h describes; the
- * others by readers of their own.
- */
+/* Shapes: closed forms by the parameters that geometry/closed_form.h lists; the others by readers of their own. */
 #include "read/parts.h"
 
 #include <string.h>
@@ -9,11 +7,19 @@ static const struct {
     const char *name;
     surface *(*read)(reader *r, node *at, shape_spec *spec);
 } others[] = {{"parametric", reader_parametric}, {"patches", reader_patches}, {"mesh", reader_mesh}};
-enum { SHAPES = CLOSED_FORM_COUNT + sizeof others / sizeof *others };
+enum { SHAPES = CLOSED_FORM_COUNT + (int)(sizeof others / sizeof *others) };
 
 static const char *name_of(int shape)
 {
     return shape < CLOSED_FORM_COUNT ? closed_forms[shape]->name : others[shape - CLOSED_FORM_COUNT].name;
+}
+
+/* The first shape of the object from shape k on; SHAPES: none. */
+static int next_shape(node *at, int k)
+{
+    while (k < SHAPES && !yaml_get(at, name_of(k)))
+        k++;
+    return k;
 }
 
 static bool read_parameter(reader *r, node *at, const form_parameter *p, shape_values *v)
@@ -65,32 +71,22 @@ static surface *read_closed(reader *r, node *at, const closed_form *form, shape_
 
 surface *reader_shape(reader *r, node *at, shape_spec *spec)
 {
-    node *there = NULL;
-    int shape = 0;
-    for (int k = 0; k < SHAPES; k++) {
-        node *v = yaml_get(at, name_of(k));
-        if (v && there) {
-            yaml_error(r->y, v, "a second shape, '%s' beside '%s', expected one", name_of(k), name_of(shape));
-            return NULL;
-        }
-        if (v) {
-            there = v;
-            shape = k;
-        }
-    }
-    if (!there) {
+    const int shape = next_shape(at, 0), second = next_shape(at, shape + 1);
+    if (shape == SHAPES)
         yaml_error(r->y, at, "an object lacks its shape, expected one of: " READER_SHAPES);
+    else if (second < SHAPES)
+        yaml_error(r->y, yaml_get(at, name_of(second)), "a second shape, '%s' beside '%s', expected one",
+                   name_of(second), name_of(shape));
+    if (shape == SHAPES || second < SHAPES)
         return NULL;
-    }
+    node *there = yaml_get(at, name_of(shape));
     return shape < CLOSED_FORM_COUNT ? read_closed(r, there, closed_forms[shape], spec)
                                      : others[shape - CLOSED_FORM_COUNT].read(r, there, spec);
 }
 
 bool reader_no_shape(reader *r, node *at)
 {
-    for (int k = 0; k < SHAPES; k++)
-        if (yaml_get(at, name_of(k)))
-            return yaml_error(r->y, yaml_get(at, name_of(k)), "a shape, '%s', beside 'copy', expected one of them",
-                              name_of(k));
-    return true;
+    const int k = next_shape(at, 0);
+    return k == SHAPES ||
+           yaml_error(r->y, yaml_get(at, name_of(k)), "a shape, '%s', beside 'copy', expected one of them", name_of(k));
 }

@@ -1,4 +1,4 @@
-/* The scene reader's transforms: steps one after the other, each about the scene's origin and axes, as in POV-Ray. */
+/* Transforms: steps in order, each about the scene's origin and axes, as in POV-Ray. */
 #include "math/kmath.h"
 #include "read/parts.h"
 
@@ -50,7 +50,7 @@ static bool scale(reader *r, node *at, affine *m)
         return false;
     for (int k = 0; k < (three ? 3 : 1); k++)
         if (fabs(v[k]) < SMALL)
-            return yaml_error(r->y, three ? yaml_item(at, k) : at, "a scale of %g leaves nothing, expected " SCALE,
+            return yaml_error(r->y, three ? yaml_item(at, k) : at, "a scale of %g has no extent, expected " SCALE,
                               v[k]);
     if (!three)
         v[1] = v[2] = v[0];
@@ -58,60 +58,46 @@ static bool scale(reader *r, node *at, affine *m)
     return true;
 }
 
-/* Place the object as a camera: the origin goes to `from`, +z points to `at`, and +y as far up as it can. */
+/* Place the object like a camera: the origin goes to `from`, +z points to `at`, +y is closest to `up`. */
 static bool look(reader *r, node *at, affine *m)
 {
     vec3 from = {0, 0, 0}, to = {0, 0, 0}, up = {0, 1, 0};
     if (!yaml_map(r->y, at, "look", "from at up"))
         return false;
-    bool good = reader_need_all(r, at, "from at", "look");
-    good = reader_vector(r, at, "from", "where the origin goes " PLACE, &from) && good;
-    good = reader_vector(r, at, "at", "the place looked at " PLACE, &to) && good;
-    good = reader_vector(r, at, "up", "a direction " PLACE, &up) && good;
-    if (!good)
+    if (!reader_look(r, at, "it", "look", &from, &to, &up))
         return false;
-    node *at_up = yaml_get(at, "up");
-    const vec3 way = vec3_sub(to, from);
-    if (vec3_length(way) < SMALL)
-        return yaml_error(r->y, yaml_get(at, "at"), "it looks at its own place, expected 'at' apart from 'from'");
-    if (!reader_has_length(r, at, "up", "a vector", up))
-        return false;
-    const vec3 z = vec3_unit(way), x = vec3_cross(vec3_unit(up), z);
+    const vec3 z = vec3_unit(vec3_sub(to, from)), x = vec3_cross(vec3_unit(up), z);
     if (vec3_length(x) < SMALL)
-        return yaml_error(r->y, at_up ? at_up : at, "'up' is along the view, expected a direction across it%s",
-                          at_up ? "" : " (it is [0, 1, 0])");
+        return reader_up_along(r, at);
     *m = (affine){vec3_unit(x), vec3_cross(z, vec3_unit(x)), z, from};
     return true;
 }
 
-bool reader_transform(reader *r, node *at, affine *m)
+static bool read_step(reader *r, node *at, affine *m)
 {
     static const struct {
         const char *name;
         bool (*read)(reader *r, node *at, affine *m);
     } steps[] = {{"translate", translate}, {"rotate", rotate}, {"scale", scale}, {"look", look}};
+    int k = 0;
+    affine next;
+    if (!yaml_map(r->y, at, "a step", "translate rotate scale look"))
+        return false;
+    if (yaml_size(at) != 1)
+        return yaml_error(r->y, at, "a step with %d keys, expected one, since the order matters", yaml_size(at));
+    while (!yaml_get(at, steps[k].name))
+        k++;
+    if (!steps[k].read(r, yaml_get(at, steps[k].name), &next))
+        return false;
+    *m = affine_then(m, &next);
+    return true;
+}
+
+bool reader_transform(reader *r, node *at, affine *m)
+{
     const int n = yaml_list(r->y, at, "a list of steps, such as [{rotate: [0, 45, 0]}, {translate: [1, 0, 0]}]");
     bool good = n >= 0;
-    for (int i = 0; i < n; i++) {
-        node *step = yaml_item(at, i);
-        if (!yaml_map(r->y, step, "a step", "translate rotate scale look")) {
-            good = false;
-            continue;
-        }
-        if (yaml_size(step) != 1) {
-            good = yaml_error(r->y, step, "a step with %d keys, expected one: which is first matters", yaml_size(step));
-            continue;
-        }
-        for (int k = 0; k < (int)(sizeof steps / sizeof *steps); k++) {
-            node *v = yaml_get(step, steps[k].name);
-            affine next;
-            if (!v)
-                continue;
-            if (steps[k].read(r, v, &next))
-                *m = affine_then(m, &next);
-            else
-                good = false;
-        }
-    }
+    for (int i = 0; i < n; i++)
+        good = read_step(r, yaml_item(at, i), m) && good;
     return good;
 }

@@ -1,17 +1,18 @@
-/* The small readers of the scene reader. */
+/* The small readers of values, names and files. */
 #include "read/values.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-char *reader_copy(reader *r, const char *text)
+void *reader_made(reader *r, void *p)
 {
-    char *c = text ? strdup(text) : NULL;
-    if (text && !c)
+    if (!p)
         errors_add(r->e, "out of memory");
-    return c;
+    return p;
 }
+
+char *reader_copy(reader *r, const char *text) { return text ? reader_made(r, strdup(text)) : NULL; }
 
 static bool read_three(reader *r, node *at, double lo, const char *what, vec3 *v)
 {
@@ -40,6 +41,33 @@ bool reader_number(reader *r, node *map, const char *key, double lo, bool open, 
     return !at || yaml_number(r->y, at, lo, open, hi, what, x);
 }
 
+bool reader_pair(reader *r, node *map, const char *key, double lo, const char *what, double x[2])
+{
+    node *at = yaml_get(map, key);
+    return !at || yaml_numbers(r->y, at, 2, lo, BIG, what, x);
+}
+
+bool reader_counts(reader *r, node *map, const char *key, int hi, const char *what, int x[2])
+{
+    double n[2];
+    node *at = yaml_get(map, key);
+    if (!at)
+        return true;
+    if (!yaml_numbers(r->y, at, 2, 1, hi, what, n))
+        return false;
+    if (n[0] != floor(n[0]) || n[1] != floor(n[1]))
+        return yaml_error(r->y, at, "no whole numbers, expected %s", what);
+    x[0] = (int)n[0];
+    x[1] = (int)n[1];
+    return true;
+}
+
+int reader_word(reader *r, node *map, const char *key, const char *words, const char *what)
+{
+    node *at = yaml_get(map, key);
+    return at ? yaml_word(r->y, at, words, what) : 0;
+}
+
 bool reader_has_length(reader *r, node *map, const char *key, const char *noun, vec3 v)
 {
     return vec3_length(v) >= SMALL ||
@@ -56,6 +84,31 @@ bool reader_need_all(reader *r, node *map, const char *keys, const char *what)
         good = yaml_need(r->y, map, key, what) && good;
     }
     return good;
+}
+
+bool reader_either(reader *r, node *map, const char *noun, const char *a, const char *b)
+{
+    const bool has_a = yaml_get(map, a), has_b = yaml_get(map, b);
+    return has_a != has_b || yaml_error(r->y, map, "%s with %s %s %s %s, expected either '%s' or '%s'", noun,
+                                        has_a ? "both" : "neither", a, has_a ? "and" : "nor", b, a, b);
+}
+
+bool reader_look(reader *r, node *map, const char *who, const char *what, vec3 *from, vec3 *to, vec3 *up)
+{
+    bool good = reader_need_all(r, map, "from at", what);
+    good = reader_vector(r, map, "from", "the eye's place [x, y, z]", from) && good;
+    good = reader_vector(r, map, "at", "the place looked at [x, y, z]", to) && good;
+    good = reader_vector(r, map, "up", "a direction [x, y, z]", up) && good;
+    if (good && vec3_length(vec3_sub(*to, *from)) < SMALL)
+        return yaml_error(r->y, yaml_get(map, "at"), "%s looks at its own place, expected 'at' apart from 'from'", who);
+    return good && reader_has_length(r, map, "up", "a vector", *up);
+}
+
+bool reader_up_along(reader *r, node *map)
+{
+    node *up = yaml_get(map, "up");
+    return yaml_error(r->y, up ? up : map, "'up' is along the view, expected a direction across it%s",
+                      up ? "" : " (it is [0, 1, 0])");
 }
 
 char *reader_beside(reader *r, const char *file)
@@ -102,14 +155,25 @@ node *reader_named(reader *r, const char *key, size_t size, void *array, int *co
         yaml_error(r->y, at, "%d %s, expected at most %d", n, key, SCENE_MAX_ITEMS);
         return NULL;
     }
-    void *items = calloc((size_t)(n ? n : 1), size);
-    if (!items) {
-        errors_add(r->e, "out of memory");
+    void *items = reader_made(r, calloc((size_t)(n ? n : 1), size));
+    if (!items)
         return NULL;
-    }
     memcpy(array, &items, sizeof items);
     *count = n;
     return at;
+}
+
+bool reader_usable(reader *r, node *file, const char *name, bool was_read, const image *p, const char *values,
+                   errors *e)
+{
+    if (!was_read)
+        yaml_error(r->y, file, "'%s' can't be used: %.*s", name, e->size ? (int)e->size - 1 : 0,
+                   e->text ? e->text : "");
+    else if (p->width < 2 || p->height < 2)
+        was_read =
+            yaml_error(r->y, file, "'%s' has %d x %d %s, expected at least 2 x 2", name, p->width, p->height, values);
+    errors_free(e);
+    return was_read;
 }
 
 expr *reader_expr(reader *r, node *at, const char *what)

@@ -1,14 +1,15 @@
-/* What all parts of the scene reader build on: its state, and the small readers of numbers, vectors, colors, names and
- * files. A wrong value adds an error at its node and is left as it was; what is read after it is read all the same, so
- * that all errors of a scene are found at once. The lowest part: it calls no other.
+/* The scene reader's state, and its small readers of numbers, vectors, colors, words, names and files. A wrong value
+ * adds an error at its node and leaves the result unchanged. Reading then continues, so that one run reports all errors
+ * of a scene.
  */
 #ifndef KAGE_READ_VALUES_H
 #define KAGE_READ_VALUES_H
 
+#include "image/image.h"
 #include "scene/scene.h"
 #include "yaml/yaml.h"
 
-/* Numbers of a scene: within these, no product of a few overflows float, and no square vanishes. */
+/* Limits for numbers of a scene: products of a few of them stay within the range of float. */
 #define BIG 1e6
 #define SMALL SHAPE_SMALL
 
@@ -19,37 +20,60 @@ typedef struct reader {
     const scene_source *from;
 } reader;
 
-/* An owned copy of a text; NULL of NULL, or with an error. */
+/* Returns p. Adds the error "out of memory" where it is NULL. */
+void *reader_made(reader *r, void *p);
+
+/* A copy of the text, owned by the caller. NULL: the text is NULL, or there is an error. */
 char *reader_copy(reader *r, const char *text);
 
-/* The value of a key: three numbers, each within BIG. An absent key leaves *v and is no error here, as in the next
- * three. Returns whether there was no error, as all readers of values do. */
+/* The value of an optional key in a map; where it is absent, the result is unchanged. False with an error. `what`
+ * describes the expected value in messages. A vector has three numbers within BIG; a linear color three from 0 to BIG;
+ * a pair two from lo to BIG; counts are two whole numbers from 1 to hi. */
 bool reader_vector(reader *r, node *map, const char *key, const char *what, vec3 *v);
-
-/* A linear color: three numbers from 0 to BIG. */
 bool reader_color(reader *r, node *map, const char *key, vec3 *v);
+bool reader_pair(reader *r, node *map, const char *key, double lo, const char *what, double x[2]);
+bool reader_counts(reader *r, node *map, const char *key, int hi, const char *what, int x[2]);
 
-/* A number lo <= x <= hi; `open`: lo < x. `what` names the value for the message. */
+/* The same for a number lo <= x <= hi, or lo < x <= hi if `open`. */
 bool reader_number(reader *r, node *map, const char *key, double lo, bool open, double hi, const char *what, double *x);
 
-/* A vector's length. False with an error at the key, which may be absent: then at the map. noun: "a vector". */
+/* The same for one of `words`, which are separated by spaces. Returns its index; 0 without the key; -1 with an error.
+ */
+int reader_word(reader *r, node *map, const char *key, const char *words, const char *what);
+
+/* Whether a vector has a length. False with an error at the key, or at the map without the key. noun: "a vector". */
 bool reader_has_length(reader *r, node *map, const char *key, const char *noun, vec3 v);
 
-/* Whether all of the keys are in the map, separated by spaces; an error for each that is not. */
+/* Whether all keys, separated by spaces, are in the map. Adds an error for each that is missing. */
 bool reader_need_all(reader *r, node *map, const char *keys, const char *what);
 
-/* A name in a map of named things; owned. NULL with an error. */
+/* Whether exactly one of two keys is in the map. False with an error. noun: "a bump". */
+bool reader_either(reader *r, node *map, const char *noun, const char *a, const char *b);
+
+/* The keys from, at and up of a camera, or of a transform that looks at a place. `who` looks and `what` has the keys,
+ * in messages. False with an error. */
+bool reader_look(reader *r, node *map, const char *who, const char *what, vec3 *from, vec3 *to, vec3 *up);
+
+/* Add the error that `up` has the direction of the view. Always false. */
+bool reader_up_along(reader *r, node *map);
+
+/* The name that is a key of the map; owned by the caller. NULL with an error. */
 char *reader_name(reader *r, node *map, node *key);
 
-/* The scene's map of named things under a key, which it needs. Makes *array, an item of that size for each, all zero;
- * owned by the scene. NULL with an error, with *count as it was. */
+/* The map of named things under a required key of the scene. Sets *array to one zeroed item of `size` bytes for each,
+ * owned by the scene. NULL with an error; *count is then unchanged. */
 node *reader_named(reader *r, const char *key, size_t size, void *array, int *count);
 
-/* The path of a file beside the scene, so that a scene finds its files from any working directory; owned. The file is
- * noted as one that the scene is made from. NULL: out of memory, with an error. */
+/* The path of a file that is given relative to the scene's folder; owned by the caller. Adds the file to those that the
+ * scene is made from. NULL: out of memory, with an error. */
 char *reader_beside(reader *r, const char *file);
 
-/* A function of u and w; owned. NULL with an error. */
+/* Whether an image was read (if not, *e has the reason) and has at least 2 x 2 values. False with an error. Frees *e.
+ */
+bool reader_usable(reader *r, node *file, const char *name, bool was_read, const image *p, const char *values,
+                   errors *e);
+
+/* A function of u and w; owned by the caller. NULL with an error. */
 expr *reader_expr(reader *r, node *at, const char *what);
 
 #endif

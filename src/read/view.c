@@ -1,26 +1,20 @@
-/* The scene reader's image, camera and render: the picture's size, its view, and how it is rendered. */
-#include "image/image.h"
+/* The keys image, camera and render: the picture's size, its view, and how it is rendered. */
 #include "read/parts.h"
 
 static void read_image(reader *r)
 {
     scene *s = r->s;
     node *at = yaml_get(yaml_root(r->y), "image");
-    double size[2];
-    s->width = 640;
-    s->height = 480;
-    if (!at || !yaml_map(r->y, at, "image", "size background"))
-        return;
-    node *k = yaml_get(at, "size");
-    if (k && yaml_numbers(r->y, k, 2, 1, SCENE_MAX_SIDE, "[width, height] in pixels, from 1 to 32768", size)) {
-        if (size[0] != floor(size[0]) || size[1] != floor(size[1]))
-            yaml_error(r->y, k, "no whole numbers, expected [width, height] in pixels");
-        if (size[0] * size[1] > (double)IMAGE_MAX_PIXELS)
-            yaml_error(r->y, k, "%.0f pixels, expected at most %ld", size[0] * size[1], IMAGE_MAX_PIXELS);
-        s->width = (int)size[0];
-        s->height = (int)size[1];
+    int size[2] = {640, 480};
+    if (at && yaml_map(r->y, at, "image", "size background")) {
+        reader_color(r, at, "background", &s->background);
+        if (reader_counts(r, at, "size", SCENE_MAX_SIDE, "[width, height] in pixels, from 1 to 32768", size) &&
+            (long)size[0] * size[1] > IMAGE_MAX_PIXELS)
+            yaml_error(r->y, yaml_get(at, "size"), "%ld pixels, expected at most %ld", (long)size[0] * size[1],
+                       IMAGE_MAX_PIXELS);
     }
-    reader_color(r, at, "background", &s->background);
+    s->width = size[0];
+    s->height = size[1];
 }
 
 static void read_camera(reader *r)
@@ -31,10 +25,7 @@ static void read_camera(reader *r)
     vec3 from = {0, 0, 0}, to = {0, 0, 0}, up = {0, 1, 0};
     double fov = 40, width = 0;
     node *across = yaml_get(at, "width");
-    bool good = reader_need_all(r, at, "from at", "camera");
-    good = reader_vector(r, at, "from", "the eye's place [x, y, z]", &from) && good;
-    good = reader_vector(r, at, "at", "the place looked at [x, y, z]", &to) && good;
-    good = reader_vector(r, at, "up", "a direction [x, y, z]", &up) && good;
+    bool good = reader_look(r, at, "the camera", "camera", &from, &to, &up);
     good = reader_number(r, at, "fov", 0, true, 175, "the horizontal angle in degrees, above 0 and up to 175", &fov) &&
            good;
     good = reader_number(r, at, "width", SMALL, false, BIG,
@@ -49,15 +40,9 @@ static void read_camera(reader *r)
     camera *c = &r->s->camera;
     const int columns = r->s->width, rows = r->s->height;
     r->s->view = (camera_view){to, up, fov, width};
-    if (vec3_length(vec3_sub(to, from)) < SMALL)
-        yaml_error(r->y, yaml_get(at, "at"), "the camera looks at its own place, expected 'at' apart from 'from'");
-    else if (vec3_length(up) < SMALL)
-        yaml_error(r->y, yaml_get(at, "up"), "no direction, expected a vector with a length");
-    else if (across ? !camera_orthographic(c, from, to, up, width, columns, rows)
-                    : !camera_look(c, from, to, up, fov, columns, rows))
-        yaml_error(r->y, yaml_get(at, "up") ? yaml_get(at, "up") : at,
-                   "'up' is along the view, expected a direction across it%s",
-                   yaml_get(at, "up") ? "" : " (it is [0, 1, 0])");
+    if (across ? !camera_orthographic(c, from, to, up, width, columns, rows)
+               : !camera_look(c, from, to, up, fov, columns, rows))
+        reader_up_along(r, at);
 }
 
 static void read_render(reader *r)
@@ -85,8 +70,7 @@ static void read_render(reader *r)
                   "how much two pixels may differ, red, green and blue together, 0 to 3", &s->aa_threshold);
     if ((k = yaml_get(at, "depth")))
         yaml_whole(r->y, k, 1, SCENE_MAX_DEPTH, "how many rays follow one another, 1 to 32", &s->depth);
-    if ((k = yaml_get(at, "surface")))
-        s->displaced = yaml_word(r->y, k, "smooth displaced", "smooth or displaced") == 1;
+    s->displaced = reader_word(r, at, "surface", "smooth displaced", "smooth or displaced") == 1;
     if ((k = yaml_get(at, "self_shadow")))
         yaml_bool(r->y, k, "true or false", &s->self_shadow);
 }

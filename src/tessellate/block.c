@@ -1,4 +1,4 @@
-/* Where a block of a displaced mesh's cells is on the screen, how large, and how far from flat. */
+/* A block of cells: its corners, where it is on the screen, how large, and how far from flat. */
 #include "tessellate/tessellation.h"
 
 vec3 block_project(const scene *s, vec3 p)
@@ -11,7 +11,7 @@ vec3 block_project(const scene *s, vec3 p)
 
 corners block_corners(const tessellation *x, int64_t i, int64_t j, int64_t size)
 {
-    corners c;
+    corners c = {.n = {0, 0, 0}};
     partials q;
     bump_values h;
     int32_t part[4];
@@ -24,17 +24,14 @@ corners block_corners(const tessellation *x, int64_t i, int64_t j, int64_t size)
     x->o->shape->ops->eval(x->o->shape, 4, part, u, w, 1, &q);
     x->o->bump->ops->eval(x->o->bump, 4, u, w, 1, &h);
     for (int k = 0; k < 4; k++) {
-        vec3 U = {(double)q.Qu.x[k], (double)q.Qu.y[k], (double)q.Qu.z[k]},
-             W = {(double)q.Qw.x[k], (double)q.Qw.y[k], (double)q.Qw.z[k]};
-        c.Q[k] = (vec3){(double)q.Q.x[k], (double)q.Q.y[k], (double)q.Q.z[k]};
+        const vec3 U = vec3s_get(&q.Qu, k), W = vec3s_get(&q.Qw, k), n = vec3_unit(vec3_cross(U, W));
+        c.n = k == 0 ? n : c.n;
+        c.Q[k] = vec3s_get(&q.Q, k);
         c.slope[k][0] = (double)h.Pu[k] / vec3_length(U);
         c.slope[k][1] = (double)h.Pw[k] / vec3_length(W);
         c.P[k] = (double)h.P[k];
-        c.X[k] = vec3_add(c.Q[k], vec3_scale(vec3_unit(vec3_cross(U, W)), c.P[k]));
+        c.X[k] = vec3_add(c.Q[k], vec3_scale(n, c.P[k]));
     }
-    vec3 Qu = {(double)q.Qu.x[0], (double)q.Qu.y[0], (double)q.Qu.z[0]},
-         Qw = {(double)q.Qw.x[0], (double)q.Qw.y[0], (double)q.Qw.z[0]};
-    c.n = vec3_unit(vec3_cross(Qu, Qw));
     return c;
 }
 
@@ -55,8 +52,8 @@ double block_pixels(const tessellation *x, const corners *c)
     return longest;
 }
 
-/* How far the normal in a facet that is the whole block can be from that of the surface: what lies between three
- * normals on unit length is a plane, where the slopes are bilinear and unit length is not linear. */
+/* A facet interpolates its slopes linearly and normalises them; the surface's slopes are bilinear. The first term is
+ * the difference of the slopes, the second that of the normalised length. */
 double block_tilt(const corners *c)
 {
     double worst = 0;
@@ -65,7 +62,7 @@ double block_tilt(const corners *c)
         double most = fmax(fmax(g[0], g[1]), fmax(g[2], g[3])), least = fmin(fmin(g[0], g[1]), fmin(g[2], g[3]));
         worst = fmax(worst, fabs(g[0] - g[1] + g[2] - g[3]) / 4 + (most - least) * (most - least) / 8);
     }
-    return worst < 1 ? worst : 1; /* at a pole u has no length */
+    return worst < 1 ? worst : 1; /* at a pole slopes are infinite */
 }
 
 double block_twist(const corners *c)
@@ -81,7 +78,6 @@ int block_beyond(const scene *s, vec3 at)
     return (p.x > p.z) | (p.x < -p.z) << 1 | (p.y > p.z) << 2 | (p.y < -p.z) << 3 | (p.z < 0) << 4;
 }
 
-/* Whether the block, or the shadow that it casts down to the lowest level of its plane, can be in the picture. */
 bool block_seen(const tessellation *x, const corners *c)
 {
     const double lo = (double)x->o->bump->Pmin, hi = (double)x->o->bump->Pmax;
@@ -100,7 +96,6 @@ bool block_seen(const tessellation *x, const corners *c)
     return !outside;
 }
 
-/* Whether no pixel's ray meets a block of cells, nor one as large beside it, which it could shade. */
 bool block_missed(const tessellation *x, const corners *c)
 {
     const double level[2] = {(double)x->o->bump->Pmin, (double)x->o->bump->Pmax};

@@ -1,14 +1,12 @@
-/* How finely a cell of a displaced mesh is divided: all of it evenly, or only where rays through the pixels' middles
- * meet it.
- */
+/* How finely a cell is divided: evenly, or only where rays through pixel centres meet it. */
 #include "tessellate/tessellation.h"
 
-/* A corner on the screen, times depth, against the middle of a pixel. */
+/* The four corners relative to a pixel's centre, times depth: f is x, g is y. */
 typedef struct aim {
     double f[4], g[4];
 } aim;
 
-/* s u and t w from corner 0: the rough cell is turned away from the eye. Told only where its other side is never seen.
+/* Whether the displaced cell at (s,t), from corner 0, is turned away from the eye. False if its other side can be seen.
  */
 static bool turned_away(const tessellation *x, const corners *c, double s, double t)
 {
@@ -24,7 +22,7 @@ static bool turned_away(const tessellation *x, const corners *c, double s, doubl
     return (below ? -1 : 1) * vec3_dot(N, view) > EDGE_ON * vec3_length(N) * vec3_length(view);
 }
 
-/* Where s is given, t by that of the two equations that knows it better. False: outside of the cell. */
+/* t for a given s, by the better conditioned of the two equations. False: outside of the cell. */
 static bool meet_at(const aim *m, double s, double margin, double *t)
 {
     const double a = m->f[0] + (m->f[1] - m->f[0]) * s, b = m->f[3] + (m->f[2] - m->f[3]) * s - a;
@@ -49,8 +47,8 @@ static int meet_cell(const aim *m, double margin, double s[2], double t[2])
     return n;
 }
 
-/* The pixels whose middles are in the box around a rough cell, first and last of columns and rows. False: it reaches
- * behind the eye. */
+/* The first and last column and row of the pixels with centres in the box around a displaced cell. False: the cell
+ * reaches behind the eye. */
 static bool pixels_around(const tessellation *x, const vec3 p[4], int box[2][2])
 {
     const int size[2] = {x->s->width, x->s->height};
@@ -95,7 +93,7 @@ void lines_every(lines *l, int k)
         l->on[0][a] = l->on[1][a] = true;
 }
 
-/* The facet of k x k that a ray meets, and those beside it where that is not sure. */
+/* Add the lines around the facet, of k x k, that a ray meets at `at`, to within `unsure` facets. */
 static void add_place(lines *l, int axis, double at, int k, double unsure)
 {
     const int first = (int)floor(fmin(fmax(at * k - unsure, 0), k - 1)),
@@ -106,7 +104,7 @@ static void add_place(lines *l, int axis, double at, int k, double unsure)
 
 void lines_met(const tessellation *x, const corners *c, lines *l)
 {
-    enum { MANY = 25 }; /* pixels: all of the cell is as fine */
+    enum { MANY = 25 }; /* a cell with more pixels is equally fine everywhere */
     const double margin = x->flat ? 0.01 : BULGE, unsure = x->flat ? 0.05 : 0.3;
     int box[2][2], k = 1, shaped = 1;
     vec3 p[4];

@@ -1,7 +1,7 @@
-/* How far the heights of a displaced mesh are off, where it had to be coarse. */
+/* The error of the heights in a mesh that is coarse. */
 #include "tessellate/tessellation.h"
 
-/* What facets are off on a block of k x k that is not bilinear, by heights at n places along a facet's side. */
+/* The error of k x k facets on a block that is not bilinear, by heights at n places along a facet's side. */
 static double sampled_error(const tessellation *x, int64_t i, int64_t j, int64_t size, int k)
 {
     enum { MOST = 2 * LATTICE };
@@ -34,7 +34,6 @@ static double sampled_error(const tessellation *x, int64_t i, int64_t j, int64_t
     return worst;
 }
 
-/* Of facets between the lines of a map's cell, which is bilinear; or of others. */
 void tessellation_measure(tessellation *x, int64_t i, int64_t j, int64_t size, const lines *l)
 {
     const corners c = block_corners(x, i, j, size);

@@ -1,5 +1,5 @@
-/* A part of a displaced object as quads between the lines of its cells. Beside a coarser cell the finer one's vertices
- * on the common edge are put onto that edge, so that no crack opens.
+/* Makes the triangles of a part between the lines of its cells. At the edge to a coarser cell, the finer one's vertices
+ * are moved onto that edge, so that there are no cracks.
  */
 #include "pov_text/flat.h"
 #include "tessellate/tessellation.h"
@@ -30,14 +30,14 @@ static void add_face(tessellation *x, int32_t a, int32_t b, int32_t c)
     f[2] = c;
 }
 
-/* A vertex of a finer side onto the straight line between those two that the coarser neighbour has. */
+/* Move a vertex onto the line between vertices a and b, which the coarser neighbour has. */
 static void onto(pov_vertices *v, int32_t it, int32_t a, int32_t b, float share)
 {
     for (int k = 0; k < 3; k++)
         v->vertex[it].at[k] = v->vertex[a].at[k] + (v->vertex[b].at[k] - v->vertex[a].at[k]) * share;
 }
 
-/* number[(k + 1) row + column]; `stride` leads along a side, from `first`. */
+/* Move the vertices of one side, first + s stride in `number`, onto the neighbour's `other` parts. */
 static void stitch(pov_vertices *v, const int32_t *number, const bool *fresh, int k, int other, int first, int stride)
 {
     if (other == 0 || other >= k)
@@ -51,7 +51,7 @@ static void stitch(pov_vertices *v, const int32_t *number, const bool *fresh, in
 
 /* ---- quads ---- */
 
-/* All on the straight sides between the corners, so that neighbours need not have the same lines. */
+/* Move the vertices of all sides onto straight lines between the corners: neighbours may have other lines. */
 static void straighten(pov_vertices *v, const int32_t *number, const bool *fresh, const int at[][2], int n, int row)
 {
     const int32_t corner[2][2] = {{number[0], number[row - 1]}, {number[n - row], number[n - 1]}}; /* [w][u] */
@@ -125,21 +125,15 @@ static void add_grid(tessellation *x, int64_t i, int64_t j, int64_t size, const 
         }
 }
 
-static void add_cell(tessellation *x, int64_t i, int64_t j)
+/* A cell, or a block as one cell. */
+static void add_cell(tessellation *x, int64_t i, int64_t j, int64_t size, bool joined)
 {
     lines l = {0};
-    if (x->fine.met) {
+    if (!joined && x->fine.met) {
         const corners c = block_corners(x, i, j, 1);
         lines_met(x, &c, &l);
     } else
-        lines_every(&l, cell_division(x, i, j));
-    add_grid(x, i, j, 1, &l);
-}
-
-static void add_joined(tessellation *x, int64_t i, int64_t j, int64_t size)
-{
-    lines l = {0};
-    lines_every(&l, 1);
+        lines_every(&l, joined ? 1 : cell_division(x, i, j));
     add_grid(x, i, j, size, &l);
 }
 
@@ -149,20 +143,18 @@ static void add_block(tessellation *x, int64_t i, int64_t j, int64_t size)
     if (x->full || i >= x->end[0] || j >= x->end[1])
         return;
     if (size == 1 && !x->unbounded && !x->fine.level) {
-        add_cell(x, i, j);
+        add_cell(x, i, j, 1, false);
         return;
     }
     corners c = block_corners(x, i, j, size);
     if (x->unbounded && !block_seen(x, &c))
         return;
-    if (x->fine.level && size <= (int64_t)1 << x->fine.level)
-        add_joined(x, i, j, size);
-    else if (size == 1)
-        add_cell(x, i, j);
-    else if (x->flat && i + size <= x->end[0] && j + size <= x->end[1] &&
-             block_pixels(x, &c) < JOIN / FINE * x->fine.tolerance &&
-             (!x->fine.met || x->fine.tolerance > FINE || block_missed(x, &c)))
-        add_joined(x, i, j, size);
+    const bool small = x->fine.level && size <= (int64_t)1 << x->fine.level;
+    if (small || size == 1 ||
+        (x->flat && i + size <= x->end[0] && j + size <= x->end[1] &&
+         block_pixels(x, &c) < JOIN / FINE * x->fine.tolerance &&
+         (!x->fine.met || x->fine.tolerance > FINE || block_missed(x, &c))))
+        add_cell(x, i, j, size, small || size > 1);
     else
         for (int k = 0; k < 4; k++)
             add_block(x, i + (k & 1) * (size / 2), j + (k >> 1) * (size / 2), size / 2);
@@ -170,7 +162,7 @@ static void add_block(tessellation *x, int64_t i, int64_t j, int64_t size)
 
 /* ---- the lattice ---- */
 
-/* The lines of a map's samples, or where there are none, some that are fine against what is seen. */
+/* Set the lattice: lines at a map's samples, or FUNCTION_CELLS cells over the part or over the view. */
 static void lay(tessellation *x, int part)
 {
     const object *o = x->o;
@@ -198,7 +190,7 @@ static void lay(tessellation *x, int part)
             l->step[a] = m->size[a] / (samples[a] - m->corners);
             l->start[a] = m->offset[a] + (m->corners ? 0 : l->step[a] / 2);
         }
-        /* a line that only rounding keeps from the end makes no further cell */
+        /* 1e-6: rounding must not make one more cell at an end */
         double first = (range[a][0] - l->start[a]) / l->step[a], end = (range[a][1] - l->start[a]) / l->step[a];
         x->first[a] = (int64_t)floor(first + 1e-6);
         x->end[a] = (int64_t)ceil(end - 1e-6);

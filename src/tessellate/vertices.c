@@ -1,4 +1,4 @@
-/* Vertices of meshes: evaluated in groups, each once, and written as a mesh2. */
+/* Vertices of meshes: each evaluated once, LANES at a time, and found again by a hash table. */
 #include "tessellate/vertices.h"
 
 #include "wave/lane.h"
@@ -32,6 +32,13 @@ void pov_mesh2(pov_text *t, const pov_vertex *v, int n, bool uv, int faces, cons
     pov_print(t, " }\n");
 }
 
+pov_vertex pov_vertex_of(vec3 at, vec3 normal, double u, double w)
+{
+    return (pov_vertex){{(float)at.x, (float)at.y, (float)at.z},
+                        {(float)normal.x, (float)normal.y, (float)normal.z},
+                        {(float)u, (float)w}};
+}
+
 static double line(const pov_lattice *l, int axis, int64_t i)
 {
     return fmin(fmax(l->start[axis] + (double)i * l->step[axis], l->lo[axis]), l->hi[axis]);
@@ -43,7 +50,7 @@ double pov_lattice_at(const pov_lattice *l, int axis, int64_t i, int s)
     return s == LATTICE ? b : a + (b - a) * s / LATTICE;
 }
 
-/* Q + P n/|n|; its normal is the gradient of height - P, which is 0 on the displaced surface. */
+/* X = Q + P n/|n|, with the gradient of height - P as normal: the displaced surface is where that is 0. */
 static void evaluate(pov_vertices *v, int n, const real *u, const real *w, pov_vertex *out)
 {
     partials q;
@@ -66,28 +73,21 @@ static void evaluate(pov_vertices *v, int n, const real *u, const real *w, pov_v
     }
     v->f->ops->closest(v->f, v->lattice.part, n, &x, t, &p);
     for (int i = 0; i < n; i++) {
-        bs_vec3 Qu = lane_get(&q.Qu, i), Qw = lane_get(&q.Qw, i), X = lane_get(&x.r, i), m = lane_get(&x.s, i);
+        bs_vec3 Qu = lane_get(&q.Qu, i), Qw = lane_get(&q.Qw, i);
         bs_vec3 gu = lane_get(&p.gu, i), gw = lane_get(&p.gw, i), gh = lane_get(&p.gh, i);
         if (bs_regular(bs_normal(Qu, Qw), Qu, Qw)) {
             bs_vec3 g = {gh.x - h.Pu[i] * gu.x - h.Pw[i] * gw.x, gh.y - h.Pu[i] * gu.y - h.Pw[i] * gw.y,
                          gh.z - h.Pu[i] * gu.z - h.Pw[i] * gw.z};
-            m = lane_unit(g);
+            lane_set(&x.s, i, lane_unit(g));
         }
-        out[i] = (pov_vertex){
-            {(float)X.x, (float)X.y, (float)X.z}, {(float)m.x, (float)m.y, (float)m.z}, {(float)u[i], (float)w[i]}};
+        out[i] = pov_vertex_of(vec3s_get(&x.r, i), vec3s_get(&x.s, i), (double)u[i], (double)w[i]);
     }
 }
 
-static int hash(const pov_vertices *v, int64_t key)
-{
-    uint64_t x = (uint64_t)key * 0x9e3779b97f4a7c15u;
-    return (int)(x >> 32 & (uint64_t)(v->slots - 1));
-}
-
-/* Where the key is, or where it would go. */
+/* The slot of a key, or the free one for it. */
 static int find(const pov_vertices *v, int64_t key)
 {
-    int at = hash(v, key);
+    int at = (int)((uint64_t)key * 0x9e3779b97f4a7c15u >> 32 & (uint64_t)(v->slots - 1));
     while (v->slot[at] >= 0 && v->key[v->slot[at]] != key)
         at = (at + 1) & (v->slots - 1);
     return at;

@@ -56,7 +56,7 @@ REPLACED = [
     ("area-samples", "color: [1, 1, 1]", "area: {u: [1, 0, 0], w: [0, 0, 1], samples: [4, 65]}",
      "5:75: 65 is more than 64, expected how many samples [along u, along w], 1 to 64 each"),
     ("area-samples-half", "color: [1, 1, 1]", "area: {u: [1, 0, 0], w: [0, 0, 1], samples: [4, 2.5]}",
-     "5:71: no whole numbers, expected how many samples [along u, along w]"),
+     "5:71: no whole numbers, expected how many samples [along u, along w], 1 to 64 each"),
     ("area-one-number", "color: [1, 1, 1]", "area: {u: 1, w: [0, 0, 1], samples: [4, 4]}",
      "5:37: a single value, expected one side of the area, [x, y, z]"),
     ("area-parallel", "color: [1, 1, 1]",
@@ -199,7 +199,7 @@ REPLACED = [
     ("size-negative", "size: [40, 30]", "size: [40, -30]",
      "2:20: -30 is less than 1, expected [width, height] in pixels, from 1 to 32768"),
     ("size-fraction", "size: [40, 30]", "size: [40.5, 30]",
-     "2:15: no whole numbers, expected [width, height] in pixels"),
+     "2:15: no whole numbers, expected [width, height] in pixels, from 1 to 32768"),
     ("size-side", "size: [40, 30]", "size: [40, 32769]",
      "2:20: 32769 is more than 32768, expected [width, height] in pixels, from 1 to 32768"),
     ("size-pixels", "size: [40, 30]", "size: [32768, 32768]",
@@ -307,25 +307,25 @@ REPLACED = [
      "23:18: a step has no 'shear', expected one of: translate rotate scale look"),
     ("transform-word", BALL, f"{BALL}\n    transform: [scale]", "23:17: a step is a single value, expected a map"),
     ("transform-two", BALL, f"{BALL}\n    transform: [{{scale: 2, rotate: [0, 1, 2]}}]",
-     "23:17: a step with 2 keys, expected one: which is first matters"),
+     "23:17: a step with 2 keys, expected one, since the order matters"),
     ("transform-none", BALL, f"{BALL}\n    transform: [{{}}]",
-     "23:17: a step with 0 keys, expected one: which is first matters"),
+     "23:17: a step with 0 keys, expected one, since the order matters"),
     ("rotate-number", BALL, f"{BALL}\n    transform: [{{rotate: 45}}]",
      "23:26: a single value, expected angles in degrees about the axes, [x, y, z]"),
     ("translate-text", BALL, f"{BALL}\n    transform: [{{translate: [0, up, 0]}}]",
      "23:33: 'up' is no number, expected how far along x, y and z, [x, y, z]"),
     ("scale-zero", BALL, f"{BALL}\n    transform: [{{scale: 0}}]",
-     "23:25: a scale of 0 leaves nothing, expected a factor or [x, y, z], each 1e-6 to 1e6 or -1e6 to -1e-6"),
+     "23:25: a scale of 0 has no extent, expected a factor or [x, y, z], each 1e-6 to 1e6 or -1e6 to -1e-6"),
     ("scale-zero-y", BALL, f"{BALL}\n    transform: [{{scale: [1, 0, 1]}}]",
-     "23:29: a scale of 0 leaves nothing, expected a factor or [x, y, z], each 1e-6 to 1e6 or -1e6 to -1e-6"),
+     "23:29: a scale of 0 has no extent, expected a factor or [x, y, z], each 1e-6 to 1e6 or -1e6 to -1e-6"),
     ("scale-two", BALL, f"{BALL}\n    transform: [{{scale: [1, 2]}}]",
      "23:25: 2 values, expected a factor or [x, y, z], each 1e-6 to 1e6 or -1e6 to -1e-6"),
     ("scale-stretch", BALL, f"{BALL}\n    transform: [{{scale: [1e3, 1e-2, 1]}}]",
-     "23:16: one way is stretched more than 10000 times as much as another, expected less"),
+     "23:16: one direction is scaled more than 10000 times as much as another, expected less"),
     ("scale-tiny", BALL, f"{BALL}\n    transform: [{{scale: 1e-4}}, {{scale: 1e-4}}]",
-     "23:16: an edge or a radius of 5e-09 scene units comes from this, expected 1e-6 to 1e6"),
+     "23:16: an edge or a radius of 5e-09 scene units after the transform, expected 1e-6 to 1e6"),
     ("scale-far", BALL, f"{BALL}\n    transform: [{{translate: [1e4, 0, 0]}}, {{scale: 1e3}}]",
-     "23:16: it goes 1e+07 scene units away, expected 1000000 at most"),
+     "23:16: a coordinate of 1e+07 scene units after the transform, expected at most 1000000"),
     ("look-no-at", BALL, f"{BALL}\n    transform: [{{look: {{from: [0, 1, 0]}}}}]", "23:24: look lacks its 'at'"),
     ("look-itself", BALL, f"{BALL}\n    transform: [{{look: {{from: [0, 1, 0], at: [0, 1, 0]}}}}]",
      "23:46: it looks at its own place, expected 'at' apart from 'from'"),
@@ -338,7 +338,7 @@ REPLACED = [
     ("copy-itself", BALL, "copy: ball", "22:11: 'ball' copies itself, expected another object"),
     ("copy-cycle", f"box: {{from: [-1, 0.5, -1], to: [0, 1.5, 0]}}\n    material: clay\n  ball:\n    {BALL}",
      "copy: egg\n  ball:\n    copy: cube\n  egg: {copy: ball}\n  disc:\n    copy: cube",
-     "21:11: 'cube' is a copy of this one, expected an object that does not lead back here"),
+     "21:11: 'cube' is itself a copy of this object, expected one that is not"),
     ("copy-list", BALL, "copy: [cube]", "22:11: a list, expected the name of an object"),
     ("copy-shape", BALL, f"copy: cube\n    {BALL}", "23:13: a shape, 'sphere', beside 'copy', expected one of them"),
     ("copy-material", f"{BALL}\n    material: clay", "copy: cube\n    material: caly",
@@ -933,9 +933,8 @@ def test_stretched_and_displaced(bench: Kage, change: str, what: str) -> None:
     """No foot is known of what a stretched cylinder becomes, and with caps it is no one sheet; without a need for one
     it serves, and open, and an ellipsoid."""
     drum = "cylinder: {from: [1, 1, 0], to: [1, 2, 0], radius: 0.5}"
-    message = ("a cylinder with caps and a bump is stretched more one way than another, expected the same scale all "
-               "ways, or 'open: true', "
-               f"for {what}")
+    message = ("a cylinder with caps and a bump is scaled differently along its axes, expected equal scales, or "
+               f"'open: true', for {what}")
     ball = "sphere: {center: [1, 1, 0], radius: 0.5}"
     assert refused_scene(bench, STRETCHED.replace(ball, drum), "--set", change)[0] == f"scene.yaml:24:16: {message}"
     egg = "  egg: {copy: ball, transform: [{scale: [1, 2, 1]}]}\n"

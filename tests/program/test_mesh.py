@@ -175,7 +175,7 @@ def test_no_texture(kage: Kage) -> None:
     models.stl(kage.folder / "ball.stl", models.ball(12, 6), binary=True)
     plain = scene(kage, "file: ball.stl")
     kage.good("render", plain, "-o", "x.png", "--quiet")
-    told = "the 120 triangles of 'ball.stl' have no texture coordinates, expected them for what lies on (u,w)"
+    told = "the 120 triangles of 'ball.stl' have no texture coordinates, expected them for a bump or a pattern"
     result = kage("render", scene(kage, "file: ball.stl", 'bump: {function: "0.1*sin(u)"}'), "-o", "x.png")
     assert result.returncode == 2 and told in result.stderr
     tiles = "  tiles: {color: {checker: {even: [1, 1, 1], odd: [0, 0, 0]}}}\nobjects:"

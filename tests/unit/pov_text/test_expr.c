@@ -10,8 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "expr/expr.h"
-#include "pov_text/expr.h"
+#include "pov_text/text.h"
 
 /* An expression, and its text; NULL: any that has the same values. */
 static const struct {

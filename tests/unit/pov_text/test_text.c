@@ -72,16 +72,15 @@ static void bytes_are_put_as_they_are(void **state)
     assert_string_equal(written(put_bytes), "50% o");
 }
 
-static void put_affine(pov_text *t)
+static void put_matrix(pov_text *t)
 {
-    const affine m = {{1, 2, 3}, {4, 5, 6}, {7, 8, 9}, {10, 11, 12}};
-    pov_affine(t, &m);
+    pov_matrix(t, (vec3){1, 2, 3}, (vec3){4, 5, 6}, (vec3){7, 8, 9}, (vec3){10, 11, 12}, " // m");
 }
 
 static void a_matrix_has_its_origin_last(void **state)
 {
     (void)state;
-    assert_string_equal(written(put_affine), "  matrix <1, 2, 3,  4, 5, 6,  7, 8, 9,  10, 11, 12>");
+    assert_string_equal(written(put_matrix), "  matrix <1, 2, 3,  4, 5, 6,  7, 8, 9,  10, 11, 12> // m");
 }
 
 static void a_name_is_an_identifier(void **state)

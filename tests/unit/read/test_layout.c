@@ -1,5 +1,5 @@
 /* Where a map lies: by its size, or by how often it goes into the surface. */
-#include "read/layout.h"
+#include "read/parts.h"
 #include "support/reading.h"
 
 static const double U[2] = {-1, 3}, W[2] = {2, 5}, ENDLESS[2] = {-HUGE_VAL, HUGE_VAL};

@@ -99,7 +99,7 @@ static void a_step_is_one_key(void **state)
 static void no_scale_is_0(void **state)
 {
     (void)state;
-    transform_of("t: [{scale: [1, 0, 1]}]\n", ":1:17: a scale of 0 leaves nothing");
+    transform_of("t: [{scale: [1, 0, 1]}]\n", ":1:17: a scale of 0 has no extent");
 }
 
 static void look_needs_a_direction(void **state)
