@@ -1,7 +1,7 @@
-/* Shadows. The paper shifts the start of the shadow rays (section 3: "the shadow is computed from the intersection
- * found anew"; section 6: from r + s t0 instead of p1 = r + s t_hit). The shift is for other objects' shadows. A
- * surface's own smooth shape would shade itself wherever a start is shifted below it, so its own shadow starts at p1
- * (ours). No offset is added to a start: surfaces leave their own t = 0 out.
+/* Shadows. The paper starts shadow rays at r + s t0 instead of at the smooth hit p1 = r + s t_hit (section 3: "the
+ * shadow is computed from the intersection found anew"; section 6). kage does so for shadows of other objects. Its own
+ * smooth shape would shadow a start that is shifted below it, so the object itself is tested from p1 (ours). Starts
+ * have no offset: a surface's own test excludes the hit at t = 0.
  */
 #include "render/shadow.h"
 
@@ -20,7 +20,7 @@ static bool is_clear(const tracer *tr, int32_t id)
     return material_clear(&tr->scene->material[tr->scene->object[id].material]);
 }
 
-/* A displaced surface that faces away from the light is dark; rays leave it to the side that is seen alone. */
+/* A displaced surface is dark where the light is on the other side than the viewer. */
 static void darken_facing_away(hit_group *g)
 {
     for (int i = 0; i < g->n; i++) {
@@ -37,7 +37,7 @@ static void cast_own(const tracer *tr, int32_t id, workspace *v)
     if (displaced_is(f))
         darken_facing_away(g);
     if (is_clear(tr, id))
-        transmittance_own(tr->scene, id, v);
+        transmittance_follow(tr->scene, id, true, v);
     else
         f->ops->occlude_own(f, g->n, &g->to_light, g->part, g->lit);
 }
@@ -55,7 +55,7 @@ static void occlude_some(const surface *f, int n, const int32_t *lane, hit_group
         g->lit[lane[i]] = lit[i];
 }
 
-/* The objects that a group's segments to the light may meet. What is dark already need not be searched. */
+/* The objects that a group's shadow rays may hit. Lanes that are dark already are skipped. */
 static void find_candidates(const object_bvh *c, const hit_group *g, candidates *m)
 {
     real end[LANES];
@@ -76,7 +76,7 @@ static void cast_others(const tracer *tr, int32_t id, workspace *v)
         if (j == id || !casts(tr, j))
             continue;
         if (is_clear(tr, j))
-            transmittance_other(s, j, v);
+            transmittance_follow(s, j, false, v);
         else if (v->candidates)
             occlude_some(f, candidates_rays(v->candidates, j, lane), lane, g);
         else
@@ -84,7 +84,7 @@ static void cast_others(const tracer *tr, int32_t id, workspace *v)
     }
 }
 
-/* By a light of one place. */
+/* The shadow of a light at one point. */
 static void shadow_place(const tracer *tr, int32_t id, const light *l, workspace *v)
 {
     hit_group *g = &v->g;

@@ -1,22 +1,19 @@
-/* Light through transparent objects: each segment is followed from crossing to crossing of one object's surface. */
+/* Each shadow ray is followed through one transparent object, from one hit of its surface to the next. */
 #include "render/transmittance.h"
-
-#include <string.h>
 
 #include "render/intersect.h"
 #include "wave/gather.h"
 #include "wave/lane.h"
 
-enum { CROSSINGS = 64 }; /* of a rough surface; what crosses it more often is dark */
+enum { CROSSINGS = 64 }; /* hits followed on one object; a ray with more is dark */
 
-/* The segments that are still followed, side by side, each up to the light at t = 1. */
+/* The shadow rays that are still followed, side by side; the light is at t = 1. */
 typedef struct segments {
     int n;
     int32_t lane[LANES];
     rays x;
     ray_origins from;
     hits h;
-    int32_t part[LANES];
     real u[LANES], w[LANES];
     vec3s color;
 } segments;
@@ -38,7 +35,7 @@ static void begin(const hit_group *g, int32_t id, bool own, segments *a)
     }
 }
 
-/* Those that cross the surface go on behind it; the others have arrived. */
+/* Keep the rays that hit the surface; they start again from the hit. */
 static void cross(int32_t id, segments *a)
 {
     int n = 0;
@@ -53,7 +50,7 @@ static void cross(int32_t id, segments *a)
         lane_set(&a->x.s, n, rest);
         lane_set(&a->from.at, n, at);
         a->from.id[n] = id;
-        a->from.part[n] = a->part[i];
+        a->from.part[n] = a->h.part[i];
         n++;
     }
     a->n = n;
@@ -74,7 +71,7 @@ static void tint(const material *m, const segments *a, hit_group *g)
     }
 }
 
-static void follow(const scene *s, int32_t id, bool own, workspace *v)
+void transmittance_follow(const scene *s, int32_t id, bool own, workspace *v)
 {
     const object *o = &s->object[id];
     const material *m = &s->material[o->material];
@@ -88,8 +85,7 @@ static void follow(const scene *s, int32_t id, bool own, workspace *v)
             a.h.part[i] = 0;
         }
         intersect_surface(f, a.n, &a.x, &a.from, id, &a.h);
-        memcpy(a.part, a.h.part, sizeof a.part);
-        f->ops->locate(f, a.n, &a.x, a.h.t, a.part, a.u, a.w);
+        f->ops->locate(f, a.n, &a.x, a.h.t, a.h.part, a.u, a.w);
         if (o->color)
             o->color->ops->eval(o->color, a.n, a.u, a.w, &a.color);
         tint(m, &a, &v->g);
@@ -98,6 +94,3 @@ static void follow(const scene *s, int32_t id, bool own, workspace *v)
     for (int i = 0; i < a.n; i++)
         v->g.lit[a.lane[i]] = 0;
 }
-
-void transmittance_own(const scene *s, int32_t id, workspace *v) { follow(s, id, true, v); }
-void transmittance_other(const scene *s, int32_t id, workspace *v) { follow(s, id, false, v); }

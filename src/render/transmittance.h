@@ -1,15 +1,14 @@
-/* Stage: shadow rays through transparent objects. */
+/* Stage: the colour of light behind transparent objects. */
 #ifndef KAGE_RENDER_TRANSMITTANCE_H
 #define KAGE_RENDER_TRANSMITTANCE_H
 
 #include "render/workspace.h"
 
-/* All the light's colour. */
+/* g->tint = 1. */
 void transmittance_begin(hit_group *g);
 
-/* v->g.tint *= what the transparent object `id` leaves of it along g->to_light: its colour's share each time its
- * surface is crossed, without refraction, as in POV-Ray. own: the segments start on its surface. */
-void transmittance_own(const scene *s, int32_t id, workspace *v);
-void transmittance_other(const scene *s, int32_t id, workspace *v);
+/* Multiply v->g.tint by the transmittance of object `id` at each hit along g->to_light, without refraction, as in
+ * POV-Ray. Rays with too many hits get g->lit = 0. own: the rays start on this object. */
+void transmittance_follow(const scene *s, int32_t id, bool own, workspace *v);
 
 #endif
