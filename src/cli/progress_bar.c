@@ -1,4 +1,4 @@
-/* The progress bar, and the clock that it goes by. */
+/* The progress bar and its clock. */
 #include "cli/command.h"
 
 #include <stdio.h>
@@ -19,7 +19,7 @@ void progress_bar_start(progress_bar *p, bool quiet, const char *name, long pixe
     p->shown = p->start;
 }
 
-/* Whether it is time to draw again; then how much of the bar is full is in `bar`. */
+/* Whether it is time to draw again. If so, `bar` shows the share, 0..1. */
 enum { BAR = 30 };
 static bool is_due(progress_bar *p, double share, char bar[BAR + 1])
 {
@@ -50,9 +50,9 @@ int progress_bar_load(void *user, const char *what, double share)
 {
     progress_bar *p = user;
     char bar[BAR + 1];
-    if (strcmp(what, "objects") == 0) /* most take no time that anybody sees */
+    if (strcmp(what, "objects") == 0) /* too fast to see */
         return 0;
-    if (strcmp(p->what, what) != 0) { /* the first of each is seen, and the last of none hides it */
+    if (strcmp(p->what, what) != 0) { /* draw the first call of each step at once */
         snprintf(p->what, sizeof p->what, "%s", what);
         p->shown = 0;
     }

@@ -1,10 +1,11 @@
-/* kage render: the picture of a scene. */
+/* kage render: render a scene, write the pictures, print statistics. */
 #include "cli/command.h"
 
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 /* Where the pictures go. */
 typedef struct outputs {
@@ -12,7 +13,7 @@ typedef struct outputs {
     int count;
 } outputs;
 
-/* The scene's file name with .png, for the current folder. */
+/* The scene's file name with .png, in the current folder. NULL: out of memory. */
 static char *default_output(const char *path)
 {
     const char *base = base_name(path), *dot = strrchr(base, '.');
@@ -23,11 +24,20 @@ static char *default_output(const char *path)
     return name;
 }
 
-/* Every word of --layers names something that the film has. */
+/* Whether a file that the user did not name may be written: nothing is there, or a picture by kage. */
+static bool output_is_replaceable(const char *path)
+{
+    struct stat about;
+    if (stat(path, &about) != 0 || !S_ISREG(about.st_mode) || kage_file_is_picture(path))
+        return true;
+    return usage_error("%s: kage did not write this file, expected -o with another name, or --overwrite", path);
+}
+
+/* Every word of --layers must name planes of the film. */
 static bool check_layers(const char *layers, const kage_scene *s)
 {
     for (const char *word = layers; word;) {
-        char name[80]; /* longer than any */
+        char name[80]; /* longer than any plane's name */
         const int n = (int)strcspn(word, ",");
         snprintf(name, sizeof name, "%.*s", n, word);
         if (!kage_scene_has_layer(s, name))
@@ -48,7 +58,7 @@ static bool has_exr(const outputs *to)
     return false;
 }
 
-/* What the options say together with the scene. */
+/* Options that depend on the scene or on each other. */
 static bool check_options(const kage_scene *s, const arguments *a, const outputs *to)
 {
     const kage_scene_info *i = kage_scene_get_info(s);
@@ -96,7 +106,7 @@ static void print_stats(const kage_stats *t, double output)
         printf("hits of displaced surfaces that Newton's iteration did not confirm: %ld\n", (long)t->unconfirmed);
 }
 
-/* Ctrl-C while files are written takes effect between two of them: each is whole or not there. */
+/* Ctrl-C while files are written takes effect after the current one, so each file is whole or absent. */
 static volatile sig_atomic_t stopped;
 
 static void stop(int signal) { stopped = signal; }
@@ -128,7 +138,7 @@ static kage_status write_outputs(const arguments *a, const outputs *to, const ka
     return status;
 }
 
-/* The closing line, on a terminal; and what a user should know. */
+/* The closing line, only on a terminal, and a warning. */
 static void print_end(const arguments *a, const outputs *to, const kage_stats *t, const char *name, bool on_terminal)
 {
     if (on_terminal) {
