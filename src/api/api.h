@@ -20,7 +20,7 @@ void c_locale_end(c_locale *l);
 typedef struct watch {
     kage_progress *call;
     void *user;
-    const c_locale *locale; /* the callback runs in locale->before. NULL: no switch */
+    const c_locale *locale; /* the callback runs in locale->before */
     bool cancelled;
 } watch;
 progress watch_progress(watch *w);

@@ -131,7 +131,7 @@ static bool show(void *user, const char *what, double share)
     watch *w = user;
     if (w->cancelled || !w->call)
         return !w->cancelled;
-    const bool swaps = w->locale && w->locale->c;
+    const bool swaps = w->locale->c != (locale_t)0;
     if (swaps)
         uselocale(w->locale->before);
     w->cancelled = w->call(w->user, what, share) != 0;

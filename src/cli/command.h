@@ -73,16 +73,15 @@ double clock_now(void);
 typedef struct progress_bar {
     bool on;
     double start, shown; /* when it began and was last drawn */
-    long pixels;         /* of the picture */
+    long pixels;         /* of the picture; 0: loading */
     const char *name;    /* of the scene */
-    char what[16];       /* the current step of reading a file */
+    char what[16];       /* the current step */
 } progress_bar;
 
 void progress_bar_start(progress_bar *p, bool quiet, const char *name, long pixels);
 void progress_bar_end(progress_bar *p);
 
-/* Callbacks for kage_progress, while rendering and while loading. */
-int progress_bar_render(void *user, const char *what, double share);
-int progress_bar_load(void *user, const char *what, double share);
+/* The callback, a kage_progress. user: the bar. */
+int progress_bar_show(void *user, const char *what, double share);
 
 #endif

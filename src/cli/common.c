@@ -67,7 +67,7 @@ kage_scene *load_scene(const arguments *a)
     const kage_load_options o = {.sets = (const char *const *)a->set,
                                  .set_count = a->sets,
                                  .threads = a->threads,
-                                 .progress = progress_bar_load,
+                                 .progress = progress_bar_show,
                                  .user = &p};
     const kage_status status = kage_scene_load(a->operand[0], &o, &s, &e);
     progress_bar_end(&p);

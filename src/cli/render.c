@@ -168,7 +168,7 @@ static int render_outputs(kage_scene *s, const arguments *a, const outputs *to)
                                    .layers = has_exr(to),
                                    .timing = a->stats,
                                    .threads = a->threads,
-                                   .progress = p.on ? progress_bar_render : NULL,
+                                   .progress = progress_bar_show,
                                    .user = &p};
     kage_status status = kage_render(s, &o, &f, &e);
     progress_bar_end(&p);

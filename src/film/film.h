@@ -6,24 +6,14 @@
 #include "image/image.h"
 #include "scene/scene.h"
 
-/* The planes of a film, by index. FILM_LIGHTS + l: the visibility of light l, 0..1. */
+/* The planes of a film, by index: R G B, the layers from Z to order, and the visibility, 0..1, of each light. */
 enum film_plane {
     FILM_R,
     FILM_G,
     FILM_B,
     FILM_PICTURE, /* the number of planes without layers */
     FILM_Z = FILM_PICTURE,
-    FILM_PX,
-    FILM_PY,
-    FILM_PZ,
-    FILM_NX,
-    FILM_NY,
-    FILM_NZ,
-    FILM_U,
-    FILM_W,
-    FILM_HEIGHT,
-    FILM_TAU,
-    FILM_ORDER,
+    FILM_ORDER = FILM_Z + 11,
     FILM_LIGHTS
 };
 

@@ -68,7 +68,7 @@ static void lay_layers(film *f, const tile *b, const workspace *v)
     const samples *o = &v->out;
     const real *const plane[] = {o->depth,    o->position.x, o->position.y, o->position.z, o->normal.x, o->normal.y,
                                  o->normal.z, o->u,          o->w,          o->height,     o->tau};
-    for (int k = FILM_Z; k <= FILM_TAU; k++)
+    for (int k = FILM_Z; k < FILM_ORDER; k++)
         lay(f, k, b, plane[k - FILM_Z], 1, false);
     real order[LANES];
     for (int i = 0; i < b->width * b->height; i++)

@@ -71,39 +71,42 @@ STAGE static void bend(const hit_group *restrict g, ways *restrict y)
 
 /* ---- the media that a ray is in ---- */
 
+/* The place of object `id` in lane i's list, or -1. */
+static int find(const media *m, int i, int id)
+{
+    int at = m->n[i] - 1;
+    while (at >= 0 && m->id[at][i] != id)
+        at--;
+    return at;
+}
+
+static double ior_of(const scene *sc, int id) { return sc->material[sc->object[id].material].ior; }
+
+/* The ior of the innermost medium of lane i. */
+static double ior_in(const scene *sc, const media *m, int i) { return m->n[i] ? ior_of(sc, m->id[m->n[i] - 1][i]) : 1; }
+
 /* Lane i enters object `id`, or leaves it (out). Returns the ratio of the iors before and behind. Where objects
  * overlap, the ior is that of the one entered last, as in POV-Ray. */
 static double cross(const scene *sc, int id, bool out, media *in, int i)
 {
-    const double own = sc->material[sc->object[id].material].ior;
-    int n = in->n[i], at = n - 1;
+    const double own = ior_of(sc, id), around = ior_in(sc, in, i);
     if (!shape_has_inside(&sc->object[id].shape_spec))
         return 1;
     if (!out) {
-        const double around = n ? sc->material[sc->object[in->id[n - 1][i]].material].ior : 1;
-        if (n < MEDIA)
+        if (in->n[i] < MEDIA)
             in->id[in->n[i]++][i] = id;
         return around / own;
     }
-    while (at >= 0 && in->id[at][i] != id)
-        at--;
-    const bool innermost = at == n - 1;
+    int at = find(in, i, id);
     if (at >= 0) {
-        for (n--; at < n; at++)
-            in->id[at][i] = in->id[at + 1][i];
-        in->n[i] = n;
-        if (!innermost)
+        const int last = --in->n[i];
+        if (at < last) {
+            for (; at < last; at++)
+                in->id[at][i] = in->id[at + 1][i];
             return 1;
+        }
     }
-    return own / (n ? sc->material[sc->object[in->id[n - 1][i]].material].ior : 1);
-}
-
-static bool is_in(const media *m, int i, int id)
-{
-    bool in = false;
-    for (int k = 0; k < m->n[i]; k++)
-        in |= m->id[k][i] == id;
-    return in;
+    return own / ior_in(sc, in, i);
 }
 
 static void copy_media(const media *from, int j, media *to, int i)
@@ -159,7 +162,7 @@ static void send_clear(const scene *sc, int32_t id, workspace *v, ways *y)
         copy_media(before, hit_group_place(g, i), &in, i);
         /* an object that was entered is left, as in POV-Ray, also at a gap between displaced parts; an object that
          * contains the camera is left without having been entered */
-        bool out = is_in(&in, i, id) || bs_dot(lane_get(&g->x.s, i), lane_get(&g->n_smooth, i)) > 0;
+        bool out = find(&in, i, id) >= 0 || bs_dot(lane_get(&g->x.s, i), lane_get(&g->n_smooth, i)) > 0;
         y->ratio[i] = (real)cross(sc, id, out, &in, i);
     }
     bend(g, y);
