@@ -348,10 +348,9 @@ typedef struct kage_povray_options {
 } kage_povray_options;
 
 typedef struct kage_povray_report {
-    const char
-        *coarse;   /* the object with the coarsest mesh, of those that are too coarse; NULL: none. The scene owns it */
-    double height; /* by how much its heights may be wrong, in scene units */
-    double pixels; /* the same in pixels */
+    const char *coarse; /* the coarsest of the objects with a mesh that is too coarse; NULL: none. The scene owns it */
+    double height;      /* by how much its heights may be wrong, in scene units */
+    double pixels;      /* the same in pixels */
     void *reserved[8];
 } kage_povray_report;
 

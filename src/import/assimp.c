@@ -190,16 +190,10 @@ static void take_mesh(harvest *h, const struct aiMesh *from, const struct aiMatr
     }
 }
 
-static struct aiMatrix4x4 product(const struct aiMatrix4x4 *a, const struct aiMatrix4x4 *b)
-{
-    struct aiMatrix4x4 m = *a;
-    aiMultiplyMatrix4(&m, b);
-    return m;
-}
-
 static void take_node(harvest *h, const struct aiNode *node, const struct aiMatrix4x4 *above)
 {
-    const struct aiMatrix4x4 m = product(above, &node->mTransformation);
+    struct aiMatrix4x4 m = *above;
+    aiMultiplyMatrix4(&m, &node->mTransformation);
     for (unsigned k = 0; k < node->mNumMeshes && h->n <= MESH_MOST; k++)
         if (node->mMeshes[k] < h->s->mNumMeshes)
             take_mesh(h, h->s->mMeshes[node->mMeshes[k]], &m);
