@@ -1,13 +1,13 @@
-/* bumpshadow.h: how the shadows of other objects fall on a bump-mapped surface.
+/* bumpshadow.h: shadows of other objects on a bump-mapped surface.
  *
- * The formulas of K. Sumi and T. Noma, "A Shadowing Method for Bump-Mapped Surfaces", alone, and what
- * kage adds to them (marked "ours"). One header without dependencies, C99 and C++17, to copy into any
- * renderer. float; #define BS_DOUBLE before the inclusion for double. Every function is a few
- * multiplications without a branch, and a loop over them vectorises.
+ * The formulas of K. Sumi and T. Noma, "A Shadowing Method for Bump-Mapped Surfaces", and kage's additions
+ * (marked "ours"). One header without dependencies, C99 and C++17, to copy into any renderer. float; #define
+ * BS_DOUBLE before the inclusion for double. Every function is a few multiplications without a branch, so a
+ * loop over it vectorises.
  *
- * A ray r + s t meets the smooth surface Q(u,w) at t_hit. Shade there, with the perturbed normal n'; but
- * start the shadow rays to the lights not there but at r + s (t_hit + tau), near the place where the ray
- * meets the rough surface Q + P n/|n|:
+ * A ray r + s t meets the smooth surface Q(u,w) at t_hit. Shade there, with the perturbed normal n'. But
+ * start the shadow rays at r + s (t_hit + tau), near the point where the ray meets the rough surface
+ * Q + P n/|n|:
  *
  *     bs_vec3 n  = bs_normal(Qu, Qw);
  *     bs_vec3 np = bs_perturbed_normal(n, Qu, Qw, Pu, Pw);          // shade with this
@@ -16,13 +16,13 @@
  *     bs_slab b  = bs_slab_of(v, Pmin, Pmax);
  *     t0 = t_hit + bs_shift_of(0, 1, v, 0, p, b).tau;               // order 0, with the guard
  *
- * Test the receiver itself from the smooth hit and every other object from r + s t0: a place that lies
- * below its own smooth surface (P < 0) must not be put in shadow by that surface.
+ * Test shadows of the receiver itself from the smooth hit, those of every other object from r + s t0: a point
+ * below its own smooth surface (P < 0) must not be shadowed by that surface.
  *
  * Symbols and units: Q in scene units; P the height along the unit normal n/|n|, in scene units; n = Qu x Qw
- * points to the side of +P (swap u and w where it does not); s need not be a unit vector, and tau is in units of
- * t, like t_hit. Everything holds for rays that come from the side of n (s.n < 0) and from behind it. Where
- * bs_regular says no (a sphere's pole) use the smooth normal and tau = 0.
+ * points to the side of +P (otherwise swap u and w); s need not be a unit vector; tau is in units of t, like
+ * t_hit. The formulas hold for rays from the front (s.n < 0) and from behind. Where bs_regular is 0 (a sphere's
+ * pole) use the smooth normal and tau = 0.
  */
 #ifndef BUMPSHADOW_H
 #define BUMPSHADOW_H
@@ -57,9 +57,9 @@ static inline bs_real bs_dot(bs_vec3 a, bs_vec3 b) { return a.x * b.x + a.y * b.
 /* The smooth normal n = Qu x Qw, not normalised. Section 6. */
 static inline bs_vec3 bs_normal(bs_vec3 Qu, bs_vec3 Qw) { return bs_cross(Qu, Qw); }
 
-/* 1 where the surface has two directions, 0 where |n| -> 0 as at a sphere's pole: P has no gradient there.
- * (Ours. The bound is on the ratio of n to the edges it comes from, so it does not know the scene's scale;
- * it is where float has no digit left of the thinner edge.) */
+/* 0 where Qu and Qw are nearly parallel or 0, as at a sphere's pole: P has no gradient there. Otherwise 1. (Ours.
+ * The bound is on |n| relative to Qu and Qw, so it does not depend on the scene's scale; below it float has no
+ * correct digit.) */
 static inline int bs_regular(bs_vec3 n, bs_vec3 Qu, bs_vec3 Qw)
 {
     bs_real e = bs_dot(Qu, Qu) + bs_dot(Qw, Qw);
@@ -78,7 +78,7 @@ static inline bs_vec3 bs_perturbed_normal(bs_vec3 n, bs_vec3 Qu, bs_vec3 Qw, bs_
     return np;
 }
 
-/* How the ray goes past the surface, per unit of t. */
+/* The ray relative to the surface, per unit of t. */
 typedef struct bs_view {
     bs_real sn;   /* s.n/|n|: towards the surface, negative from outside */
     bs_real a, b; /* du/dt and dw/dt in the tangent plane */
@@ -95,7 +95,7 @@ static inline bs_view bs_view_of(bs_vec3 s, bs_vec3 n, bs_vec3 Qu, bs_vec3 Qw)
     return v;
 }
 
-/* The smooth surface's own bending along the ray, L a^2 + 2 M a b + N b^2 with the second fundamental form
+/* The smooth surface's curvature along the ray, L a^2 + 2 M a b + N b^2 with the second fundamental form
  * L = Quu.n/|n|, M = Quw.n/|n|, N = Qww.n/|n|. (Ours: the paper leaves it out, section 6.) */
 static inline bs_real bs_curvature(bs_view v, bs_vec3 n, bs_vec3 Quu, bs_vec3 Quw, bs_vec3 Qww)
 {
@@ -121,8 +121,8 @@ static inline bs_real bs_gap(bs_view v, bs_real curvature, bs_real tau, bs_real 
  *     t0 = ((Q + P n/|n| - r).n)/(s.n),  that is  tau = P |n|/(s.n) */
 static inline bs_real bs_tau0(bs_view v, bs_real P) { return P / v.sn; }
 
-/* The linear coefficient of gap, negated: Pu a + Pw b - s.n/|n| = -(s.n')/|n|. From outside it is positive where
- * the ray goes down through the tangent plane of the rough surface, too. */
+/* The linear coefficient of gap, negated: Pu a + Pw b - s.n/|n| = -(s.n')/|n|. From the front it is positive where
+ * the ray enters the rough surface's tangent plane. */
 static inline bs_real bs_slope(bs_view v, bs_bump p) { return p.Pu * v.a + p.Pw * v.b - v.sn; }
 
 /* Order 1, the tangent plane of the rough surface at Q + P n/|n|. Section 6:
@@ -146,9 +146,9 @@ static inline bs_real bs_quadratic_plus(bs_view v, bs_bump p, bs_real curvature)
 /* B^2 - 4 A P: negative where the ray does not meet the quadric. */
 static inline bs_real bs_discriminant(bs_real A, bs_real B, bs_real P) { return B * B - 4 * A * P; }
 
-/* The root that goes over into order 1 as A -> 0, without cancellation:
- *     tau = -2 P/(B + sqrt(B^2 - 4 A P))
- * with the sign of the square root turned where the ray comes from behind. */
+/* The root that tends to order 1 as A -> 0, without cancellation:
+ *     tau = -2 P/(B + sqrt(B^2 - 4 A P)),
+ * with a minus before the square root where the ray comes from behind. */
 static inline bs_real bs_tau2(bs_view v, bs_real B, bs_real discriminant, bs_real P)
 {
     bs_real root = BS_SQRT(discriminant);
@@ -156,9 +156,9 @@ static inline bs_real bs_tau2(bs_view v, bs_real B, bs_real discriminant, bs_rea
 }
 
 /* The slab (ours): the true hit lies between the surfaces offset by Pmin and by Pmax, so tau lies between the
- * two places where the ray passes these. front is the viewer's side. */
+ * ray's hits of these. */
 typedef struct bs_slab {
-    bs_real front, back; /* in t, from t_hit */
+    bs_real front, back; /* as tau; front is the viewer's side */
 } bs_slab;
 
 static inline bs_slab bs_slab_of(bs_view v, bs_real Pmin, bs_real Pmax)
@@ -170,17 +170,17 @@ static inline bs_slab bs_slab_of(bs_view v, bs_real Pmin, bs_real Pmax)
     return b;
 }
 
-/* A shift, and how it was found. */
+/* A shift and its order. */
 typedef struct bs_shift {
     bs_real tau;
     int order; /* the order really used: 0, 1, 2, or 3 for 2+ */
 } bs_shift;
 
-/* The shift by order 0, 1, 2 or 3 (2+). `guard` != 0 (ours, the default of kage): a result outside the slab, or with
- * a ray that does not go down through the tangent plane (s.n' >= 0 from outside, that is B <= 0), falls back one order,
- * 3 and 2 to 1, 1 to 0; order 0 is always inside. Without the guard the formulas stand bare; only where order 2 has
- * no real root near that of order 1 (B <= 0, B^2 < 4 A P) does it fall back to order 1 then. `curvature` is used by
- * order 3 alone. Call it with a constant order and guard: what is not needed is compiled away. */
+/* The shift by order 0, 1, 2 or 3 (2+). `guard` != 0 (ours, the default of kage): where the result is outside the
+ * slab, or the ray does not enter the tangent plane (s.n' >= 0 from the front, that is B <= 0), 3 and 2 fall back to 1,
+ * 1 to 0; order 0 is always inside. Without the guard only order 2 falls back, to 1, where it has no real root near
+ * that of order 1 (B <= 0, or B^2 < 4 A P). Only order 3 uses `curvature`. Call it with a constant order and guard, so
+ * that the rest is compiled away. */
 static inline bs_shift bs_shift_of(int order, int guard, bs_view v, bs_real curvature, bs_bump p, bs_slab slab)
 {
     bs_real B = bs_slope(v, p), down = v.sn < 0 ? B : -B;
@@ -196,7 +196,7 @@ static inline bs_shift bs_shift_of(int order, int guard, bs_view v, bs_real curv
     if (order >= 2) {
         bs_real A = order == 3 ? bs_quadratic_plus(v, p, curvature) : bs_quadratic(v, p);
         bs_real discriminant = bs_discriminant(A, B, p.P), tau = bs_tau2(v, B, discriminant, p.P);
-        /* there is a root, and it is the one that order 1 goes over into */
+        /* there is a real root, and it is the one near order 1's */
         int good = (discriminant >= 0) & (down > 0);
         good = guard ? good & (tau >= slab.front) & (tau <= slab.back) : good;
         s.tau = good ? tau : s.tau;
@@ -205,10 +205,10 @@ static inline bs_shift bs_shift_of(int order, int guard, bs_view v, bs_real curv
     return s;
 }
 
-/* iter:K (ours): order 0 again and again, the height looked up anew at each place. Start with tau = 0, and K times look
- * up P at (u0 + a tau, w0 + b tau), then tau = bs_tau0(v, P). K = 1 is order 0. */
+/* iter:K (ours): order 0, repeated. Start with tau = 0; K times evaluate P at (u0 + a tau, w0 + b tau) and set tau =
+ * bs_tau0(v, P). K = 1 is order 0. */
 
-/* march:N (ours): N equal steps through the slab from the viewer's side, to the first place where the ray is not
+/* march:N (ours): N equal steps through the slab from the viewer's side, to the first point where the ray is not
  * above the rough surface, then one secant step back.
  *
  *     bs_march m = bs_march_start(slab);
@@ -216,16 +216,16 @@ static inline bs_shift bs_shift_of(int order, int guard, bs_view v, bs_real curv
  *         bs_real tau = bs_march_tau(slab, i, N);
  *         m = bs_march_step(m, tau, bs_gap(v, curvature, tau, height(u0 + v.a * tau, w0 + v.b * tau)), v);
  *     }
- *     // m.found: m.tau is the shift. Otherwise take order 0: the slab has no end, or the smooth surface bends
- *     // away from it, or P is flat at Pmin, and there order 0 is exact.
+ *     // m.found: m.tau is the shift. Otherwise use order 0: the slab is infinite, or the smooth surface curves
+ *     // away from it, or P is flat at Pmin, where order 0 is exact.
  */
 typedef struct bs_march {
-    bs_real tau,
-        gap; /* the last place above the surface; once found, the shift. tau is infinite where the slab has no end */
+    bs_real tau; /* the last point above the surface; once found, the shift; infinite where the slab is */
+    bs_real gap; /* at that point */
     int found;
 } bs_march;
 
-/* Whether the slab has two ends. Where P has no bound on a side, or s.n is 0, there are no equal steps through it. */
+/* Whether the slab is finite. It is not where P has no bounds or s.n is 0. */
 static inline int bs_slab_ends(bs_slab slab) { return slab.back - slab.front < (bs_real)INFINITY; }
 
 static inline bs_march bs_march_start(bs_slab slab)
@@ -237,8 +237,8 @@ static inline bs_march bs_march_start(bs_slab slab)
     return m;
 }
 
-/* The i-th of the places 0..N. The last is back itself, not a sum that may fall short of it. Without an end all are
- * the smooth hit: P can be looked up there, and nothing is found. */
+/* Step i of 0..N; the last is exactly slab.back. In an infinite slab all are 0, where P can be evaluated; nothing is
+ * found then. */
 static inline bs_real bs_march_tau(bs_slab slab, int i, int N)
 {
     bs_real tau = i == N ? slab.back : slab.front + (slab.back - slab.front) * ((bs_real)i / (bs_real)N);
@@ -247,9 +247,9 @@ static inline bs_real bs_march_tau(bs_slab slab, int i, int N)
 
 static inline bs_march bs_march_step(bs_march m, bs_real tau, bs_real gap, bs_view v)
 {
-    bs_real above = v.sn < 0 ? gap : -gap; /* from behind the gap has the other sign */
+    bs_real above = v.sn < 0 ? gap : -gap; /* from behind the gap has the opposite sign */
     int looking = (m.found == 0) & (m.tau < (bs_real)INFINITY), hit = looking & (above <= 0);
-    bs_real rise = m.gap - above; /* > 0 at a hit, but for one at the very first place, where m.tau is tau */
+    bs_real rise = m.gap - above; /* > 0 at a hit, except at step 0, where m.tau is tau */
     bs_real secant = m.tau + (tau - m.tau) * (rise > 0 ? m.gap / rise : 0);
     m.tau = hit ? secant : looking ? tau : m.tau;
     m.gap = m.found ? m.gap : above;

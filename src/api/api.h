@@ -1,4 +1,4 @@
-/* What the files of the library's face share: the objects behind kage.h, and how internal results become its own. */
+/* Shared by the files that implement kage.h: the structs behind its pointers, errors, progress and the locale. */
 #ifndef KAGE_API_API_H
 #define KAGE_API_API_H
 
@@ -9,35 +9,35 @@
 #include "film/film.h"
 #include "scene/scene.h"
 
-/* Numbers are read and written as the C locale has them, whatever the process has set: for this thread, meanwhile. */
+/* The C locale for numbers, in this thread, from begin to end; the process may have set another. */
 typedef struct c_locale {
     locale_t c, before;
 } c_locale;
 c_locale c_locale_begin(void);
 void c_locale_end(c_locale *l);
 
-/* The caller's progress callback, as the rooms below see it. Once it has cancelled, everything that asks ends. */
+/* The caller's progress callback. Once it has cancelled, all later calls of progress_show return false. */
 typedef struct watch {
     kage_progress *call;
     void *user;
-    const c_locale *locale; /* in which the library works; the callback runs in the caller's. May be NULL */
+    const c_locale *locale; /* the callback runs in locale->before */
     bool cancelled;
 } watch;
 progress watch_progress(watch *w);
 
-/* Hand the errors over. Frees *e. Returns `status`, or KAGE_NO_MEMORY where that is what they say, or KAGE_CANCELLED
- * where the watch (or NULL) has. `to` may be NULL. */
+/* End a call. Returns KAGE_CANCELLED where w (or NULL) was cancelled, KAGE_NO_MEMORY where the errors say so, otherwise
+ * `status`. Frees *e. `to`, unless NULL, gets a copy of the errors; NULL where the call succeeded or was cancelled. */
 kage_status errors_give(errors *e, kage_status status, const watch *w, kage_errors **to);
 
-/* The same for one message. */
+/* End a call with one message. */
 kage_status error_give(kage_status status, kage_errors **to, const char *fmt, ...) KAGE_PRINTF(3, 4);
 
-/* Readings of one scene: what is prepared in it depends on whether true hits are asked for. */
+/* A scene is read once for each pair of: smooth or displaced surface, method `exact` or not. */
 enum { READINGS = 4 };
 
 struct kage_scene {
     scene *first;             /* as the caller asked for it */
-    scene *reading[READINGS]; /* by reading_of; one of them is `first` */
+    scene *reading[READINGS]; /* by reading_index; one is `first`; NULL: not read yet */
     pthread_mutex_t lock;     /* of reading[] */
     kage_scene_info info;
     /* what a further reading needs; owned */
@@ -45,7 +45,7 @@ struct kage_scene {
     int sets, threads;
 };
 
-/* The reading for a surface and a method, made where there is none yet. It lives as long as k. NULL: errors in *e. */
+/* The reading for a surface and a method, read now if needed; locks. It lives as long as k. NULL: errors in *e. */
 const scene *scene_reading(kage_scene *k, bool displaced, method m, errors *e);
 
 /* Fill in, and free, k->info. False: out of memory. */
@@ -54,7 +54,7 @@ void scene_forget(kage_scene *k);
 
 struct kage_film {
     film *film;
-    char *file, *source, *sets; /* for the texts in a picture: the scene's base name, its text, changes a line each */
+    char *file, *source, *sets; /* for a picture's metadata: the scene's base name, its text, its changes, one a line */
     char method[METHOD_NAME_SIZE];
     bool guard;
     kage_stats stats;

@@ -1,4 +1,4 @@
-/* Errors as the caller has them, progress, and the locale meanwhile. */
+/* The caller's view of a call: the list of errors, progress, and the C locale while the call runs. */
 #include "api/api.h"
 
 #include <errno.h>
@@ -12,7 +12,7 @@ struct kage_errors {
     kage_error item[];
 };
 
-/* What is given where not even a list can be made; nobody writes to it or frees it. */
+/* The list where there is no memory for one. Never written or freed. */
 static const struct {
     int found, count;
     kage_error item[1];
@@ -33,7 +33,7 @@ static kage_errors *list_of(const errors *e)
     const size_t n = (size_t)e->items;
     kage_errors *list = n ? malloc(sizeof *list + n * sizeof *list->item + 3 * (e->size + n)) : NULL;
     if (!list)
-        return NULL;
+        return (kage_errors *)&no_memory;
     char *at = (char *)&list->item[n];
     list->found = e->count;
     list->count = e->items;
@@ -52,7 +52,8 @@ static kage_errors *list_of(const errors *e)
     return list;
 }
 
-/* The words of messages of a lack of memory. tests/unit/api/test_memory.c finds those that have others. */
+/* Whether a message reports a lack of memory, by its words; so does an empty list. tests/unit/api/test_memory.c fails
+ * where a message uses other words. */
 static bool is_memory(const errors *e)
 {
     const char *const words[] = {"out of memory", "not enough memory", strerror(ENOMEM)};
@@ -70,16 +71,14 @@ static bool is_memory(const errors *e)
 
 kage_status errors_give(errors *e, kage_status status, const watch *w, kage_errors **to)
 {
-    const bool cancelled = w && w->cancelled;
-    if (!cancelled && is_memory(e))
+    if (w && w->cancelled)
+        status = KAGE_CANCELLED;
+    else if (status != KAGE_OK && is_memory(e))
         status = KAGE_NO_MEMORY;
-    if (to && !cancelled) {
-        *to = list_of(e);
-        if (!*to)
-            *to = (kage_errors *)&no_memory;
-    }
+    if (to)
+        *to = status == KAGE_OK || status == KAGE_CANCELLED ? NULL : list_of(e);
     errors_free(e);
-    return cancelled ? KAGE_CANCELLED : status;
+    return status;
 }
 
 kage_status error_give(kage_status status, kage_errors **to, const char *fmt, ...)
@@ -132,7 +131,7 @@ static bool show(void *user, const char *what, double share)
     watch *w = user;
     if (w->cancelled || !w->call)
         return !w->cancelled;
-    const bool swaps = w->locale && w->locale->c;
+    const bool swaps = w->locale->c != (locale_t)0;
     if (swaps)
         uselocale(w->locale->before);
     w->cancelled = w->call(w->user, what, share) != 0;

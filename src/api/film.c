@@ -1,4 +1,4 @@
-/* Films: their planes, their layers by name, and the pictures that are written from them. */
+/* Films: their planes, their layers by name, and writing them as PNG and OpenEXR. */
 #include "api/api.h"
 
 #include "image/image.h"
@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* How pictures say in their text Software that they are kage's, with the version behind it. */
+/* The text `Software` in a picture begins with this; the version follows. */
 #define SOFTWARE "kage"
 
 int kage_film_width(const kage_film *f) { return f->film->part.x1 - f->film->part.x0; }
@@ -16,9 +16,7 @@ int kage_film_height(const kage_film *f) { return f->film->part.y1 - f->film->pa
 
 void kage_film_crop(const kage_film *f, int crop[4])
 {
-    const window w = f->film->part;
-    const int x[4] = {w.x0, w.y0, w.x1, w.y1};
-    memcpy(crop, x, sizeof x);
+    memcpy(crop, &f->film->part, sizeof f->film->part); /* x0 y0 x1 y1 */
 }
 
 int kage_film_plane_count(const kage_film *f) { return f->film->planes; }
@@ -52,8 +50,8 @@ void kage_film_free(kage_film *f)
 
 /* ---- layers ---- */
 
-/* Whether a word of n letters names a plane: as it is called, or what stands before its dot (N for N.X), or color for
- * R, G and B. */
+/* Whether a word of n letters names a plane: its whole name, the part before the dot (N for N.X), or `color` for R, G
+ * and B. */
 static bool names_plane(const char *word, size_t n, const char *plane)
 {
     if (n == 5 && strncmp(word, "color", n) == 0)
@@ -102,8 +100,8 @@ typedef struct picture_texts {
     char crop[64];
 } picture_texts;
 
-/* All that the picture is made from, besides the maps, so that it can be made again from itself. No clock, no path, no
- * number of threads: the same picture has the same bytes. */
+/* What the picture is made from, except for maps, so that it can be rendered again. No clock, path or number of
+ * threads: the same picture has the same bytes. */
 static void texts_of(const kage_film *f, picture_texts *t)
 {
     const window w = f->film->part;
@@ -120,28 +118,17 @@ static void texts_of(const kage_film *f, picture_texts *t)
     memcpy(t->text, text, sizeof text);
 }
 
-/* What writing has come to. */
-static kage_status written(bool good, errors *e, kage_errors **to)
-{
-    if (!good)
-        return errors_give(e, KAGE_NOT_WRITTEN, NULL, to);
-    errors_free(e);
-    return KAGE_OK;
-}
-
 kage_status kage_film_write_png(const kage_film *f, const char *path, int bits, kage_errors **to)
 {
     errors e = {0};
     picture_texts t;
     float *const *plane = f->film->plane;
-    if (to)
-        *to = NULL;
     if (bits != 0 && bits != 8 && bits != 16)
         return error_give(KAGE_BAD_OPTION, to, "%d bits, expected 8 or 16", bits);
     texts_of(f, &t);
     const bool good = image_write_png(path, kage_film_width(f), kage_film_height(f), bits ? bits : 8, plane[FILM_R],
                                       plane[FILM_G], plane[FILM_B], TEXTS, t.text, &e);
-    return written(good, &e, to);
+    return errors_give(&e, good ? KAGE_OK : KAGE_NOT_WRITTEN, NULL, to);
 }
 
 kage_status kage_film_write_exr(const kage_film *f, const char *path, const char *layers, int threads, kage_errors **to)
@@ -149,8 +136,6 @@ kage_status kage_film_write_exr(const kage_film *f, const char *path, const char
     errors e = {0};
     picture_texts t;
     int channels = 0;
-    if (to)
-        *to = NULL;
     if (threads < 0 || threads > KAGE_MAX_THREADS)
         return error_give(KAGE_BAD_OPTION, to, "%d threads, expected 0 to %d", threads, KAGE_MAX_THREADS);
     for (const char *word = layers; word; word = next_word(word))
@@ -167,7 +152,7 @@ kage_status kage_film_write_exr(const kage_film *f, const char *path, const char
     const bool good =
         image_write_exr(path, threads, kage_film_width(f), kage_film_height(f), channels, channel, TEXTS, t.text, &e);
     free(channel);
-    return written(good, &e, to);
+    return errors_give(&e, good ? KAGE_OK : KAGE_NOT_WRITTEN, NULL, to);
 }
 
 int kage_file_is_picture(const char *path) { return image_png_is_from(path, SOFTWARE); }

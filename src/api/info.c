@@ -1,4 +1,4 @@
-/* What is in a scene, as data: kage_scene_info. */
+/* What can be asked for: the version, the methods, and what is in a scene (kage_scene_get_info). */
 #include "api/api.h"
 
 #include <stdlib.h>
@@ -59,7 +59,7 @@ static kage_object_info of_object(const scene *s, const object *o, const kage_mo
     return x;
 }
 
-/* The models lie behind the objects, one for each. */
+/* One allocation holds the objects, then a model for each. */
 static bool note_all(const scene *s, kage_scene_info *x)
 {
     const size_t lights = (size_t)s->lights, objects = (size_t)s->objects;
@@ -110,3 +110,21 @@ void scene_forget(kage_scene *k)
 }
 
 const kage_scene_info *kage_scene_get_info(const kage_scene *k) { return &k->info; }
+
+const char *kage_version(void) { return KAGE_VERSION; }
+
+const char *kage_precision(void) { return REAL_NAME; }
+
+int kage_method_count(void) { return method_help_count; }
+
+kage_method kage_method_get(int k)
+{
+    const bool is = k >= 0 && k < method_help_count;
+    return (kage_method){is ? method_helps[k].name : NULL, is ? method_helps[k].text : NULL};
+}
+
+int kage_method_is_known(const char *name)
+{
+    method m;
+    return method_parse(name, &m);
+}

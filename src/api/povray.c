@@ -1,4 +1,4 @@
-/* The export to POV-Ray. */
+/* kage_scene_write_povray: the scene as a file for POV-Ray. */
 #include "api/api.h"
 
 #include "povray/povray.h"
@@ -11,8 +11,6 @@ kage_status kage_scene_write_povray(kage_scene *k, const char *path, const kage_
     errors e = {0};
     pov_report r = {0};
     kage_status status = KAGE_BAD_INPUT;
-    if (to)
-        *to = NULL;
     c_locale l = c_locale_begin();
     const scene *s = scene_reading(k, displaced, k->first->shadow, &e);
     bool good = s && pov_possible(s, &e);
@@ -24,8 +22,5 @@ kage_status kage_scene_write_povray(kage_scene *k, const char *path, const kage_
     c_locale_end(&l);
     if (report)
         *report = (kage_povray_report){.coarse = good ? r.coarse : NULL, .height = r.height, .pixels = r.pixels};
-    if (!good)
-        return errors_give(&e, status, NULL, to);
-    errors_free(&e);
-    return KAGE_OK;
+    return errors_give(&e, good ? KAGE_OK : status, NULL, to);
 }

@@ -1,4 +1,4 @@
-/* The way of one ray, every value by the same stages as in a picture. */
+/* kage_scene_probe: every value that the stages compute for one ray, by each method. */
 #include "api/api.h"
 
 #include "render/intersect.h"
@@ -14,7 +14,7 @@ static const char *const names[] = {"none",   "0",       "1",       "2",       "
                                     "iter:4", "march:2", "march:4", "march:8", "march:16"};
 enum { NAMES = sizeof names / sizeof *names, ROWS = 2 * NAMES };
 
-/* The probe with what it points to, in one piece. */
+/* The probe and what it points to, in one piece of memory. */
 typedef struct block {
     kage_probe probe;
     kage_probe_row row[ROWS];
@@ -68,7 +68,6 @@ static void set_bump(kage_probe *p, const hit_group *g, const bump *P)
     p->slab[1] = (double)slab.back;
 }
 
-/* One method's row: tau, t0, the origin of the shadow rays, the order, and what each light gives. */
 static kage_probe_row row_of(const tracer *k, int id, workspace *v, const char *name, double *visible)
 {
     trace_group(k, id, v);
@@ -91,14 +90,12 @@ static void set_rows(const scene *s, int id, workspace *v, block *b)
 {
     int n = 0;
     for (int k = 0; k < NAMES; k++) {
-        tracer x = {.scene = s, .guard = true, .layers = true};
+        tracer x = {.scene = s, .layers = true};
         method_parse(names[k], &x.shadow);
-        b->row[n] = row_of(&x, id, v, names[k], b->visible + n * s->lights);
-        n++;
-        if (x.shadow.kind == METHOD_ORDER && x.shadow.n > 0) {
-            x.guard = false;
+        const int variants = x.shadow.kind == METHOD_ORDER && x.shadow.n > 0 ? 2 : 1;
+        for (int bare = 0; bare < variants; bare++, n++) {
+            x.guard = !bare;
             b->row[n] = row_of(&x, id, v, names[k], b->visible + n * s->lights);
-            n++;
         }
     }
     b->probe.rows = b->row;

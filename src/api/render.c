@@ -1,4 +1,4 @@
-/* kage_render: the options against the scene, the render, and what it counted. */
+/* kage_render: check the options, apply them to a copy of the scene's settings, render, and report the counts. */
 #include "api/api.h"
 
 #include "image/image.h"
@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A render, settled: the scene with the caller's wishes in it. `view` owns nothing. */
+/* What to render: the scene with the caller's options applied. `view` is a shallow copy and owns nothing. */
 typedef struct job {
     scene view;
     window part;
@@ -69,7 +69,7 @@ static bool set_crop(const int crop[4], job *j, errors *e)
     return true;
 }
 
-/* KAGE_OK, or what is wrong with *e. */
+/* Apply the options. Not KAGE_OK: an error is in *e. */
 static kage_status settle(kage_scene *k, const kage_render_options *o, job *j, errors *e)
 {
     const scene *first = k->first;
@@ -97,7 +97,7 @@ static kage_status settle(kage_scene *k, const kage_render_options *o, job *j, e
 
 /* ---- what a picture is made from ---- */
 
-/* A text that grows; NULL once there is no memory. */
+/* Append a line to *text, which is freed and NULL once there is no memory. */
 static void add_line(char **text, const char *fmt, ...) KAGE_PRINTF(2, 3);
 static void add_line(char **text, const char *fmt, ...)
 {
@@ -117,7 +117,7 @@ static void add_line(char **text, const char *fmt, ...)
 
 static const char *yes(bool x) { return x ? "true" : "false"; }
 
-/* The changes made to the scene, a line each: those of reading it, and the options as changes. NULL: out of memory. */
+/* All changes of the scene, a line each: those it was read with, then the options. NULL: out of memory. */
 static char *sets_of(const kage_scene *k, const kage_render_options *o, const scene *view)
 {
     char name[METHOD_NAME_SIZE];
@@ -145,7 +145,7 @@ static char *sets_of(const kage_scene *k, const kage_render_options *o, const sc
     return text;
 }
 
-/* The film without its values. NULL: an error is in *e. */
+/* An empty film. NULL: an error is in *e. */
 static kage_film *new_film(const kage_scene *k, const kage_render_options *o, const job *j, errors *e)
 {
     const char *slash = strrchr(k->first->path, '/');
@@ -212,20 +212,16 @@ kage_status kage_render(kage_scene *k, const kage_render_options *given, kage_fi
     const kage_render_options o = given ? *given : (kage_render_options){0};
     errors e = {0};
     job j;
-    *out = NULL;
-    if (to)
-        *to = NULL;
     c_locale l = c_locale_begin();
     watch w = {o.progress, o.user, &l, false};
     kage_status status = settle(k, &o, &j, &e);
     kage_film *f = status == KAGE_OK ? new_film(k, &o, &j, &e) : NULL;
     const bool good = f && fill(f, &j, &o, &w, &e);
     c_locale_end(&l);
-    if (good) {
-        *out = f;
-        errors_free(&e);
-        return KAGE_OK;
+    if (!good) {
+        kage_film_free(f);
+        status = status == KAGE_OK ? KAGE_NO_MEMORY : status;
     }
-    kage_film_free(f);
-    return errors_give(&e, status == KAGE_OK ? KAGE_NO_MEMORY : status, &w, to);
+    *out = good ? f : NULL;
+    return errors_give(&e, status, &w, to);
 }

@@ -1,4 +1,4 @@
-/* Scenes: reading, reading again where another kind of surface is asked for, and what is in them. */
+/* Scenes: reading them, and reading them again for another kind of surface. */
 #include "api/api.h"
 
 #include <stdlib.h>
@@ -13,7 +13,7 @@ static char *copy(const char *text, bool *good)
     return c;
 }
 
-/* What the options say, for good. False: out of memory. */
+/* Copy what a further reading needs. False: out of memory. */
 static bool keep(kage_scene *k, const char *folder, const kage_load_options *o)
 {
     bool good = true;
@@ -26,19 +26,10 @@ static bool keep(kage_scene *k, const char *folder, const kage_load_options *o)
     return good && k->set;
 }
 
-/* Reading 2 d + x has the displaced surface where d, and the method exact where x. */
-static void hold(kage_scene *k, scene *s)
-{
-    k->first = s;
-    k->reading[reading_index(s->displaced, s->shadow)] = s;
-}
-
 static kage_status load(scene_source *from, const kage_load_options *given, kage_scene **out, kage_errors **to)
 {
     const kage_load_options o = given ? *given : (kage_load_options){0};
     *out = NULL;
-    if (to)
-        *to = NULL;
     if (o.threads < 0 || o.threads > KAGE_MAX_THREADS || o.set_count < 0)
         return error_give(KAGE_BAD_OPTION, to, "%d threads and %d changes, expected 0 to %d and 0 or more", o.threads,
                           o.set_count, KAGE_MAX_THREADS);
@@ -47,8 +38,7 @@ static kage_status load(scene_source *from, const kage_load_options *given, kage
     watch w = {o.progress, o.user, &l, false};
     const progress p = watch_progress(&w);
     kage_scene *k = calloc(1, sizeof *k);
-    const bool locks = k && pthread_mutex_init(&k->lock, NULL) == 0;
-    if (!locks) {
+    if (k && pthread_mutex_init(&k->lock, NULL) != 0) {
         free(k);
         k = NULL;
     }
@@ -58,17 +48,17 @@ static kage_status load(scene_source *from, const kage_load_options *given, kage
     from->model_reader = o.model_reader;
     from->progress = &p;
     scene *s = k && keep(k, from->folder, &o) ? scene_read(from, &e) : NULL;
-    if (s)
-        hold(k, s);
+    if (s) {
+        k->first = s;
+        k->reading[reading_index(s->displaced, s->shadow)] = s;
+    }
     const bool good = s && !w.cancelled && scene_note(k);
     c_locale_end(&l);
-    if (good) {
-        errors_free(&e);
+    if (good)
         *out = k;
-        return KAGE_OK;
-    }
-    kage_scene_free(k);
-    return errors_give(&e, KAGE_BAD_INPUT, &w, to);
+    else
+        kage_scene_free(k);
+    return errors_give(&e, good ? KAGE_OK : KAGE_BAD_INPUT, &w, to);
 }
 
 kage_status kage_scene_load(const char *path, const kage_load_options *options, kage_scene **out, kage_errors **to)
@@ -100,7 +90,7 @@ void kage_scene_free(kage_scene *k)
     free(k);
 }
 
-/* From its text, with two more changes. */
+/* Read the scene's text again, with two more changes. */
 static scene *read_again(const kage_scene *k, bool displaced, method m, errors *e)
 {
     char shadow[METHOD_NAME_SIZE + sizeof "render.shadow="] = "render.shadow=";

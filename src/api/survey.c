@@ -1,4 +1,4 @@
-/* How steep the bumps are where the camera sees them, and what a user should be warned of. */
+/* kage_scene_survey: how steep the bumps are where the camera sees them, and warnings. */
 #include "api/api.h"
 
 #include "render/intersect.h"
@@ -10,11 +10,11 @@
 
 enum { SAMPLES = 200, MOST_WARNINGS = 4 }; /* SAMPLES x SAMPLES rays over the picture; warnings of one object */
 
-/* Above this slope (95th percentile) the orders 0, 1 and 2 put more than about 1 % of a cast shadow's pixels wrong: the
- * table of docs/method.md, "How far the orders go". */
+/* Above this slope (95th percentile) orders 0, 1 and 2 get more than about 1 % of a cast shadow's pixels wrong
+ * (docs/method.md, "How far the orders go"). */
 #define SLOPE_BOUND 0.35
 
-/* More than this share falls back often, in per cent. */
+/* Warn where more samples than this fall back, in per cent. */
 #define FALL_BACK_BOUND 1.0
 
 /* What the rays have found on one object. */
@@ -37,7 +37,7 @@ static float slope(const hit_group *g, int i)
     return (float)(real_sqrt(bs_dot(c, c)) / bs_dot(n, np));
 }
 
-/* The slopes are noted with order 2. */
+/* Trace the survey's rays by one order and count where it fell back. With order 2 also note the slopes. */
 static void look(const scene *s, int order, workspace *v, seen *all)
 {
     const tracer k = {.scene = s, .shadow = {METHOD_ORDER, order}, .guard = true};
@@ -94,8 +94,7 @@ static void warn_of(const kage_object_info *o, const kage_bump_survey *b, int id
         warn(w, n, KAGE_WARN_FALLS_BACK, id, back, FALL_BACK_BOUND);
 }
 
-/* The survey with what it points to, in one piece: the objects' surveys lie behind it, and the warnings behind those.
- */
+/* The survey and what it points to, in one piece of memory: the survey, one bump survey an object, the warnings. */
 static kage_survey *report(const kage_scene *k, seen *all)
 {
     const size_t objects = (size_t)k->info.object_count;

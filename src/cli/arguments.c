@@ -1,12 +1,13 @@
-/* The command line: one table of options, and what each does with its value. */
+/* Reads the command line, by a table of options. */
 #include "cli/command.h"
 
 #include <stdarg.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* Whole numbers with `separator` between them, from 0 on, and nothing else. */
+/* Read exactly n whole numbers, 0 to 1000000, with `separator` between them. */
 static bool whole_numbers(const char *text, char separator, int n, int *out)
 {
     for (int k = 0; k < n; k++) {
@@ -60,7 +61,7 @@ static bool read_output(arguments *a, const char *name, const char *v)
     return true;
 }
 
-/* The methods' names, with commas and an `or`. */
+/* The methods' names: none, 0, 1 ... or exact. */
 static void list_methods(char *text, size_t size)
 {
     const int n = kage_method_count();
@@ -153,53 +154,40 @@ static bool read_set(arguments *a, const char *name, const char *v)
     return add_set(a, "%s", v);
 }
 
-/* ---- those without a value ---- */
-
-static bool no_self_shadow(arguments *a) { return add_set(a, "render.self_shadow=false"); }
-
-static bool no_guard(arguments *a) { return add_set(a, "render.guard=false"); }
-
-static bool no_cast(arguments *a) { return a->no_cast = true; }
-
-static bool overwrite(arguments *a) { return a->overwrite = true; }
-
-static bool with_stats(arguments *a) { return a->stats = true; }
-
-static bool quiet(arguments *a) { return a->quiet = true; }
-
 /* ---- the table ---- */
 
-/* The commands that have an option; one of the two functions. Those that change the scene become a --set. */
 typedef struct option {
     const char *name;
-    int commands;
-    bool (*read)(arguments *a, const char *name, const char *value);
-    bool (*flag)(arguments *a);
+    int commands; /* that have it */
+    bool (*read)(arguments *a, const char *name,
+                 const char *value); /* NULL: it has no value, but one of the next two */
+    const char *change;              /* of the scene; NULL: none */
+    size_t flag;                     /* the offset of a bool in `arguments` */
 } option;
 
 enum { ALL = COMMAND_RENDER | COMMAND_CHECK | COMMAND_PIXEL | COMMAND_POV, PICTURES = COMMAND_RENDER | COMMAND_POV };
 
 static const option options[] = {
-    {"-o", PICTURES, read_output, NULL},
-    {"--shadow", COMMAND_RENDER, read_shadow, NULL},
-    {"--surface", PICTURES, read_surface, NULL},
-    {"--size", ALL, read_size, NULL},
-    {"--aa", COMMAND_RENDER, read_aa, NULL},
-    {"--aa-threshold", COMMAND_RENDER, read_threshold, NULL},
-    {"--crop", COMMAND_RENDER, read_crop, NULL},
-    {"--set", ALL, read_set, NULL},
-    {"--threads", COMMAND_RENDER, read_threads, NULL},
-    {"--bits", COMMAND_RENDER, read_bits, NULL},
-    {"--layers", COMMAND_RENDER, read_layers, NULL},
-    {"--no-guard", COMMAND_RENDER, NULL, no_guard},
-    {"--no-self-shadow", PICTURES, NULL, no_self_shadow},
-    {"--no-cast", COMMAND_POV, NULL, no_cast},
-    {"--overwrite", COMMAND_RENDER, NULL, overwrite},
-    {"--stats", COMMAND_RENDER, NULL, with_stats},
-    {"--quiet", COMMAND_RENDER, NULL, quiet},
+    {"-o", PICTURES, read_output, NULL, 0},
+    {"--shadow", COMMAND_RENDER, read_shadow, NULL, 0},
+    {"--surface", PICTURES, read_surface, NULL, 0},
+    {"--size", ALL, read_size, NULL, 0},
+    {"--aa", COMMAND_RENDER, read_aa, NULL, 0},
+    {"--aa-threshold", COMMAND_RENDER, read_threshold, NULL, 0},
+    {"--crop", COMMAND_RENDER, read_crop, NULL, 0},
+    {"--set", ALL, read_set, NULL, 0},
+    {"--threads", COMMAND_RENDER, read_threads, NULL, 0},
+    {"--bits", COMMAND_RENDER, read_bits, NULL, 0},
+    {"--layers", COMMAND_RENDER, read_layers, NULL, 0},
+    {"--no-guard", COMMAND_RENDER, NULL, "render.guard=false", 0},
+    {"--no-self-shadow", PICTURES, NULL, "render.self_shadow=false", 0},
+    {"--no-cast", COMMAND_POV, NULL, NULL, offsetof(arguments, no_cast)},
+    {"--overwrite", COMMAND_RENDER, NULL, NULL, offsetof(arguments, overwrite)},
+    {"--stats", COMMAND_RENDER, NULL, NULL, offsetof(arguments, stats)},
+    {"--quiet", COMMAND_RENDER, NULL, NULL, offsetof(arguments, quiet)},
 };
 
-/* The option of a command by its name, or NULL. */
+/* NULL: the command has no such option. */
 static const option *find(int command, const char *name)
 {
     for (size_t k = 0; k < sizeof options / sizeof *options; k++)
@@ -217,8 +205,12 @@ static bool read_option(arguments *a, int argc, char **argv, int *k)
     const option *o = find(a->command, arg);
     if (!o)
         return usage_error("%s: no option of 'kage %s'; see kage --help", arg, a->name);
-    if (o->flag)
-        return equals ? usage_error("%s takes no value; see kage --help", arg) : o->flag(a);
+    if (!o->read && equals)
+        return usage_error("%s takes no value; see kage --help", arg);
+    if (o->change)
+        return add_set(a, "%s", o->change);
+    if (!o->read)
+        return *(bool *)((char *)a + o->flag) = true;
     if (!equals && *k + 1 == argc)
         return usage_error("%s lacks its value; see kage --help", arg);
     return o->read(a, o->name, equals ? equals + 1 : argv[++*k]);

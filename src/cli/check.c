@@ -1,10 +1,10 @@
-/* kage check: what is in a scene, and how steep its bumps are where the camera sees them. */
+/* kage check: prints what is in a scene, how steep its visible bumps are, and warnings. */
 #include "cli/command.h"
 
 #include <stdio.h>
 #include <string.h>
 
-/* Whether an object has a warning. */
+/* An object's warning of this kind, or NULL. */
 static const kage_warning *find_warning(const kage_survey *v, int object, kage_warning_code code)
 {
     for (int k = 0; k < v->warning_count; k++)
@@ -33,13 +33,12 @@ static void print_bump(const kage_object_info *o, const kage_survey *v, int id)
            b->slope_95, b->slope_max);
     printf("    fall back order 1 in %.2f %%, order 2 in %.2f %% of what is seen\n", b->fell_back[1], b->fell_back[2]);
     if ((w = find_warning(v, id, KAGE_WARN_STEEP)))
-        printf(
-            "    warning: slopes above %.2f are more than the orders 0, 1 and 2 can bear: expect 1 %% and more of a\n"
-            "             shadow's pixels wrong; march:4 bears them\n",
-            w->bound);
+        printf("    warning: slopes above %.2f are too steep for orders 0, 1 and 2: expect 1 %% and more of a\n"
+               "             shadow's pixels wrong; use march:4\n",
+               w->bound);
     if ((w = find_warning(v, id, KAGE_WARN_FALLS_BACK))) {
         const bool first = b->fell_back[1] > w->bound, second = b->fell_back[2] > w->bound;
-        printf("    warning: %s back often: the view is flat against the bumps; order 0 or march:4 serve\n",
+        printf("    warning: %s back often: the view is flat against the bumps; use order 0 or march:4\n",
                first && second ? "orders 1 and 2 fall"
                : first         ? "order 1 falls"
                                : "order 2 falls");
@@ -58,8 +57,8 @@ static void print_model(const kage_model_info *m)
            m->untextured == 0              ? "texture coordinates on all"
            : m->untextured == m->triangles ? "no texture coordinates"
                                            : "texture coordinates on some");
-    print_some(m->flipped, "turned round, as all of their normals are on the other side");
-    print_some(m->normals, "corners' normals turned away from their triangle, replaced by its own");
+    print_some(m->flipped, "flipped, as all of their normals are on the other side");
+    print_some(m->normals, "corner normals on the wrong side of their triangle, replaced by the triangle's");
     print_some(m->mirrored, "with the texture mirrored: u beyond its range");
     print_some(m->texture_points, "with no area on the texture: spread over 1/4096 of it");
     if (m->flat)

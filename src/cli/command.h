@@ -1,5 +1,6 @@
-/* The program's commands and what they share. They know the tracer through kage.h alone. Results go to stdout, errors
- * and progress to stderr. Each command returns the exit status: 0, 1 where an output can't be written, 2 for bad input.
+/* The program's commands and their shared functions. They use the tracer only through kage.h. Results go to stdout,
+ * errors and progress to stderr. Each command returns the exit status: 0, 1 where an output can't be written, 2 for bad
+ * input.
  */
 #ifndef KAGE_CLI_COMMAND_H
 #define KAGE_CLI_COMMAND_H
@@ -19,23 +20,23 @@ enum { EXIT_OUTPUT = 1, EXIT_INPUT = 2, MAX_OUTPUTS = 16, MAX_SETS = 256 };
 /* The commands that take a scene, as bits. */
 enum { COMMAND_RENDER = 1, COMMAND_CHECK = 2, COMMAND_PIXEL = 4, COMMAND_POV = 8 };
 
-/* The command line, read. Zero: not given. */
+/* The parsed command line. Zero: not given. */
 typedef struct arguments {
     const char *name; /* of the command */
     int command;
-    const char *operand[2]; /* what is no option */
+    const char *operand[2]; /* arguments that are not options */
     int operands;
     const char *output[MAX_OUTPUTS];
     int outputs;
-    char *set[MAX_SETS]; /* --set's, and those options that are changes of the scene; owned */
+    char *set[MAX_SETS]; /* values of --set, and options that change the scene in the same form; owned */
     int sets;
     int crop[4];
-    const char *layers; /* of an EXR; NULL: all */
+    const char *layers; /* of an EXR, with commas; NULL: all */
     int threads, bits;
     bool stats, quiet, no_cast, overwrite;
 } arguments;
 
-/* Read the options of a command. False: what is wrong is on stderr. arguments_free in either case. */
+/* Parse a command's arguments. False: the mistake is on stderr. Call arguments_free in either case. */
 bool arguments_read(arguments *a, int argc, char **argv, int command);
 void arguments_free(arguments *a);
 
@@ -46,48 +47,41 @@ int command_pov(const arguments *a);
 
 /* ---- common.c ---- */
 
-/* The scene of a command line, or NULL with the errors on stderr. There, too, is what was left out of models, unless it
- * is to be quiet. */
+/* Load the scene. NULL: the errors are on stderr. Prints there what was left out of models, too, unless a->quiet. */
 kage_scene *load_scene(const arguments *a);
 
-/* A path's last name: what pictures and exports say of it, so that they do not depend on the folder. */
+/* The last part of a path: in pictures and exports, so that they do not depend on the folder. */
 const char *base_name(const char *path);
 
 /* Print a list of errors and free it. Returns `status`. */
 int print_errors(kage_errors *e, int status);
 
-/* One line on stderr for a mistake on the command line. Always false. */
+/* Print `kage: ` and a message on stderr. Returns false. */
 bool usage_error(const char *fmt, ...) CLI_PRINTF(1, 2);
 
-/* ---- output.c ---- */
-
-/* Whether no output is a file that the scene is made from. False: why is on stderr. */
+/* Whether no output is one of the scene's input files. False: the error is on stderr. */
 bool outputs_spare_inputs(const kage_scene *s, const char *const *output, int outputs);
-
-/* Whether a name that nobody gave is free, or a picture of kage's. False: why is on stderr. */
-bool output_is_replaceable(const char *path);
 
 bool has_ending(const char *path, const char *ending);
 
 /* ---- progress_bar.c ---- */
 
-/* Seconds by a clock that only goes forward. */
+/* Seconds since an arbitrary time. */
 double clock_now(void);
 
-/* A bar on the terminal behind stderr: what is done, the rate, the time left. Nothing where that is no terminal. */
+/* A bar on stderr with the share done, the rate and the time left. Off where stderr is not a terminal. */
 typedef struct progress_bar {
     bool on;
-    double start, shown;
-    long pixels;
-    const char *name;
-    char what[16]; /* is done with a file */
+    double start, shown; /* when it began and was last drawn */
+    long pixels;         /* of the picture; 0: loading */
+    const char *name;    /* of the scene */
+    char what[16];       /* the current step */
 } progress_bar;
 
 void progress_bar_start(progress_bar *p, bool quiet, const char *name, long pixels);
 void progress_bar_end(progress_bar *p);
 
-/* For kage_progress: a render; and a scene's files, which have no pixels. */
-int progress_bar_render(void *user, const char *what, double share);
-int progress_bar_load(void *user, const char *what, double share);
+/* The callback, a kage_progress. user: the bar. */
+int progress_bar_show(void *user, const char *what, double share);
 
 #endif

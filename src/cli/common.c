@@ -1,4 +1,4 @@
-/* What all commands do: load the scene, print errors. */
+/* Shared by the commands: loading the scene, printing errors, checking file names. */
 #include "cli/command.h"
 
 #include <stdarg.h>
@@ -33,7 +33,7 @@ int print_errors(kage_errors *e, int status)
     return status;
 }
 
-/* A model is shown without its triangles that have no area; that is nothing to see, but may be a sign. */
+/* Report triangles without an area. The picture is the same without them, but they may be a mistake in the model. */
 static void print_flat(const kage_scene_info *s)
 {
     for (int k = 0; k < s->object_count; k++) {
@@ -42,6 +42,20 @@ static void print_flat(const kage_scene_info *s)
             fprintf(stderr, "kage: object %s: %d of the %d triangles in %s have no area; they are left out\n",
                     s->objects[k].name, m->flat, m->triangles + m->flat, m->file);
     }
+}
+
+bool has_ending(const char *path, const char *ending)
+{
+    const size_t n = strlen(path), m = strlen(ending);
+    return n > m && strcmp(path + n - m, ending) == 0;
+}
+
+bool outputs_spare_inputs(const kage_scene *s, const char *const *output, int outputs)
+{
+    for (int k = 0; k < outputs; k++)
+        if (kage_scene_uses_file(s, output[k]))
+            return usage_error("%s: the scene is made from this file, expected -o with another name", output[k]);
+    return true;
 }
 
 kage_scene *load_scene(const arguments *a)
@@ -53,7 +67,7 @@ kage_scene *load_scene(const arguments *a)
     const kage_load_options o = {.sets = (const char *const *)a->set,
                                  .set_count = a->sets,
                                  .threads = a->threads,
-                                 .progress = progress_bar_load,
+                                 .progress = progress_bar_show,
                                  .user = &p};
     const kage_status status = kage_scene_load(a->operand[0], &o, &s, &e);
     progress_bar_end(&p);
@@ -61,7 +75,7 @@ kage_scene *load_scene(const arguments *a)
         print_errors(e, EXIT_INPUT);
         return NULL;
     }
-    if (!a->quiet && a->command != COMMAND_CHECK) /* which prints it itself */
+    if (!a->quiet && a->command != COMMAND_CHECK) /* `check` prints this itself */
         print_flat(kage_scene_get_info(s));
     return s;
 }

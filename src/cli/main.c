@@ -1,4 +1,4 @@
-/* The program: which command is to run. */
+/* The program kage: help, and the choice of the command. */
 #include "cli/command.h"
 
 #include <stdio.h>
@@ -20,25 +20,25 @@ static const char help[] =
     "\n"
     "Options of render:\n"
     "  -o FILE              where to: .png (sRGB) or .exr (linear, with all layers); may be given again.\n"
-    "                       Without it: the scene's name with .png, here. Never a file that the scene is made from\n"
+    "                       Without it: the scene's name with .png, in this folder. Never one of the scene's files\n"
     "  --overwrite          without -o, replace also a file that kage did not write\n"
     "  --shadow METHOD      where shadow rays start: none, 0, 1, 2, 2+, iter:K, march:N, exact\n"
-    "  --surface KIND       smooth (bump mapping), or displaced: bumped surfaces as what they stand for\n"
+    "  --surface KIND       smooth (bump mapping), or displaced: surfaces that are truly displaced by P\n"
     "  --no-self-shadow     bumped objects cast no shadows\n"
-    "  --no-guard           the paper's bare formulas, also where they leave the slab between Pmin and Pmax\n"
+    "  --no-guard           the paper's formulas alone, also where tau leaves the slab between Pmin and Pmax\n"
     "  --aa N               N x N samples a pixel\n"
     "  --aa-threshold T     these only where neighbours differ by more than T (0 to 3, red, green and blue together,\n"
     "                       as displayed), elsewhere one\n"
     "  --crop X0,Y0,X1,Y1   only this part of the picture, in pixels from the top left, X1 and Y1 exclusive\n"
     "  --layers A,B,...     of an EXR: color, Z, P, N, uw, height, tau, order, visibility (all)\n"
     "  --bits 8|16          of a PNG (8)\n"
-    "  --threads N          (as many as there are processors)\n"
+    "  --threads N          number of threads (as many as there are processors)\n"
     "  --stats              time and count each stage\n"
     "  --quiet              no progress bar, no closing line\n"
     "\n"
     "Options of pov:\n"
     "  -o FILE              where to, a name that ends in .pov\n"
-    "  --surface KIND       smooth (without the bumps), or displaced: bumped surfaces as what they stand for\n"
+    "  --surface KIND       smooth (without the bumps), or displaced: surfaces that are truly displaced by P\n"
     "  --no-self-shadow     bumped objects cast no shadows\n"
     "  --no-cast            all other objects cast none\n"
     "\n"
@@ -46,7 +46,7 @@ static const char help[] =
     "docs/povray.md.\n"
     "Exit status: 0; 1 where a picture can't be written; 2 for bad input.\n";
 
-/* The exit status, once all that was said on stdout has gone out. */
+/* Flush stdout. Returns the exit status. */
 static int finish(int status)
 {
     if (fflush(stdout) == 0 && !ferror(stdout))

@@ -1,4 +1,4 @@
-/* kage pixel: the way of one ray. */
+/* kage pixel: prints every value that is computed for one pixel, by each method. */
 #include "cli/command.h"
 
 #include <stdio.h>
@@ -23,7 +23,7 @@ static void print_bump(const kage_probe *p)
     print_scalar("Pmax", p->Pmax);
     print_vector("n'", p->n_bump);
     if (!p->regular) {
-        printf("|n| is 0 against the edges here: the smooth normal and order none are used\n");
+        printf("|n| is 0 against |Qu| and |Qw|: the smooth normal and order none are used\n");
         return;
     }
     print_scalar("s.n/|n|", p->sn);
@@ -53,7 +53,7 @@ static void print_row(const kage_probe_row *x, int lights)
     printf("%-10s %13.6g %13.6g  %11.6g %11.6g %11.6g  %-6s", label, x->tau, x->t0, x->origin[0], x->origin[1],
            x->origin[2], x->fell_back ? x->fell_back : "");
     for (int l = 0; l < lights; l++)
-        if (x->visible[l] > 0 && x->visible[l] < 1) /* of an area's samples */
+        if (x->visible[l] > 0 && x->visible[l] < 1) /* an area light, partly visible */
             printf(" %-9.4g", x->visible[l]);
         else
             printf(" %-9s", x->visible[l] > 0 ? "lit" : "shadow");

@@ -1,11 +1,11 @@
-/* kage pov: the scene for POV-Ray. */
+/* kage pov: writes a scene for POV-Ray. */
 #include "cli/command.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* The command as the file shows it: the scene's base name, the options, no other path. NULL: out of memory. */
+/* The command line for the file's header, without paths. NULL: out of memory. */
 static char *command_text(const arguments *a)
 {
     const char *name = base_name(a->operand[0]);

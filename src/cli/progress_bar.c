@@ -1,4 +1,4 @@
-/* The progress bar, and the clock that it goes by. */
+/* The progress bar and its clock. */
 #include "cli/command.h"
 
 #include <stdio.h>
@@ -19,45 +19,24 @@ void progress_bar_start(progress_bar *p, bool quiet, const char *name, long pixe
     p->shown = p->start;
 }
 
-/* Whether it is time to draw again; then how much of the bar is full is in `bar`. */
-enum { BAR = 30 };
-static bool is_due(progress_bar *p, double share, char bar[BAR + 1])
+int progress_bar_show(void *user, const char *what, double share)
 {
-    const double now = p->on ? clock_now() : 0;
-    if (!p->on || now - p->shown < 0.1)
-        return false;
+    enum { WIDTH = 30 };
+    progress_bar *p = user;
+    char bar[WIDTH + 1] = "", rate[64];
+    if (!p->on || strcmp(what, "objects") == 0) /* objects: too fast to see */
+        return 0;
+    const bool first = strcmp(p->what, what) != 0; /* of this step: draw at once, unless it is the render */
+    const double now = clock_now(), gone = now - p->start;
+    snprintf(p->what, sizeof p->what, "%s", what);
+    if (now - p->shown < 0.1 && (p->pixels || !first))
+        return 0;
     p->shown = now;
-    for (int k = 0; k < BAR; k++)
-        bar[k] = k < (int)(share * BAR) ? '#' : '.';
-    bar[BAR] = 0;
-    return true;
-}
-
-int progress_bar_render(void *user, const char *what, double share)
-{
-    progress_bar *p = user;
-    char bar[BAR + 1];
-    (void)what;
-    if (!is_due(p, share, bar))
-        return 0;
-    const double gone = p->shown - p->start;
-    fprintf(stderr, "\r%.24s [%s] %3.0f %%  %.1f Mpixel/s  %.1f s left \033[K", p->name, bar, 100 * share,
-            share * (double)p->pixels / gone / 1e6, gone / share - gone);
-    return 0;
-}
-
-int progress_bar_load(void *user, const char *what, double share)
-{
-    progress_bar *p = user;
-    char bar[BAR + 1];
-    if (strcmp(what, "objects") == 0) /* most take no time that anybody sees */
-        return 0;
-    if (strcmp(p->what, what) != 0) { /* the first of each is seen, and the last of none hides it */
-        snprintf(p->what, sizeof p->what, "%s", what);
-        p->shown = 0;
-    }
-    if (is_due(p, share, bar))
-        fprintf(stderr, "\r%.24s [%s] %3.0f %%  %s \033[K", p->name, bar, 100 * share, what);
+    for (int k = 0; k < WIDTH; k++)
+        bar[k] = k < (int)(share * WIDTH) ? '#' : '.';
+    snprintf(rate, sizeof rate, "%.1f Mpixel/s  %.1f s left", share * (double)p->pixels / gone / 1e6,
+             gone / share - gone);
+    fprintf(stderr, "\r%.24s [%s] %3.0f %%  %s \033[K", p->name, bar, 100 * share, p->pixels ? rate : what);
     return 0;
 }
 

@@ -1,18 +1,13 @@
-/* kage render: the picture of a scene. */
+/* kage render: render a scene, write the pictures, print statistics. */
 #include "cli/command.h"
 
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
-/* Where the pictures go. */
-typedef struct outputs {
-    const char *const *path;
-    int count;
-} outputs;
-
-/* The scene's file name with .png, for the current folder. */
+/* The scene's file name with .png, in the current folder. NULL: out of memory. */
 static char *default_output(const char *path)
 {
     const char *base = base_name(path), *dot = strrchr(base, '.');
@@ -23,11 +18,20 @@ static char *default_output(const char *path)
     return name;
 }
 
-/* Every word of --layers names something that the film has. */
+/* Whether a file that the user did not name may be written: nothing is there, or a picture by kage. */
+static bool output_is_replaceable(const char *path)
+{
+    struct stat about;
+    if (stat(path, &about) != 0 || !S_ISREG(about.st_mode) || kage_file_is_picture(path))
+        return true;
+    return usage_error("%s: kage did not write this file, expected -o with another name, or --overwrite", path);
+}
+
+/* Every word of --layers must name planes of the film. */
 static bool check_layers(const char *layers, const kage_scene *s)
 {
     for (const char *word = layers; word;) {
-        char name[80]; /* longer than any */
+        char name[80]; /* longer than any plane's name */
         const int n = (int)strcspn(word, ",");
         snprintf(name, sizeof name, "%.*s", n, word);
         if (!kage_scene_has_layer(s, name))
@@ -40,23 +44,23 @@ static bool check_layers(const char *layers, const kage_scene *s)
     return true;
 }
 
-static bool has_exr(const outputs *to)
+static bool has_exr(const arguments *a)
 {
-    for (int k = 0; k < to->count; k++)
-        if (has_ending(to->path[k], ".exr"))
+    for (int k = 0; k < a->outputs; k++)
+        if (has_ending(a->output[k], ".exr"))
             return true;
     return false;
 }
 
-/* What the options say together with the scene. */
-static bool check_options(const kage_scene *s, const arguments *a, const outputs *to)
+/* Options that depend on the scene or on each other. */
+static bool check_options(const kage_scene *s, const arguments *a)
 {
     const kage_scene_info *i = kage_scene_get_info(s);
     const int *c = a->crop;
     if (c[2] > i->width || c[3] > i->height)
         return usage_error("--crop %d,%d,%d,%d: the picture is %d x %d pixels", c[0], c[1], c[2], c[3], i->width,
                            i->height);
-    if (a->layers && !has_exr(to))
+    if (a->layers && !has_exr(a))
         return usage_error("--layers %s: only an EXR has layers, expected -o with a name that ends in .exr", a->layers);
     return check_layers(a->layers, s);
 }
@@ -96,7 +100,7 @@ static void print_stats(const kage_stats *t, double output)
         printf("hits of displaced surfaces that Newton's iteration did not confirm: %ld\n", (long)t->unconfirmed);
 }
 
-/* Ctrl-C while files are written takes effect between two of them: each is whole or not there. */
+/* Ctrl-C while files are written takes effect after the current one, so each file is whole or absent. */
 static volatile sig_atomic_t stopped;
 
 static void stop(int signal) { stopped = signal; }
@@ -112,15 +116,15 @@ static void hold_signals(const int held[2], struct sigaction before[2])
     }
 }
 
-static kage_status write_outputs(const arguments *a, const outputs *to, const kage_film *f, kage_errors **e)
+static kage_status write_outputs(const arguments *a, const kage_film *f, kage_errors **e)
 {
     static const int held[2] = {SIGINT, SIGTERM};
     struct sigaction before[2];
     kage_status status = KAGE_OK;
     hold_signals(held, before);
-    for (int k = 0; status == KAGE_OK && !stopped && k < to->count; k++)
-        status = has_ending(to->path[k], ".png") ? kage_film_write_png(f, to->path[k], a->bits, e)
-                                                 : kage_film_write_exr(f, to->path[k], a->layers, a->threads, e);
+    for (int k = 0; status == KAGE_OK && !stopped && k < a->outputs; k++)
+        status = has_ending(a->output[k], ".png") ? kage_film_write_png(f, a->output[k], a->bits, e)
+                                                  : kage_film_write_exr(f, a->output[k], a->layers, a->threads, e);
     for (int k = 0; k < 2; k++)
         sigaction(held[k], &before[k], NULL);
     if (stopped)
@@ -128,13 +132,13 @@ static kage_status write_outputs(const arguments *a, const outputs *to, const ka
     return status;
 }
 
-/* The closing line, on a terminal; and what a user should know. */
-static void print_end(const arguments *a, const outputs *to, const kage_stats *t, const char *name, bool on_terminal)
+/* The closing line, only on a terminal, and a warning. */
+static void print_end(const arguments *a, const kage_stats *t, const char *name, bool on_terminal)
 {
     if (on_terminal) {
         fprintf(stderr, "%s: %.2f s", name, t->seconds);
-        for (int k = 0; k < to->count; k++)
-            fprintf(stderr, "%s %s", k ? "," : ";", to->path[k]);
+        for (int k = 0; k < a->outputs; k++)
+            fprintf(stderr, "%s %s", k ? "," : ";", a->output[k]);
         fprintf(stderr, "\n");
     }
     if (t->unconfirmed && !a->quiet)
@@ -142,7 +146,7 @@ static void print_end(const arguments *a, const outputs *to, const kage_stats *t
                 (long)t->unconfirmed);
 }
 
-static int render_outputs(kage_scene *s, const arguments *a, const outputs *to)
+static int render_outputs(kage_scene *s, const arguments *a)
 {
     const kage_scene_info *i = kage_scene_get_info(s);
     const char *name = base_name(i->path);
@@ -151,23 +155,23 @@ static int render_outputs(kage_scene *s, const arguments *a, const outputs *to)
     kage_errors *e;
     kage_film *f;
     progress_bar p;
-    if (!check_options(s, a, to))
+    if (!check_options(s, a))
         return EXIT_INPUT;
     progress_bar_start(&p, a->quiet, name, cropped ? (long)(c[2] - c[0]) * (c[3] - c[1]) : (long)i->width * i->height);
     const kage_render_options o = {.crop = {c[0], c[1], c[2], c[3]},
-                                   .layers = has_exr(to),
+                                   .layers = has_exr(a),
                                    .timing = a->stats,
                                    .threads = a->threads,
-                                   .progress = p.on ? progress_bar_render : NULL,
+                                   .progress = progress_bar_show,
                                    .user = &p};
     kage_status status = kage_render(s, &o, &f, &e);
     progress_bar_end(&p);
     const double start = clock_now();
     if (status == KAGE_OK)
-        status = write_outputs(a, to, f, &e);
+        status = write_outputs(a, f, &e);
     if (status == KAGE_OK) {
         const kage_stats *t = kage_film_get_stats(f);
-        print_end(a, to, t, name, p.on);
+        print_end(a, t, name, p.on);
         if (a->stats)
             print_stats(t, clock_now() - start);
     }
@@ -175,22 +179,23 @@ static int render_outputs(kage_scene *s, const arguments *a, const outputs *to)
     return status == KAGE_OK ? 0 : print_errors(e, EXIT_OUTPUT);
 }
 
-int command_render(const arguments *a)
+int command_render(const arguments *given)
 {
-    kage_scene *s = load_scene(a);
+    kage_scene *s = load_scene(given);
     if (!s)
         return EXIT_INPUT;
-    char *fallback = a->outputs ? NULL : default_output(kage_scene_get_info(s)->path);
-    const char *one[] = {fallback};
-    const outputs to = {a->outputs ? a->output : one, a->outputs ? a->outputs : 1};
+    char *fallback = given->outputs ? NULL : default_output(kage_scene_get_info(s)->path);
+    arguments a = *given;
     int status = EXIT_OUTPUT;
-    if (!a->outputs && !fallback)
+    if (fallback)
+        a.output[a.outputs++] = fallback;
+    if (!a.outputs)
         usage_error("out of memory");
-    else if (!outputs_spare_inputs(s, to.path, to.count) ||
-             (fallback && !a->overwrite && !output_is_replaceable(fallback)))
+    else if (!outputs_spare_inputs(s, a.output, a.outputs) ||
+             (fallback && !a.overwrite && !output_is_replaceable(fallback)))
         status = EXIT_INPUT;
     else
-        status = render_outputs(s, a, &to);
+        status = render_outputs(s, &a);
     free(fallback);
     kage_scene_free(s);
     return status;

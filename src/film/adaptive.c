@@ -1,4 +1,4 @@
-/* Neighbours are compared as they are displayed, row by row. */
+/* Compares neighbours in sRGB, row by row. */
 #include "film/adaptive.h"
 
 #include <stdlib.h>
@@ -8,7 +8,7 @@
 #include "base/threads.h"
 #include "image/srgb.h"
 
-/* The displayed picture, a plane for each colour. */
+/* The picture in 16-bit sRGB, a plane for each colour. */
 typedef struct display {
     int width, height;
     uint16_t *code[3];
@@ -36,7 +36,7 @@ static void compare(const display *d, int n, int limit, int x, int y, int x2, in
              row(d, 2, y2) + x2, out);
 }
 
-/* A row of `part` against its neighbours; left, right: whether the film goes on there. */
+/* Compare a row of n pixels from (x,y) on with its four neighbours, where these are on the film. */
 static void mark_row(const display *d, int x, int y, int n, int limit, unsigned char *out)
 {
     const int left = x == 0, right = x + n == d->width;

@@ -1,4 +1,4 @@
-/* Where a picture needs more samples: beside a pixel that looks different. */
+/* Finds the pixels that need more samples: those that differ from a neighbour. */
 #ifndef KAGE_FILM_ADAPTIVE_H
 #define KAGE_FILM_ADAPTIVE_H
 
@@ -6,8 +6,8 @@
 
 /* For each pixel of `part`, row by row: 1 where it and a neighbour (left, right, above or below, within the film)
  * differ by more than `threshold`, 0 elsewhere. The difference is the sum over red, green and blue, each 0..1 as
- * displayed (sRGB, 16 bits). free() it. NULL with a message: out of memory. The bytes do not depend on the threads (0:
- * as many as there are processors). */
+ * displayed (sRGB, 16 bits). The caller frees it. NULL with a message: out of memory. threads: 0 for one a
+ * processor; the result does not depend on it. */
 unsigned char *adaptive_find(const film *f, window part, double threshold, int threads, errors *e);
 
 #endif

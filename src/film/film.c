@@ -1,4 +1,4 @@
-/* A film is planes of float, one for each colour and layer. */
+/* A film's memory: a plane of float for each colour and layer. */
 #include "film/film.h"
 
 #include <stdio.h>
@@ -19,8 +19,8 @@ static char *plane_name(const scene *s, int k)
     return name;
 }
 
-/* Rows that begin with a cache line, where the width allows it, as tiles are written by lines; touched here, so that
- * rendering does not wait for the system to hand out each page. */
+/* Aligned to cache lines, in which tiles are written. The memory is touched here, so that rendering does not wait for
+ * page faults. */
 static float *new_plane(size_t bytes)
 {
     void *p;
@@ -55,12 +55,10 @@ film *film_new(const scene *s, window part, bool layers, errors *e)
 void film_copy(film *f, const film *from)
 {
     const window w = f->part;
-    const size_t width = (size_t)(w.x1 - w.x0), stride = (size_t)(from->part.x1 - from->part.x0);
     for (int k = 0; k < f->planes; k++)
         for (int y = w.y0; y < w.y1; y++)
-            memcpy(f->plane[k] + (size_t)(y - w.y0) * width,
-                   from->plane[k] + (size_t)(y - from->part.y0) * stride + (size_t)(w.x0 - from->part.x0),
-                   width * sizeof **f->plane);
+            memcpy(f->plane[k] + film_index(f, w.x0, y), from->plane[k] + film_index(from, w.x0, y),
+                   film_width(f) * sizeof **f->plane);
 }
 
 void film_free(film *f)

@@ -1,4 +1,4 @@
-/* The picture and its layers, in memory. */
+/* The picture and its layers in memory. */
 #ifndef KAGE_FILM_FILM_H
 #define KAGE_FILM_FILM_H
 
@@ -6,24 +6,14 @@
 #include "image/image.h"
 #include "scene/scene.h"
 
-/* Planes of a film. From FILM_LIGHTS on: the visibility of each light, 0..1. */
+/* The planes of a film, by index: R G B, the layers from Z to order, and the visibility, 0..1, of each light. */
 enum film_plane {
     FILM_R,
     FILM_G,
     FILM_B,
-    FILM_PICTURE, /* the planes of the picture alone */
+    FILM_PICTURE, /* the number of planes without layers */
     FILM_Z = FILM_PICTURE,
-    FILM_PX,
-    FILM_PY,
-    FILM_PZ,
-    FILM_NX,
-    FILM_NY,
-    FILM_NZ,
-    FILM_U,
-    FILM_W,
-    FILM_HEIGHT,
-    FILM_TAU,
-    FILM_ORDER,
+    FILM_ORDER = FILM_Z + 11,
     FILM_LIGHTS
 };
 
@@ -33,16 +23,23 @@ typedef struct window {
 } window;
 
 typedef struct film {
-    window part;   /* of the picture that is on the film */
+    window part;   /* the part of the picture that is on the film */
     int planes;    /* FILM_PICTURE, or FILM_LIGHTS + lights */
     float **plane; /* each (y1 - y0) x (x1 - x0), row by row from the top */
-    char **name;   /* of each plane, as OpenEXR's users know them */
+    char **name;   /* of each plane: its channel in an OpenEXR file */
 } film;
 
-/* NULL: out of memory, with a message. */
+/* The number of pixels in a row, and the index of pixel x, y of the picture. */
+static inline size_t film_width(const film *f) { return (size_t)(f->part.x1 - f->part.x0); }
+static inline size_t film_index(const film *f, int x, int y)
+{
+    return (size_t)(y - f->part.y0) * film_width(f) + (size_t)(x - f->part.x0);
+}
+
+/* All values 0. NULL: out of memory, with a message. */
 film *film_new(const scene *s, window part, bool layers, errors *e);
 
-/* The values of `from`, which has the same planes, and all of the part of f. */
+/* Copy f's pixels from a film with the same planes that contains f's part. */
 void film_copy(film *f, const film *from);
 
 void film_free(film *f);

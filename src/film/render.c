@@ -1,4 +1,4 @@
-/* The picture in tiles of 16 x 8 pixels, which the threads take as they come. */
+/* Tiles of 16 x 8 pixels, which the threads take in order, and a second pass for adaptive samples. */
 #include "film/render.h"
 
 #include "base/threads.h"
@@ -30,8 +30,8 @@ static void tile_rays(const scene *s, const tile *b, int aa, int i, int j, works
     camera_rays(&s->camera, b->width * b->height, x, y, &v->x);
 }
 
-/* Put the values of a tile's lanes on a plane, or add them to what is there. With a constant width the rows are a few
- * vectors; most tiles have it. */
+/* Store the values of a tile's lanes in a plane, or add them. Most tiles have the constant width, whose rows are a few
+ * vectors. */
 static inline void lay_rows(float *restrict to, size_t stride, int width, int height, const real *restrict v,
                             float weight, bool add)
 {
@@ -59,9 +59,8 @@ STAGE static void lay_more(float *restrict to, size_t stride, int width, int hei
 
 static void lay(film *f, int plane, const tile *b, const real *v, float weight, bool add)
 {
-    const size_t stride = (size_t)(f->part.x1 - f->part.x0);
-    float *to = f->plane[plane] + (size_t)(b->y0 - f->part.y0) * stride + (size_t)(b->x0 - f->part.x0);
-    (add ? lay_more : lay_first)(to, stride, b->width, b->height, v, weight);
+    float *to = f->plane[plane] + film_index(f, b->x0, b->y0);
+    (add ? lay_more : lay_first)(to, film_width(f), b->width, b->height, v, weight);
 }
 
 static void lay_layers(film *f, const tile *b, const workspace *v)
@@ -69,7 +68,7 @@ static void lay_layers(film *f, const tile *b, const workspace *v)
     const samples *o = &v->out;
     const real *const plane[] = {o->depth,    o->position.x, o->position.y, o->position.z, o->normal.x, o->normal.y,
                                  o->normal.z, o->u,          o->w,          o->height,     o->tau};
-    for (int k = FILM_Z; k <= FILM_TAU; k++)
+    for (int k = FILM_Z; k < FILM_ORDER; k++)
         lay(f, k, b, plane[k - FILM_Z], 1, false);
     real order[LANES];
     for (int i = 0; i < b->width * b->height; i++)
@@ -77,16 +76,13 @@ static void lay_layers(film *f, const tile *b, const workspace *v)
     lay(f, FILM_ORDER, b, order, 1, false);
 }
 
-/* The lines of the picture that a tile will write are far apart and in no cache; ask for them before they are needed.
- */
+/* Prefetch the rows that a tile will write; they are far apart and not in the cache. */
 static void fetch(const film *f, const tile *b)
 {
 #if defined(__GNUC__)
-    const size_t stride = (size_t)(f->part.x1 - f->part.x0);
-    const size_t at = (size_t)(b->y0 - f->part.y0) * stride + (size_t)(b->x0 - f->part.x0);
     for (int p = FILM_R; p <= FILM_B; p++)
         for (int k = 0; k < b->height; k++)
-            __builtin_prefetch(&f->plane[p][at + (size_t)k * stride], 1);
+            __builtin_prefetch(&f->plane[p][film_index(f, b->x0, b->y0 + k)], 1);
 #else
     (void)f, (void)b;
 #endif
@@ -115,19 +111,18 @@ static void render_tile(const tracer *tr, int aa, const tile *b, film *f, worksp
         }
 }
 
-/* The pixels of a tile that are marked. */
+/* The marked pixels of a tile. */
 typedef struct selection {
     int count, x[LANES], y[LANES];
-    size_t place[LANES]; /* on the film */
+    size_t place[LANES]; /* film_index */
 } selection;
 
 static void select_marked(const tile *b, const film *f, const unsigned char *marked, selection *p)
 {
-    const size_t stride = (size_t)(f->part.x1 - f->part.x0);
     p->count = 0;
     for (int y = b->y0; y < b->y0 + b->height; y++)
         for (int x = b->x0; x < b->x0 + b->width; x++) {
-            const size_t at = (size_t)(y - f->part.y0) * stride + (size_t)(x - f->part.x0);
+            const size_t at = film_index(f, x, y);
             p->x[p->count] = x;
             p->y[p->count] = y;
             p->place[p->count] = at;
@@ -135,7 +130,7 @@ static void select_marked(const tile *b, const film *f, const unsigned char *mar
         }
 }
 
-/* Add the wave's samples, which are numbers `first` and so on of all that the pixels have, to these. */
+/* Add a wave's n samples to the pixels; pixel k has samples k * each and so on, the wave begins with sample `first`. */
 static void add_samples(film *f, const selection *p, int each, int first, int n, int plane, const real *v)
 {
     const float weight = 1.0f / (float)each;
@@ -145,8 +140,8 @@ static void add_samples(film *f, const selection *p, int each, int first, int n,
     }
 }
 
-/* The marked pixels anew with aa x aa samples each: side by side in waves, pixel by pixel, so that each sums up its
- * samples in the same order as in render_tile, to the same bytes. */
+/* Render the marked pixels again with aa x aa samples each, which fill waves pixel by pixel. A pixel adds its samples
+ * in the same order as in render_tile, so the result has the same bytes. */
 static void refine_tile(const tracer *tr, int aa, const tile *b, const unsigned char *marked, film *f, workspace *v)
 {
     const scene *s = tr->scene;
@@ -173,12 +168,12 @@ static void refine_tile(const tracer *tr, int aa, const tile *b, const unsigned 
     }
 }
 
-/* A pass over the film: every pixel with aa x aa samples, or the marked ones anew. */
+/* A pass over the film: all pixels with aa x aa samples, or the marked ones again. */
 typedef struct pass {
     int aa;
     const unsigned char *marked; /* NULL: all */
-    long done, all;              /* tiles, of this pass and of those before and after it */
-    bool stop;                   /* the caller wants no more */
+    long done, all;              /* tiles, with those of other passes */
+    bool stop;                   /* the caller has ended the render */
 } pass;
 
 static long tiles(window w)
@@ -186,7 +181,7 @@ static long tiles(window w)
     return (long)((w.x1 - w.x0 + TILE - 1) / TILE) * ((w.y1 - w.y0 + TILE_ROWS - 1) / TILE_ROWS);
 }
 
-/* Only the caller's own thread shows progress, so that a callback needs no lock. */
+/* Only the caller's thread shows progress, so a callback needs no lock. */
 static void show(const render_options *o, pass *p, long done)
 {
     if (is_callers_thread() && !progress_show(o->progress, "rendering", (double)done / (double)p->all)) {
@@ -216,7 +211,7 @@ static bool run(const tracer *tr, const render_options *o, pass *p, film *f, sta
     {
         workspace *v = workspace_new(tr);
         if (v)
-            camera_common(&tr->scene->camera, LANES, &v->x); /* no stage writes there, so once is enough */
+            camera_common(&tr->scene->camera, LANES, &v->x); /* once, as no stage changes it */
         else {
 #pragma omp atomic write
             good = false;
@@ -253,8 +248,8 @@ static bool run(const tracer *tr, const render_options *o, pass *p, film *f, sta
     return !p->stop || errors_add(e, "cancelled");
 }
 
-/* One sample a pixel, then more where neighbours differ. Those of the pixels at a crop's edge are beyond it, so the
- * first pass goes a pixel farther: what is in a picture does not depend on the crop. */
+/* One sample a pixel, then more where neighbours differ. The first pass is one pixel wider than a crop, so that pixels
+ * at its edge have their neighbours and do not depend on the crop. */
 static bool render_adaptive(const tracer *tr, const render_options *o, film *f, stats *sum, errors *e)
 {
     const window part = f->part,

@@ -1,8 +1,8 @@
-/* Models from files, by assimp, which this file alone knows.
+/* Reads models by assimp.
  *
- * Of a model its triangles are taken, all of its nodes where their matrices put them; polygons are divided; materials,
- * textures, bones, cameras and lights are not. Files are right-handed, as these formats say: z changes its sign, and
- * with it the order of corners. Texture coordinates have their v upward, also glTF's as assimp gives them: w = 1 - v.
+ * All triangles are taken, with the matrices of their nodes; polygons are divided into triangles. Materials, textures,
+ * bones, cameras and lights are ignored. The formats are right-handed, so z changes its sign and corners their order.
+ * Texture coordinates have v upward (assimp turns glTF's, too): w = 1 - v.
  */
 #include "import/import.h"
 
@@ -22,25 +22,25 @@
 
 typedef struct reading {
     const char *path;
-    bool buffers; /* glTF: other files may be opened, too */
-    size_t size, done;
-    double told; /* the share that was told last */
+    bool buffers;      /* glTF: other files may be opened, too */
+    size_t size, done; /* bytes of the model */
+    double shown;      /* the last share that was reported */
     const import_listener *to;
 } reading;
 
-/* A file with the way to whom its reading is told. */
+/* An open file. assimp passes `base` to the functions below. */
 typedef struct source {
     struct aiFile base;
     FILE *file;
     reading *of;
 } source;
 
-static void tell_share(reading *k)
+static void report_share(reading *k)
 {
     const double share = k->done < k->size ? (double)k->done / (double)k->size : 1;
-    if (share < k->told + 0.01 && share < 1)
+    if (share < k->shown + 0.01 && share < 1)
         return;
-    k->told = share;
+    k->shown = share;
     k->to->read(k->to->user, share);
 }
 
@@ -53,7 +53,7 @@ static size_t read_some(struct aiFile *base, char *to, size_t size, size_t count
         n = fread(to + got, 1, all - got < PIECE ? all - got : PIECE, s->file);
         got += n;
         s->of->done += n;
-        tell_share(s->of);
+        report_share(s->of);
     }
     return size ? got / size : 0;
 }
@@ -85,8 +85,8 @@ static enum aiReturn seek(struct aiFile *base, size_t offset, enum aiOrigin orig
 
 static void flush(struct aiFile *base) { (void)base; }
 
-/* A regular file; it is told. */
-static bool is_good(FILE *f, const import_listener *to)
+/* Whether f is a regular file. If so, report it. */
+static bool report_file(FILE *f, const import_listener *to)
 {
     struct stat about;
     if (fstat(fileno(f), &about) != 0 || !S_ISREG(about.st_mode))
@@ -99,7 +99,7 @@ static struct aiFile *open_one(struct aiFileIO *io, const char *path, const char
 {
     reading *of = (reading *)(void *)io->UserData;
     FILE *f = mode[0] == 'r' && (of->buffers || strcmp(path, of->path) == 0) ? fopen(path, "rb") : NULL;
-    source *s = f && is_good(f, of->to) ? malloc(sizeof *s) : NULL;
+    source *s = f && report_file(f, of->to) ? malloc(sizeof *s) : NULL;
     if (!s) {
         if (f)
             fclose(f);
@@ -129,7 +129,7 @@ static void close_one(struct aiFileIO *io, struct aiFile *base)
 
 typedef struct harvest {
     const struct aiScene *s;
-    mesh_data *to; /* NULL: they are counted only */
+    mesh_data *to; /* NULL: only count */
     int64_t n;
 } harvest;
 
@@ -139,8 +139,8 @@ static double place(const struct aiMatrix4x4 *m, int row, const struct aiVector3
     return (double)r[0] * (double)v->x + (double)r[1] * (double)v->y + (double)r[2] * (double)v->z + (double)r[3] * one;
 }
 
-/* Normals go by the matrix of cofactors, which is the inverse's transpose times the determinant; so where that is below
- * 0 they are turned back, as the triangles are. Returns the determinant. */
+/* The matrix for normals: cofactors, which are the inverse's transpose times the determinant, with their sign changed
+ * where the determinant is below 0. Returns the determinant. */
 static double cofactors(const struct aiMatrix4x4 *m, struct aiMatrix4x4 *to)
 {
     const float *r = &m->a1;
@@ -181,7 +181,7 @@ static void take_mesh(harvest *h, const struct aiMesh *from, const struct aiMatr
             continue; /* points and lines; assimp's validation has refused the rest */
         if (h->to)
             for (int i = 0; i < 3;
-                 i++) { /* the change of handedness turns the corners' order, a matrix that mirrors turns it back */
+                 i++) { /* left-handed reverses the corners; a matrix that mirrors reverses them back */
                 const int c = mirrors || i == 0 ? i : 3 - i;
                 take_corner(from, f->mIndices[i], m, &normals, h->to->at[h->n][c], h->to->skin[h->n].normal[c],
                             h->to->skin[h->n].uv[c]);
@@ -190,16 +190,10 @@ static void take_mesh(harvest *h, const struct aiMesh *from, const struct aiMatr
     }
 }
 
-static struct aiMatrix4x4 product(const struct aiMatrix4x4 *a, const struct aiMatrix4x4 *b)
-{
-    struct aiMatrix4x4 m = *a;
-    aiMultiplyMatrix4(&m, b);
-    return m;
-}
-
 static void take_node(harvest *h, const struct aiNode *node, const struct aiMatrix4x4 *above)
 {
-    const struct aiMatrix4x4 m = product(above, &node->mTransformation);
+    struct aiMatrix4x4 m = *above;
+    aiMultiplyMatrix4(&m, &node->mTransformation);
     for (unsigned k = 0; k < node->mNumMeshes && h->n <= MESH_MOST; k++)
         if (node->mMeshes[k] < h->s->mNumMeshes)
             take_mesh(h, h->s->mMeshes[node->mMeshes[k]], &m);
@@ -238,7 +232,7 @@ static bool harvest_scene(const struct aiScene *s, mesh_data *out, char why[MESH
     return true;
 }
 
-/* An STL's normals are its triangles' own: they say nothing of what is smooth. */
+/* An STL has only the triangles' own normals, which would make smooth surfaces flat. */
 static void forget_normals(mesh_data *d)
 {
     for (int k = 0; k < d->n; k++)

@@ -1,6 +1,6 @@
-/* kage-import FILE: reads a model for libkage in a process of its own, and writes letters (mesh/letter.h) to the file
- * descriptor 3. Whatever a broken file does to the importer, crash, loop for ever or take all memory, ends here. Exit
- * status 0 where a last letter has been written, 2 without a file or a reader.
+/* kage-import FILE: reads a model for libkage in a process of its own, so that a broken file that crashes assimp or
+ * takes too much time or memory does no harm. Writes messages (mesh/letter.h) to file descriptor 3. Exit status 0 after
+ * the last message, 2 without a file or a reader.
  */
 #include "import/import.h"
 #include "mesh/letter.h"
@@ -12,8 +12,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* Of memory: what the importer needs for any file, and times a file's size: a triangle in a text file is some 30 bytes,
- * and some 1500 on its way through assimp. */
+/* The limit of memory: ROOM_MIB, plus TIMES the file's size. A triangle takes some 30 bytes in a text file, and some
+ * 1500 in assimp. */
 enum { ROOM_MIB = 512, TIMES = 96 };
 
 static void send(const void *from, size_t size)
@@ -50,7 +50,7 @@ static void limit(int what, rlim_t most)
     }
 }
 
-/* No more time or memory than a whole file needs. */
+/* Limit time and memory to what a valid file of this size needs. */
 static void confine(size_t size)
 {
     limit(RLIMIT_CORE, 0);

@@ -1,5 +1,4 @@
-/* Light on its way to a group, as POV-Ray 3.7 has it: the segments of shadow rays, and how spots and distance dim it.
- */
+/* Shadow rays to each kind of light, and POV-Ray 3.7's spot falloff and fading. */
 #include "light/lighting.h"
 
 #include "math/kmath.h"
@@ -17,8 +16,7 @@ STAGE static void aim_at_place(hit_group *restrict g, const light *l, const real
     }
 }
 
-/* Up to the light's plane. Beyond it there is light and no shadow, as in POV-Ray: the segment is too SHORT to meet
- * anything there, and still has its direction. */
+/* To the light's plane. Behind the plane there is light without shadows, as in POV-Ray: there the ray is only SHORT. */
 STAGE static void aim_along(hit_group *restrict g, const light *l, const real *restrict t)
 {
     const real lx = (real)l->at.x, ly = (real)l->at.y, lz = (real)l->at.z;
@@ -57,7 +55,7 @@ STAGE static void add_tint(const hit_group *restrict g, real share, vec3s *restr
 
 void lighting_add_tint(const hit_group *g, real share, vec3s *sum) { add_tint(g, share, sum); }
 
-/* How far p1 is from the light, or from its plane, and the cosine between the way there and its axis. */
+/* The distance of p1 from the light, or from its plane, and the cosine of the angle to its axis. */
 STAGE static void place(const hit_group *restrict g, const light *l, double *restrict distance, double *restrict cosine)
 {
     const real lx = (real)l->at.x, ly = (real)l->at.y, lz = (real)l->at.z;
@@ -71,7 +69,7 @@ STAGE static void place(const hit_group *restrict g, const light *l, double *res
     }
 }
 
-/* cos^tightness, and a cubic from `falloff` (0) to `radius` (1). */
+/* cos^tightness, times a cubic that rises from 0 at `falloff` to 1 at `radius`. */
 STAGE static void spot(int n, double outer, double inner, double tightness, const double *restrict cosine,
                        double *restrict share)
 {

@@ -1,19 +1,20 @@
-/* Stages: where a group's shadow rays go, and how much of a light's colour arrives. */
+/* Stages: a group's shadow rays, sums over the samples of area lights, and attenuation. */
 #ifndef KAGE_LIGHT_LIGHTING_H
 #define KAGE_LIGHT_LIGHTING_H
 
 #include "scene/light.h"
 #include "wave/hit_group.h"
 
-/* g->to_light = the segments r + s t', 0 < t' < 1, from the lanes' places at t on their rays to the light. t is g->t or
- * g->t0. */
+/* g->to_light = shadow rays r + s t', 0 < t' < 1, from the point at t on each lane's ray to the light. t is g->t or
+ * g->t0.
+ */
 void lighting_aim(const light *l, const real *t, hit_group *g);
 
-/* sum += what of one sample of an area is lit, by its share; or of its tint. */
+/* sum += share * g->lit, for one sample of an area light; with tint: share * g->lit * g->tint. */
 void lighting_add(const hit_group *g, real share, real *sum);
 void lighting_add_tint(const hit_group *g, real share, vec3s *sum);
 
-/* Scale g->lit by spot falloff and fading at p1. */
+/* Scale g->lit by spot falloff and distance fading at p1 = r + s t_hit. */
 void lighting_fade(const light *l, hit_group *g);
 
 #endif

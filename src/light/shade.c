@@ -1,4 +1,5 @@
-/* POV-Ray's finish by n'. A loop for each kind of light and highlight, so that each is vectorised. */
+/* POV-Ray's diffuse light and highlights with n'. One loop for each kind of light and highlight, so that each is
+ * vectorised. */
 #include "light/shade.h"
 
 #include "math/kmath.h"
@@ -23,8 +24,8 @@ void shade_ambient(hit_group *g, const material *m)
     vec3s_fill(&g->rgb, g->n, (real)(share * m->color.x), (real)(share * m->color.y), (real)(share * m->color.z));
 }
 
-/* The way from p to a light: at - near p. A parallel light has it without p. Constant in each stage, so that it costs
- * nothing. */
+/* The direction from p to a light: at - near p. near is 0 for a parallel light. Constant in each stage, so it is free.
+ */
 typedef struct way {
     bs_vec3 at;
     real near;
@@ -42,14 +43,14 @@ static inline way way_against(const light *l)
     return x;
 }
 
-/* The place of a light against a lane: L, the unit vector to it, and n' on the viewer's side. Returns g->lit, or 0
- * where the smooth surface lies between the light and the viewer. */
+/* L, the unit vector to the light, and n' on the viewer's side. Returns g->lit, or 0 where the light is behind the
+ * smooth surface. */
 static inline real facing(const hit_group *g, int i, way to, bs_vec3 *L, bs_vec3 *n)
 {
     bs_vec3 p = lane_at(&g->x, i, g->t[i]);
     bs_vec3 d = {to.at.x - to.near * p.x, to.at.y - to.near * p.y, to.at.z - to.near * p.z};
     bs_vec3 smooth = lane_get(&g->n_smooth, i), bumped = lane_get(&g->n_bump, i);
-    real lit = g->lit[i]; /* read in any case: a reading that depends is a branch */
+    real lit = g->lit[i]; /* always read: a conditional read would be a branch */
     real side = bs_dot(smooth, lane_get(&g->x.s, i)) < 0 ? R(1) : R(-1);
     *L = lane_unit(d);
     n->x = side * bumped.x;
@@ -58,8 +59,8 @@ static inline real facing(const hit_group *g, int i, way to, bs_vec3 *L, bs_vec3
     return side * bs_dot(smooth, d) > 0 ? lit : 0;
 }
 
-/* Call it with constants: a choice in the loop would keep it from being vectorised. `own`: times a colour for each
- * lane, which with a pattern is all, as the material's own is 1 then. */
+/* Call it with constants, as a choice in the loop would stop vectorisation. own: times the colour of each lane (with a
+ * pattern the material's colour is 1). */
 static inline void diffuse(hit_group *restrict g, const material *m, const light *l, const way to, bool own,
                            const vec3s *color)
 {
@@ -117,7 +118,7 @@ static void shade_diffuse(hit_group *g, const material *m, const light *l, bool 
         (along ? diffuse_against : diffuse_to)(g, m, l);
 }
 
-/* Phong's highlight: the mirrored view against the light. */
+/* Phong's highlight: the cosine between the mirrored view and L. */
 static inline void phong(const hit_group *restrict g, const way to, double *restrict c, real *restrict lit)
 {
     for (int i = 0; i < g->n; i++) {
@@ -133,9 +134,9 @@ STAGE static void phong_against(const hit_group *g, const light *l, double *c, r
     phong(g, way_against(l), c, lit);
 }
 
-/* Blinn's: the half-way vector between light and viewer, h = L - s, against the normal. |h|^2 = 2 - 2 s.L and
- * n.h = n.L - n.s have no digits left where L is near s: the light is behind the surface. There they come from h
- * itself, so that c is a cosine, no more than 1, and its power stays finite. */
+/* Blinn's highlight: the cosine between n' and the half-way vector h = L - s. Where L is near s (light behind the
+ * surface), |h|^2 = 2 - 2 s.L and n.h = n.L - n.s cancel; there they are computed from h, so that c is at most 1 and
+ * its power is finite. */
 static inline void blinn(const hit_group *restrict g, const way to, double *restrict c, real *restrict lit)
 {
     for (int i = 0; i < g->n; i++) {
@@ -157,7 +158,7 @@ STAGE static void blinn_against(const hit_group *g, const light *l, double *c, r
     blinn(g, way_against(l), c, lit);
 }
 
-/* c to a power, in a loop of its own: mixed with float it would not be vectorised. log 0 is -inf, and its exp 0. */
+/* c^power, in a loop of its own: mixed with float it would not be vectorised. log 0 is -inf, whose exp is 0. */
 STAGE static void raise(int n, double *c, double power)
 {
     for (int i = 0; i < n; i++)

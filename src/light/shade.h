@@ -1,18 +1,15 @@
-/* Stages: light on a group, as POV-Ray's finish has it. */
+/* Stages: the light that a group reflects to the eye, by POV-Ray's finish. */
 #ifndef KAGE_LIGHT_SHADE_H
 #define KAGE_LIGHT_SHADE_H
 
 #include "wave/hit_group.h"
 #include "scene/scene.h"
 
-/* Both take the material's colour where it is constant, otherwise g->color.
- *
- * g->rgb = ambient light. */
+/* g->rgb = ambient light. The colour is the material's or, with a pattern, g->color; so too in shade_light. */
 void shade_ambient(hit_group *g, const material *m);
 
-/* g->rgb += what this light sends from p1 = r + s t_hit to the eye, with n', where g->lit. A light on the far side of
- * the smooth surface gives nothing, whichever way n' leans. tinted: g->tint of it alone. Highlights keep their strength
- * on transparent materials, ambient and diffuse light their share of opacity. */
+/* g->rgb += diffuse light and highlights of light l at p1 = r + s t_hit with n', times g->lit and, if tinted, g->tint.
+ * A light behind the smooth surface gives nothing. Opacity scales ambient and diffuse light, not highlights. */
 void shade_light(hit_group *g, const material *m, const light *l, bool tinted);
 
 #endif

@@ -1,4 +1,4 @@
-/* The methods' names, as users write them, and what they need. */
+/* The methods by name, and the derivatives they need. */
 #include "method/method.h"
 
 #include <stdio.h>
@@ -19,6 +19,9 @@ const method_help method_helps[] = {
 };
 const int method_help_count = sizeof method_helps / sizeof *method_helps;
 
+static const char *const names[ORDER_CODES] = {"none", "0", "1", "2", "2+", "iter", "march", "exact"}; /* by code + 1 */
+
+/* Read a prefix and a number of steps. */
 static bool steps(const char *text, const char *prefix, int *n)
 {
     size_t k = strlen(prefix);
@@ -32,13 +35,12 @@ static bool steps(const char *text, const char *prefix, int *n)
 
 bool method_parse(const char *text, method *m)
 {
-    static const char *const orders[] = {"0", "1", "2", "2+"};
     if (strcmp(text, "none") == 0 || strcmp(text, "exact") == 0) {
         *m = (method){*text == 'n' ? METHOD_NONE : METHOD_EXACT, 0};
         return true;
     }
     for (int k = 0; k < 4; k++)
-        if (strcmp(text, orders[k]) == 0) {
+        if (strcmp(text, names[k + 1]) == 0) {
             *m = (method){METHOD_ORDER, k};
             return true;
         }
@@ -54,23 +56,9 @@ bool method_parse(const char *text, method *m)
 
 void method_name(method m, char name[METHOD_NAME_SIZE])
 {
-    switch (m.kind) {
-    case METHOD_NONE:
-        snprintf(name, METHOD_NAME_SIZE, "none");
-        break;
-    case METHOD_ORDER:
-        snprintf(name, METHOD_NAME_SIZE, "%s", m.n == 3 ? "2+" : m.n == 2 ? "2" : m.n == 1 ? "1" : "0");
-        break;
-    case METHOD_ITER:
-        snprintf(name, METHOD_NAME_SIZE, "iter:%d", m.n);
-        break;
-    case METHOD_MARCH:
-        snprintf(name, METHOD_NAME_SIZE, "march:%d", m.n);
-        break;
-    case METHOD_EXACT:
-        snprintf(name, METHOD_NAME_SIZE, "exact");
-        break;
-    }
+    const bool steps = m.kind == METHOD_ITER || m.kind == METHOD_MARCH;
+    const char *code = method_code_name(method_code(m));
+    snprintf(name, METHOD_NAME_SIZE, steps ? "%s:%d" : "%s", code, m.n);
 }
 
 int method_order(method m) { return m.kind == METHOD_ORDER && m.n >= 2 ? 2 : 1; }
@@ -83,8 +71,4 @@ int method_code(method m)
     return m.kind == METHOD_ORDER ? m.n : codes[m.kind];
 }
 
-const char *method_code_name(int code)
-{
-    static const char *const names[ORDER_CODES] = {"none", "0", "1", "2", "2+", "iter", "march", "exact"};
-    return names[code + 1];
-}
+const char *method_code_name(int code) { return names[code + 1]; }

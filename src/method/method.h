@@ -1,4 +1,4 @@
-/* The methods: where shadow rays start on a bump-mapped surface. The formulas are bumpshadow.h's. */
+/* The methods that decide where shadow rays start on a bump-mapped surface. include/bumpshadow.h has the formulas. */
 #ifndef KAGE_METHOD_METHOD_H
 #define KAGE_METHOD_METHOD_H
 
@@ -6,9 +6,9 @@
 
 typedef enum method_kind {
     METHOD_NONE,  /* at the smooth hit, as every renderer does */
-    METHOD_ORDER, /* n = 0, 1, 2: the paper's; 3: 2+ */
-    METHOD_ITER,  /* n times order 0 */
-    METHOD_MARCH, /* n steps through the slab */
+    METHOD_ORDER, /* n = 0, 1, 2: the paper's orders; 3: 2+ */
+    METHOD_ITER,  /* order 0, n times */
+    METHOD_MARCH, /* n steps through the slab between Pmin and Pmax */
     METHOD_EXACT, /* at the first hit of the displaced surface (displaced.h) */
 } method_kind;
 
@@ -19,31 +19,31 @@ typedef struct method {
 
 enum { METHOD_STEPS_MAX = 1024, METHOD_NAME_SIZE = 16 };
 
-/* Read a method's name: none 0 1 2 2+ iter:K march:N exact, with K and N in 1..METHOD_STEPS_MAX. False where text is
- * none. */
+/* Read a method's name: none 0 1 2 2+ iter:K march:N exact, with K and N in 1..METHOD_STEPS_MAX. False: not a method.
+ */
 bool method_parse(const char *text, method *m);
 
 /* Write its name. */
 void method_name(method m, char name[METHOD_NAME_SIZE]);
 
-/* The derivatives of P that it needs: 1 the gradient (for n', always), 2 also the second ones. */
+/* The derivatives of P it needs: 1 the gradient (always, for n'), 2 also the second ones. */
 int method_order(method m);
 
-/* Whether it uses the smooth surface's curvature, so Quu, Quw and Qww. */
+/* Whether it needs the smooth surface's curvature: Quu, Quw and Qww. */
 bool method_bends(method m);
 
-/* How its order is written in the layer `order` and counted in the statistics, if it does not fall back:
- * METHOD_NONE -1; 0, 1, 2; 2+ 3; iter 4; march 5; exact 6. */
+/* Its number in the layer `order` and in the statistics, if it does not fall back: none -1; 0, 1, 2; 2+ 3; iter 4;
+ * march 5; exact 6. */
 int method_code(method m);
 enum { ORDER_EXACT = 6, ORDER_CODES = 8 /* from none on */ };
 
-/* The name of what a code stands for. */
+/* The name for such a number, -1..6: without K or N. */
 const char *method_code_name(int code);
 
-/* What may be written for a method, for messages. */
+/* The names of all methods, for messages. */
 extern const char method_expected[];
 
-/* One line of help a method. */
+/* One line of help for each method. */
 typedef struct method_help {
     const char *name, *text;
 } method_help;

@@ -1,4 +1,4 @@
-/* The method's stages. The formulas are in bumpshadow.h; here they meet the waves. */
+/* The formulas of bumpshadow.h in loops over the lanes of a group. */
 #include "method/shift.h"
 
 #include "wave/lane.h"
@@ -45,8 +45,8 @@ static inline real curvature(const hit_group *g, int i, bs_view v)
                         lane_get(&g->q.Qww, i));
 }
 
-/* Where the surface has no two directions the shift is 0, by order none. After the loops of the methods, not in them:
- * there the choice would become a branch, and keep them from being vectorised. */
+/* Order none where the surface is not regular. In a loop of its own: in the methods' loops the choice would become a
+ * branch and stop vectorisation. */
 STAGE static void drop_irregular(hit_group *restrict g)
 {
     for (int i = 0; i < g->n; i++) {
@@ -58,7 +58,7 @@ STAGE static void drop_irregular(hit_group *restrict g)
     }
 }
 
-/* One lane by an order that is constant in each of the loops below; so no derivative is loaded that it does not use. */
+/* One lane. `order` is constant in each loop below, so derivatives that it does not use are not loaded. */
 static inline void by_order(hit_group *g, int i, int order, int guard, real Pmin, real Pmax)
 {
     bs_view v = view(g, i);
@@ -94,7 +94,7 @@ static by_order_stage *const by_orders[2][4] = {
     {order_0, order_1, order_2, order_2_plus},
 };
 
-/* For the methods that evaluate P again along the ray: its way past the surface, and the places where it is now. */
+/* For methods that evaluate P along the ray: bs_view of each lane, the current tau, and P there. */
 typedef struct ray_walk {
     real sn[LANES], a[LANES], b[LANES], curvature[LANES];
     real tau[LANES], u[LANES], w[LANES];

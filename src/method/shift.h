@@ -1,4 +1,4 @@
-/* Stage: how far the origin of the shadow rays is shifted along the viewing ray, by every method. */
+/* Stages: the normals n and n', and tau, the shift of the shadow rays' origin along the viewing ray. */
 #ifndef KAGE_METHOD_SHIFT_H
 #define KAGE_METHOD_SHIFT_H
 
@@ -6,17 +6,17 @@
 #include "method/method.h"
 #include "texture/bump.h"
 
-/* n and n' of a group from the partials of Q, and of P where `bump` is not NULL: g->n_smooth, g->n_bump. */
+/* g->n_smooth and g->n_bump, from the partials of Q and, unless `bump` is NULL, of P. */
 void shift_normals(hit_group *g, const bump *bump);
 
-/* g->tau and g->order, from all that is in g before them. Where the surface has no two directions (bs_regular) the
- * order is none. Returns the number of heights that were looked up on the way. */
+/* g->tau and g->order. Order none where the surface is not regular (bs_regular). guard: fall back where tau is outside
+ * the slab. Returns how often P was evaluated. */
 long shift_group(hit_group *g, const bump *bump, method m, bool guard);
 
-/* A secondary ray starts amid the scene; the shifted place is not before its start: tau >= -t. */
+/* For secondary rays: tau >= -t, so that the shifted place is not before the ray's start. */
 void shift_within(hit_group *g);
 
-/* g->t0 = t_hit + tau, when tau is final. */
+/* g->t0 = t_hit + tau. */
 void shift_origins(hit_group *g);
 
 #endif

@@ -1,5 +1,5 @@
-/* The nearest hits: each object in turn shortens the rays. In a scene of many objects each is tried with those rays
- * alone that pass its box. */
+/* Tests every object; each nearer hit shortens its ray. In scenes with many objects, each object gets only the rays
+ * that the hierarchy found near it. */
 #include "render/intersect.h"
 
 #include "wave/gather.h"

@@ -1,15 +1,15 @@
-/* Stage: where a wave's rays meet the objects first. */
+/* Stage: the nearest hits of a wave. */
 #ifndef KAGE_RENDER_INTERSECT_H
 #define KAGE_RENDER_INTERSECT_H
 
 #include "render/workspace.h"
 #include "scene/object_bvh.h"
 
-/* The nearest hits of the rays v->x of n lanes, in v->nearest. A ray that meets again the object that it has left began
- * at its unshifted place there: its origin in v->x becomes that. */
+/* The nearest hits of the n rays v->x, in v->nearest. A secondary ray that hits the object it started on gets its
+ * unshifted start in v->x. */
 void intersect_nearest(const scene *s, int n, workspace *v);
 
-/* Nearer hits with one object, into h. from: where the rays have left surfaces; NULL: they come from the camera. */
+/* Update h with nearer hits of object `id`. from: where secondary rays start; NULL: camera rays. */
 static inline void intersect_surface(const surface *f, int n, const rays *x, const ray_origins *from, int32_t id,
                                      hits *h)
 {
@@ -19,7 +19,7 @@ static inline void intersect_surface(const surface *f, int n, const rays *x, con
         f->ops->hit(f, n, x, id, h);
 }
 
-/* The next object after `after` (-1: the first) that some ray may meet; -1: there is none. m: NULL: all may be met. */
+/* The next object after `after` (-1: the first) that some ray may hit; -1: none. m NULL: all objects. */
 static inline int32_t intersect_next(const scene *s, const candidates *m, int32_t after)
 {
     return m ? candidates_next(m, after) : after + 1 < s->objects ? after + 1 : -1;

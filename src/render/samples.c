@@ -1,4 +1,4 @@
-/* Stages that carry what groups have found out back to the wave. */
+/* Copies a group's results to its lanes of the wave. */
 #include "render/samples.h"
 
 #include "wave/gather.h"

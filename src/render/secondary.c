@@ -1,4 +1,4 @@
-/* Directions, media and weights of the rays that go on from a group, as POV-Ray has them. */
+/* Directions, media and weights of a group's secondary rays, as in POV-Ray. */
 #include "render/secondary.h"
 
 #include <string.h>
@@ -10,12 +10,13 @@ void secondary_begin(workspace *v) { v->reflected.n = v->refracted.n = v->straig
 
 /* ---- directions ---- */
 
-/* Where a group's rays go on to, and with which share of the light there. */
+/* The directions and weights of a group's secondary rays. */
 typedef struct ways {
-    vec3s mirrored, bent; /* with the length of s; unit */
-    real ratio[LANES];    /* of the iors before and behind the surface; 1: straight on */
-    int32_t total[LANES]; /* nothing gets through: all is mirrored */
-    vec3s through;
+    vec3s mirrored;       /* as long as s */
+    vec3s bent;           /* refracted, unit */
+    real ratio[LANES];    /* of the iors before and behind the surface; 1: no refraction */
+    int32_t total[LANES]; /* total reflection */
+    vec3s through;        /* the weight of refracted rays */
 } ways;
 
 /* d reflected at the plane across n. */
@@ -26,8 +27,8 @@ static inline bs_vec3 reflected(bs_vec3 d, bs_vec3 n)
     return x;
 }
 
-/* s mirrored at n'. What goes below the smooth surface then is reflected at it; where n' itself is turned away from
- * the viewer, s is mirrored at the smooth surface. Both as in POV-Ray. */
+/* s mirrored at n'. A direction below the smooth surface is reflected at that; where n' faces away from the viewer, s
+ * is mirrored at the smooth normal. Both as in POV-Ray. */
 static inline bs_vec3 mirrored(bs_vec3 s, bs_vec3 smooth, bs_vec3 bumped)
 {
     bs_vec3 d = reflected(s, bumped), again, plain = reflected(s, smooth);
@@ -48,8 +49,9 @@ STAGE static void mirror(const hit_group *restrict g, ways *restrict y)
         lane_set(&y->mirrored, i, mirrored(lane_get(&g->x.s, i), lane_get(&g->n_smooth, i), lane_get(&g->n_bump, i)));
 }
 
-/* Snell's law with n' on the viewer's side, whichever that is. What stays on the viewer's side of the smooth surface is
- * reflected. */
+/* Snell's law with n' on the viewer's side. A direction that stays on that side of the smooth surface is reflected at
+ * it.
+ */
 STAGE static void bend(const hit_group *restrict g, ways *restrict y)
 {
     for (int i = 0; i < g->n; i++) {
@@ -67,42 +69,44 @@ STAGE static void bend(const hit_group *restrict g, ways *restrict y)
     }
 }
 
-/* ---- what a ray is in ---- */
+/* ---- the media that a ray is in ---- */
 
-/* Lane i goes through the surface of object `id`, into it or out of it. Returns the ratio of the iors before and
- * behind. Where things overlap, without the one being in the other, they have the ior of what was entered last, as in
- * POV-Ray. */
+/* The place of object `id` in lane i's list, or -1. */
+static int find(const media *m, int i, int id)
+{
+    int at = m->n[i] - 1;
+    while (at >= 0 && m->id[at][i] != id)
+        at--;
+    return at;
+}
+
+static double ior_of(const scene *sc, int id) { return sc->material[sc->object[id].material].ior; }
+
+/* The ior of the innermost medium of lane i. */
+static double ior_in(const scene *sc, const media *m, int i) { return m->n[i] ? ior_of(sc, m->id[m->n[i] - 1][i]) : 1; }
+
+/* Lane i enters object `id`, or leaves it (out). Returns the ratio of the iors before and behind. Where objects
+ * overlap, the ior is that of the one entered last, as in POV-Ray. */
 static double cross(const scene *sc, int id, bool out, media *in, int i)
 {
-    const double own = sc->material[sc->object[id].material].ior;
-    int n = in->n[i], at = n - 1;
+    const double own = ior_of(sc, id), around = ior_in(sc, in, i);
     if (!shape_has_inside(&sc->object[id].shape_spec))
         return 1;
     if (!out) {
-        const double around = n ? sc->material[sc->object[in->id[n - 1][i]].material].ior : 1;
-        if (n < MEDIA)
+        if (in->n[i] < MEDIA)
             in->id[in->n[i]++][i] = id;
         return around / own;
     }
-    while (at >= 0 && in->id[at][i] != id)
-        at--;
-    const bool innermost = at == n - 1;
+    int at = find(in, i, id);
     if (at >= 0) {
-        for (n--; at < n; at++)
-            in->id[at][i] = in->id[at + 1][i];
-        in->n[i] = n;
-        if (!innermost)
+        const int last = --in->n[i];
+        if (at < last) {
+            for (; at < last; at++)
+                in->id[at][i] = in->id[at + 1][i];
             return 1;
+        }
     }
-    return own / (n ? sc->material[sc->object[in->id[n - 1][i]].material].ior : 1);
-}
-
-static bool is_in(const media *m, int i, int id)
-{
-    bool in = false;
-    for (int k = 0; k < m->n[i]; k++)
-        in |= m->id[k][i] == id;
-    return in;
+    return own / ior_in(sc, in, i);
 }
 
 static void copy_media(const media *from, int j, media *to, int i)
@@ -122,8 +126,8 @@ static bs_vec3 weight_of(vec3 w)
 
 static bool is_zero(bs_vec3 w) { return !(w.x > 0 || w.y > 0 || w.z > 0); }
 
-/* Lane i of the group goes on in direction s. For other things it starts at r + s t0, the shifted place; for its own
- * smooth surface, where it has met that. */
+/* Queue a ray from lane i in direction s, in the media of lane j of `in`. Other objects see it start at r + s t0, the
+ * shifted place; its own surface at the smooth hit. */
 static void send(const hit_group *g, int i, int id, real t0, bs_vec3 s, bs_vec3 weight, const media *in, int j,
                  ray_queue *b)
 {
@@ -156,9 +160,9 @@ static void send_clear(const scene *sc, int32_t id, workspace *v, ways *y)
     media in;
     for (int i = 0; i < g->n; i++) {
         copy_media(before, hit_group_place(g, i), &in, i);
-        /* what has been entered is left, as in POV-Ray, also through a gap between displaced parts; the eye may be in
-         * what it has not entered */
-        bool out = is_in(&in, i, id) || bs_dot(lane_get(&g->x.s, i), lane_get(&g->n_smooth, i)) > 0;
+        /* an object that was entered is left, as in POV-Ray, also at a gap between displaced parts; an object that
+         * contains the camera is left without having been entered */
+        bool out = find(&in, i, id) >= 0 || bs_dot(lane_get(&g->x.s, i), lane_get(&g->n_smooth, i)) > 0;
         y->ratio[i] = (real)cross(sc, id, out, &in, i);
     }
     bend(g, y);
@@ -174,7 +178,7 @@ static void send_clear(const scene *sc, int32_t id, workspace *v, ways *y)
             send(g, i, id, g->t0[i], lane_get(&y->mirrored, i), one, before, hit_group_place(g, i), &v->refracted);
         else if (is_zero(through))
             ;
-        else if (y->ratio[i] == 1) /* the same ray: what is before the surface it has passed already */
+        else if (y->ratio[i] == 1) /* the same ray: from the smooth hit, as all before that was tested */
             send(g, i, id, g->t[i], lane_get(&g->x.s, i), through, &in, i, &v->straight);
         else
             send(g, i, id, g->t0[i], lane_get(&y->bent, i), through, &in, i, &v->refracted);

@@ -1,6 +1,5 @@
-/* Secondary rays: mirrored, refracted, and straight on through what does not refract. Those of all of a wave's groups
- * are queued in waves of their own, which trace.c traces as it does the camera's; so waves stay full where groups are
- * small. Depth and memory are bounded.
+/* Secondary rays: mirrored, refracted, and straight through surfaces that do not refract. The rays of all groups of a
+ * wave are queued in new waves, which trace.c traces like the camera's. So waves stay full where groups are small.
  */
 #ifndef KAGE_RENDER_SECONDARY_H
 #define KAGE_RENDER_SECONDARY_H
@@ -8,11 +7,11 @@
 #include "wave/wave.h"
 
 enum {
-    MEDIA = 8,      /* nested things that a ray keeps count of */
-    STRAIGHTS = 256 /* unrefracted crossings in a row; light from beyond is not seen */
+    MEDIA = 8,      /* nested objects that a ray remembers */
+    STRAIGHTS = 256 /* surfaces in a row without refraction; light from beyond is lost */
 };
 
-/* The objects that each ray has entered and not left, the innermost last. */
+/* The objects that each ray is inside of, the innermost last. */
 typedef struct media {
     int32_t n[LANES], id[MEDIA][LANES];
 } media;
@@ -20,9 +19,9 @@ typedef struct media {
 /* A wave of secondary rays. */
 typedef struct ray_queue {
     int n;
-    int32_t lane[LANES]; /* of the wave they come from, to whose light they add */
-    vec3s weight;
-    rays x; /* from the shifted place r + s t0 */
+    int32_t lane[LANES]; /* of the wave they come from, which gets their light */
+    vec3s weight;        /* of their light there */
+    rays x;              /* from the shifted place r + s t0 */
     ray_origins from;
     media in;
 } ray_queue;
@@ -30,16 +29,16 @@ typedef struct ray_queue {
 struct scene;
 struct workspace;
 
-/* No rays yet in the workspace's queues. */
+/* Empty the workspace's queues. */
 void secondary_begin(struct workspace *v);
 
-/* Queue the rays that go on from the group v->g, which has met object `id`. */
+/* Queue the secondary rays of the group v->g on object `id`. */
 void secondary_send(const struct scene *s, int32_t id, struct workspace *v);
 
-/* to += what a queue's rays have found, by their weights. */
+/* Add the light `from` of a queue's rays, times their weights, to the lanes they come from. */
 void secondary_add(const ray_queue *q, const vec3s *from, vec3s *to);
 
-/* Replace q by its unrefracted continuations; weights multiply. */
+/* Replace q by its continuations `on`, which go straight through a surface; weights multiply. */
 void secondary_go_on(const ray_queue *on, ray_queue *q);
 
 #endif

@@ -1,11 +1,11 @@
-/* Stage: which share of a light reaches a group. */
+/* Stage: the visibility of a light from a group. */
 #ifndef KAGE_RENDER_SHADOW_H
 #define KAGE_RENDER_SHADOW_H
 
 #include "render/workspace.h"
 
-/* For the group v->g on object `id`: g->lit = the share of light l that is seen, 0..1; and g->tint, where the scene has
- * transparent materials. */
+/* g->lit of the group v->g on object `id`: the visible share of light l, 0..1. Also g->tint, in scenes with transparent
+ * materials. */
 void shadow_light(const tracer *tr, int32_t id, const light *l, workspace *v);
 
 #endif

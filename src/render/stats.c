@@ -1,4 +1,4 @@
-/* Counts, and the clock of --stats. */
+/* Adding up counts, and the clock for stages. */
 #include "render/stats.h"
 
 #include <time.h>

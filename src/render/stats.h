@@ -1,4 +1,4 @@
-/* What a render counts and times. */
+/* Counts and times of a render. */
 #ifndef KAGE_RENDER_STATS_H
 #define KAGE_RENDER_STATS_H
 
@@ -23,20 +23,23 @@ enum stage {
 };
 extern const char *const stage_names[STAGES];
 
-/* The parts of one thread are added up in the end. */
+/* One for each thread; added up at the end. */
 typedef struct stats {
-    long rays, shadow_rays, evaluations; /* camera rays, shadow rays, evaluations of P outside searches */
-    long secondary_rays;                 /* reflected, refracted, straight through */
-    long orders[ORDER_CODES];            /* bumped samples by the order really used, from none on */
-    displaced_counts displaced;          /* hits of displaced surfaces */
-    long bumped, fell_back;              /* bumped samples, and those among them with another order than asked for */
-    double seconds[STAGES];              /* in the tiles that were timed */
-    bool timing;                         /* this tile is */
-    double clock;                        /* when the last stage ended */
+    long rays, shadow_rays;     /* camera rays, shadow rays */
+    long evaluations;           /* of P, without those in searches on displaced surfaces */
+    long secondary_rays;        /* mirrored, refracted and straight through */
+    long orders[ORDER_CODES];   /* bumped samples by the order really used: method_code + 1 */
+    displaced_counts displaced; /* hits of displaced surfaces */
+    long bumped, fell_back;     /* bumped samples; those with another order than asked for */
+    double seconds[STAGES];     /* in the tiles that are timed */
+    bool timing;                /* this tile is timed */
+    double clock;               /* when the last stage ended */
 } stats;
 
-/* A stage has ended: what has passed since the last call is its time. */
+/* Seconds since an arbitrary time. */
 double stats_clock(void);
+
+/* Stage k has ended: add the time since the last call. */
 static inline void stats_stage(stats *s, enum stage k)
 {
     if (s->timing) {
@@ -46,6 +49,7 @@ static inline void stats_stage(stats *s, enum stage k)
     }
 }
 
+/* Count n bumped samples by order; asked: the code of the method. */
 void stats_orders(stats *s, int n, const int32_t *order, int asked);
 
 void stats_add(stats *sum, const stats *part);

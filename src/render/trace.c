@@ -1,11 +1,11 @@
-/* The way of a ray, as the paper has it:
+/* A wave of rays from the eye to the light, in the paper's steps:
  *
  *     wave -> nearest hit with the smooth surfaces -> for the lanes on each surface:
  *     Q and its partials -> P and its partials -> n' -> the shift tau (none, 0, 1, 2 ...)
  *     -> shadow rays from r + s t0 -> light at Q with n'
  *
- * Where the surface mirrors or lets light through, further waves go on from r + s t0 by n' (secondary.h), and come the
- * same way. For comparison, rays can meet displaced surfaces (displaced.h), which need no shift.
+ * Mirrors and transparent materials send secondary waves from r + s t0 by n' (secondary.h), which are traced by the
+ * same steps. For comparison, rays can meet displaced surfaces (displaced.h), which need no shift.
  */
 #include "render/trace.h"
 
@@ -17,8 +17,8 @@
 #include "wave/gather.h"
 
 /* The smooth hit Q and its partials; P and its partials, a map's by bilinear interpolation of differences
- * (texture/bump_map.c); n' (bs_perturbed_normal); and tau (method/shift.c by bs_tau0, bs_tau1, bs_tau2), which is kept
- * within the slab of P (bs_slab_of). */
+ * (texture/bump_map.c); n' (bs_perturbed_normal); and tau (method/shift.c by bs_tau0, bs_tau1, bs_tau2). The guard
+ * keeps tau within the slab of P (bs_slab_of). */
 static void shape_and_shift(const tracer *tr, int32_t id, workspace *v)
 {
     const surface *f = v->surface[id];
@@ -84,8 +84,8 @@ void trace_group(const tracer *tr, int32_t id, workspace *v)
     light_group(tr, id, v);
 }
 
-/* Trace a queue of secondary rays, which `left` more may follow, and add their light. A ray that goes straight on
- * through a surface does not count, as in POV-Ray; so it is traced in the same workspace, in a loop. */
+/* Trace a queue of secondary rays, after which `left` more may follow, and add their light. A ray straight through a
+ * surface does not count as one more, as in POV-Ray; it is traced in the same workspace, in a loop. */
 static void follow(const tracer *tr, ray_queue *q, int left, workspace *v)
 {
     workspace *d = v->deeper;
@@ -107,7 +107,7 @@ static void follow_all(const tracer *tr, workspace *v)
         return;
     follow(tr, &v->reflected, v->left - 1, v);
     follow(tr, &v->refracted, v->left - 1, v);
-    if (!v->of) /* those of a secondary wave are gone on with by the loop that traces it */
+    if (!v->of) /* for secondary waves the loop in follow() does it */
         follow(tr, &v->straight, v->left, v);
 }
 

@@ -1,4 +1,4 @@
-/* The memory of a thread: a workspace for the camera's waves, and a chain of others for the secondary waves. */
+/* A thread's memory: a workspace for the camera's waves, and a chain of others for secondary waves. */
 #include "render/workspace.h"
 
 #include <stdlib.h>
@@ -18,7 +18,7 @@ static workspace *chain_new(int lights, int deeper)
     return NULL;
 }
 
-/* The surfaces that rays meet. */
+/* The surface of each object: smooth or displaced. */
 static void choose_surfaces(const tracer *tr, workspace *v)
 {
     for (int k = 0; k < tr->scene->objects; k++) {
@@ -33,7 +33,7 @@ workspace *workspace_new(const tracer *tr)
 {
     const scene *s = tr->scene;
     const size_t objects = (size_t)(s->objects ? s->objects : 1);
-    /* one more than rays follow: what goes straight on from a camera's wave has one of its own */
+    /* depth - 1 levels of secondary rays, and one for rays straight through from a camera's wave */
     workspace *v = chain_new(s->lights, s->sends && s->depth > 1 ? s->depth : 0);
     if (!v)
         return NULL;

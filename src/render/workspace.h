@@ -1,5 +1,5 @@
-/* What the waves of a picture have in common (tracer), and the memory that one thread traces them with (workspace). It
- * is allocated once; while tracing nothing is.
+/* The settings of a render (tracer), and the memory of one of its threads (workspace). It is allocated once, never
+ * while tracing.
  */
 #ifndef KAGE_RENDER_WORKSPACE_H
 #define KAGE_RENDER_WORKSPACE_H
@@ -11,38 +11,38 @@
 #include "scene/scene.h"
 #include "wave/hit_group.h"
 
-/* What is traced, and how. */
+/* Shared by all threads; nothing changes it. */
 typedef struct tracer {
     const scene *scene;
     method shadow;
     bool guard;       /* orders fall back where their result is outside the slab */
-    bool displaced;   /* rays meet the displaced surfaces of bumped objects, in place of the method */
-    bool self_shadow; /* bumped objects cast shadows too, on themselves and on others */
-    bool layers;      /* also the layers beside the picture */
+    bool displaced;   /* rays meet the displaced surfaces of bumped objects; no method is used */
+    bool self_shadow; /* bumped objects cast shadows, on themselves and on others */
+    bool layers;      /* compute the layers, too */
 } tracer;
 
 typedef struct workspace workspace;
 struct workspace {
-    rays x;       /* the wave, */
-    hits nearest; /* what its rays meet; the ids of groups that are taken out become -1 */
-    hit_group g;  /* the group at hand */
+    rays x;       /* the wave */
+    hits nearest; /* its hits; -1 where a group has been taken out */
+    hit_group g;  /* the current group */
     samples out;
-    real (*visibility)[LANES]; /* for each light of the scene, where layers are asked for */
+    real (*visibility)[LANES]; /* for each light of the scene; with layers only */
 
     /* secondary rays */
-    const ray_queue *of; /* what the rays x are; NULL: the camera's */
-    int left;            /* how many rays may still follow these */
+    const ray_queue *of; /* the queue that the rays x are from; NULL: camera rays */
+    int left;            /* how many rays in a row may still follow */
     ray_queue reflected, refracted, straight;
-    workspace *deeper; /* for the waves that follow this one; NULL: none does */
+    workspace *deeper; /* for this wave's secondary waves; NULL: none */
 
-    /* Shared by the workspaces of a thread. */
+    /* shared by the workspaces of a thread */
     stats *stats;
-    const surface **surface;       /* of each object, as rays meet it: smooth or displaced */
+    const surface **surface;       /* of each object: the smooth or the displaced one */
     displaced *displaced;          /* of each object that has one, with this thread's counts */
-    struct candidates *candidates; /* of a scene with many objects (object_bvh.h); NULL: all are tried */
+    struct candidates *candidates; /* with many objects (object_bvh.h); NULL: all objects are tested */
 };
 
-/* For tracers of this scene that are `displaced` or not as this one. NULL: out of memory. */
+/* For tracers with the same scene and `displaced` as this one. NULL: out of memory. */
 workspace *workspace_new(const tracer *tr);
 void workspace_free(workspace *v);
 

@@ -1,10 +1,10 @@
-/* Pinhole and orthographic cameras. */
+/* The camera's frame, and rays by base + x right + y up. */
 #include "scene/camera.h"
 
 #include "math/kmath.h"
 #include "wave/lane.h"
 
-/* right, up: to the edges of a picture whose half width is `half`, as seen from unit depth. */
+/* half: half the picture's width, of a pinhole at unit depth. */
 static bool look(camera *c, vec3 from, vec3 at, vec3 up, double half, int width, int height)
 {
     vec3 forward = vec3_sub(at, from);

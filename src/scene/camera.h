@@ -1,4 +1,4 @@
-/* The camera: where it stands, and the rays of a picture's samples. */
+/* Pinhole and orthographic cameras, and their rays. */
 #ifndef KAGE_SCENE_CAMERA_H
 #define KAGE_SCENE_CAMERA_H
 
@@ -8,32 +8,32 @@
 #include "wave/wave.h"
 
 /* The ray of a pixel, with x and y in -1..1 over the image:
- *     a pinhole      from + t (forward + x right + y up), so that s is no unit vector
+ *     pinhole        from + t (forward + x right + y up), so s is not a unit vector
  *     orthographic   from + x right + y up + t forward
  * In both t is the depth along forward. */
 typedef struct camera {
     vec3 from;
     vec3 forward;   /* unit */
-    vec3 right, up; /* to the edges of the image: half the picture's width and height, a pinhole's at unit depth */
+    vec3 right, up; /* half the image's width and height in scene units; of a pinhole at unit depth */
     bool orthographic;
 } camera;
 
-/* A camera at `from` that looks at `at`; fov is the horizontal angle of the picture in degrees. False where the
- * directions have no sense: at = from, or up along the view. */
+/* A pinhole camera at `from` that looks at `at`; fov is the horizontal angle of the picture in degrees. False where at
+ * = from or `up` is parallel to the view. */
 bool camera_look(camera *c, vec3 from, vec3 at, vec3 up, double fov, int width, int height);
 
-/* Likewise an orthographic one, whose picture is `across` scene units wide. */
+/* An orthographic camera, whose picture is `across` scene units wide. */
 bool camera_orthographic(camera *c, vec3 from, vec3 at, vec3 up, double across, int width, int height);
 
-/* A coordinate of pixels (0..size, fractions within a pixel) on the picture from -1 to 1. */
+/* A pixel coordinate, 0..size, as -1..1. */
 static inline real camera_screen(double p, int size) { return (real)(2 * p / size - 1); }
 
-/* Rays through n places of the picture, x and y in -1..1 from the left and from the bottom, in two steps: what all have
- * in common (a pinhole's r, an orthographic camera's s), and the rest. */
+/* The rays through n points of the picture, x and y in -1..1 from the left and from the bottom. camera_common sets what
+ * all rays share (a pinhole's r, an orthographic camera's s), camera_rays the rest. */
 void camera_common(const camera *c, int n, rays *to);
 void camera_rays(const camera *c, int n, const real *x, const real *y, rays *to);
 
-/* One ray, into a lane of `to`: through (x,y) in pixels from the top left of a picture of width x height. */
+/* The ray through (x,y), in pixels from the top left of a picture of width x height, into one lane of `to`. */
 void camera_ray(const camera *c, int width, int height, double x, double y, rays *to, int lane);
 
 #endif

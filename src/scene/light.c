@@ -1,8 +1,8 @@
-/* Area lights: their samples, and their ends. */
+/* The samples and the corners of area lights. */
 #include "scene/light.h"
 
-/* The share of sample i of those from `first` to `last`, as POV-Ray halves a row of them again and again, where a
- * sample in the middle belongs to both halves. 2, 4, 8 ... samples are equal. */
+/* The weight of sample i among `first` to `last`, as by POV-Ray's adaptive halving: a sample in the middle belongs to
+ * both halves. The weights of 2, 4, 8 ... samples are equal. */
 static double share_of(int i, int first, int last)
 {
     if (i < first || i > last)
@@ -13,7 +13,7 @@ static double share_of(int i, int first, int last)
     return (share_of(i, first, below) + share_of(i, above, last)) / 2;
 }
 
-/* Where sample i of n is along a side, from -1/2 to 1/2: the first and the last are on the edge. */
+/* The place of sample i of n along a side, -1/2..1/2; the first and the last are on the edge. */
 static double along_side(int i, int n) { return n > 1 ? (double)i / (n - 1) - 0.5 : 0; }
 
 light light_sample(const light *l, int k, real *share)

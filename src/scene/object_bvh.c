@@ -1,4 +1,5 @@
-/* The hierarchy proposes objects; their boxes in double decide. */
+/* Embree reports the boxes near a ray; each is tested again in double, so the result does not depend on the processor.
+ */
 #include "scene/object_bvh.h"
 
 #include "bvh/bvh.h"
@@ -8,7 +9,7 @@
 #include <string.h>
 
 enum {
-    FEW = 12, /* objects with an end: up to so many trying all is faster (docs/design.md) */
+    FEW = 12, /* bounded objects: up to this number testing all is faster (docs/design.md) */
     BITS = 64,
     ROUNDINGS = 16,
     WORDS = LANES / BITS,
@@ -20,10 +21,10 @@ typedef struct box {
 
 struct object_bvh {
     int objects, bounded;
-    int32_t *object; /* of each box; then those that have none, as they have no end */
+    int32_t *object; /* of each box; then the unbounded objects */
     box *box;
-    bvh_space space; /* about all boxes */
-    bvh *tree;       /* over them */
+    bvh_space space;
+    bvh *tree;
 };
 
 struct candidates {
@@ -34,7 +35,7 @@ struct candidates {
 
 /* ---- the objects ---- */
 
-/* The displaced surface's box holds the smooth one too. */
+/* The displaced surface's box contains the smooth surface, too. */
 static box box_of(const object *o)
 {
     const surface *f = o->displaced ? o->displaced : o->shape;
@@ -51,6 +52,7 @@ static bool has_end(const box *b)
     return ends;
 }
 
+/* c->space, about all boxes. */
 static void measure(object_bvh *c)
 {
     box all = c->box[0];
@@ -146,7 +148,7 @@ static void clear(candidates *m)
     memset(m->met, 0, words_for(m->objects) * sizeof *m->met);
 }
 
-/* A ray on its way through the hierarchy. */
+/* A ray in the hierarchy. */
 typedef struct passage {
     const object_bvh *c;
     candidates *m;
@@ -154,8 +156,8 @@ typedef struct passage {
     double r[3], s[3], end, size; /* size: of r's coordinates */
 } passage;
 
-/* Whether it passes the box, or comes so near that float might see a hit there: a hit's place is some sums and products
- * of coordinates of that size, together fewer than ROUNDINGS roundings. */
+/* Whether the ray meets the box, or comes so near that a hit in float is possible: a hit takes fewer than ROUNDINGS
+ * roundings of coordinates of that size. */
 static bool passes(const passage *p, const box *b)
 {
     double t0 = 0, t1 = p->end;

@@ -1,4 +1,4 @@
-/* The end of a scene: it owns all it points to. */
+/* Frees a scene. */
 #include "scene/scene.h"
 
 #include "scene/object_bvh.h"
