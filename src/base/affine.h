@@ -1,10 +1,10 @@
-/* Affine maps in double, for setting scenes up. */
+/* Affine maps in double: the transforms of a scene. */
 #ifndef KAGE_BASE_AFFINE_H
 #define KAGE_BASE_AFFINE_H
 
 #include "base/vec3.h"
 
-/* The images of the three unit vectors and of the origin: the four rows of POV-Ray's `matrix`. */
+/* p -> x p.x + y p.y + z p.z + o; the four rows of POV-Ray's `matrix`. */
 typedef struct affine {
     vec3 x, y, z, o;
 } affine;
@@ -25,11 +25,11 @@ static inline affine affine_then(const affine *m, const affine *next)
                     affine_point(next, m->o)};
 }
 
-/* The determinant: how volumes scale; negative where the map mirrors. */
+/* The determinant; negative where the map mirrors. */
 static inline double affine_volume(const affine *m) { return vec3_dot(vec3_cross(m->x, m->y), m->z); }
 
-/* The inverse; x, y, z are its rows: it maps a vector v to (x.v, y.v, z.v). Gradients are mapped by these rows where
- * vectors are mapped by the columns of m. o is the origin of m, unchanged. */
+/* The inverse, as rows x, y, z: it maps a vector v to (x.v, y.v, z.v). So m maps gradients and normals by these rows.
+ * o is that of m, unchanged. The determinant must not be 0. */
 static inline affine affine_back(const affine *m)
 {
     const double k = 1 / affine_volume(m);
@@ -37,8 +37,8 @@ static inline affine affine_back(const affine *m)
                     vec3_scale(vec3_cross(m->x, m->y), k), m->o};
 }
 
-/* The factor by which a map that keeps angles scales lengths; 0: it does not keep angles, to a relative 1e-12, far
- * above the rounding of a product of transforms. */
+/* The factor by which m scales lengths, if it keeps angles; else 0. The tolerance, 1e-12, is far above the rounding of
+ * a product of transforms. */
 static inline double affine_scale(const affine *m)
 {
     const double xx = vec3_dot(m->x, m->x), yy = vec3_dot(m->y, m->y), zz = vec3_dot(m->z, m->z), least = 1e-12 * xx;

@@ -1,4 +1,4 @@
-/* Writing a file aside and renaming it into place. */
+/* Writes a file under a temporary name and renames it when it is complete. */
 #define _XOPEN_SOURCE 700 /* realpath */
 
 #include "base/file_writer.h"
@@ -16,8 +16,8 @@ static bool fail(const char *path, const char *why, errors *e)
     return errors_add(e, "%s: cannot be written: %s", path, why);
 }
 
-/* Create a file of a new name, hidden, in a directory given with its final slash ("" : the current one).
- * Unlike mkstemp, with the permissions that any new file gets. NULL with errno set on failure. */
+/* Create a hidden file with a new name in `dir`, which ends with a slash ("": the current directory). Unlike mkstemp it
+ * has a new file's usual permissions. The caller frees the name. NULL, with errno set, on failure. */
 static char *create_aside(const char *dir, size_t dir_length, int *fd)
 {
     const size_t room = dir_length + 64;
@@ -55,7 +55,7 @@ bool file_writer_open(file_writer *f, const char *path, errors *e)
         f->aside = NULL;
         return true;
     }
-    /* Renaming needs no right to write to the old file: respect its protection all the same. */
+    /* Renaming needs no permission to write to the old file, but a read-only file must stay as it is. */
     if (exists && access(path, W_OK) != 0)
         return fail(path, strerror(errno), e);
     f->target = exists ? realpath(path, NULL) : strdup(path);
@@ -71,7 +71,6 @@ bool file_writer_open(file_writer *f, const char *path, errors *e)
     return true;
 }
 
-/* write() of everything. */
 static bool write_all(int fd, const char *data, size_t size)
 {
     while (size > 0) {
@@ -93,7 +92,7 @@ bool file_writer_write(file_writer *f, const void *data, size_t size, uint64_t o
     return !f->error;
 }
 
-/* Copy all of `from` to what `path` leads to. 0, or the errno of what failed. */
+/* Copy all of `from` into `path`. 0, or errno. */
 static int copy_to(const char *path, int from)
 {
     char block[65536];

@@ -1,4 +1,4 @@
-/* Sets of files, known by device and inode. */
+/* Sets of files, compared by device and inode. */
 #include "base/files.h"
 
 #include <stdlib.h>

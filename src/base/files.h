@@ -1,5 +1,5 @@
-/* The files that a scene is made from, so that no output replaces one of them. A file is known by its device and inode,
- * since it can have several names. */
+/* A set of files, compared by device and inode because a file can have several names. A scene keeps the set of its
+ * inputs, so that no output replaces one. */
 #ifndef KAGE_BASE_FILES_H
 #define KAGE_BASE_FILES_H
 
@@ -23,8 +23,7 @@ static inline file_id file_id_of(const struct stat *about) { return (file_id){ab
 /* Add a file, once. False: out of memory. */
 bool files_add(files *f, file_id id);
 
-/* The same by a path, links followed. What does not exist, or is not a regular file, is not added: it cannot be lost.
- */
+/* The same by a path; links are followed. Only regular files are added: others cannot be lost. */
 bool files_add_path(files *f, const char *path);
 
 bool files_have_path(const files *f, const char *path);

@@ -1,16 +1,16 @@
-/* A frame about an axis, for surfaces of revolution: their angle u is 0 at x and grows from x to z. */
+/* An orthonormal frame about an axis, for surfaces of revolution. Their angle u is 0 at x and grows towards z. */
 #ifndef KAGE_BASE_FRAME_H
 #define KAGE_BASE_FRAME_H
 
 #include "base/vec3.h"
 
-/* Orthonormal vectors with x x y = z, as those of the scene; y is the axis. */
+/* Orthonormal, with x cross y = z, as in the scene; y is the axis. */
 typedef struct frame {
     vec3 x, y, z;
 } frame;
 
-/* x is the scene's +x, or where the axis is within 26 degrees of that, the scene's +y, projected at right angles to the
- * axis. About +y the frame is the scene's. `axis` must not be 0. */
+/* x is the scene's +x (+y if the axis is within 26 degrees of +x or -x), projected to the plane perpendicular to the
+ * axis. For the axis +y the frame is the scene's. `axis` must not be 0. */
 static inline frame frame_about(vec3 axis)
 {
     const vec3 y = vec3_unit(axis), e = fabs(y.x) < 0.9 ? (vec3){1, 0, 0} : (vec3){0, 1, 0};

@@ -1,19 +1,19 @@
-/* Somebody who wants to see how far a long piece of work has come, and may end it. */
+/* A callback that shows the progress of long work and may stop it. */
 #ifndef KAGE_BASE_PROGRESS_H
 #define KAGE_BASE_PROGRESS_H
 
 #include <stdbool.h>
 
-/* What the reader of a scene shows between two objects. */
+/* `what`, while the objects of a scene are read. */
 #define PROGRESS_OBJECTS "objects"
 
 typedef struct progress {
-    /* `what` is done, and this share of it, 0..1. False: the work is to end, with an error. NULL: nobody is there. */
+    /* Called with the kind of work and the share of it that is done, 0..1. False: stop, with an error. May be NULL. */
     bool (*show)(void *user, const char *what, double share);
     void *user;
 } progress;
 
-/* False: the work is to end. */
+/* False: stop. w may be NULL. */
 static inline bool progress_show(const progress *w, const char *what, double share)
 {
     return !w || !w->show || w->show(w->user, what, share);

@@ -11,7 +11,7 @@
 typedef double real;
 #define REAL_NAME "double"
 #define REAL_INTEGER 6755399441055744.0 /* 1.5 * 2^52 */
-#define REAL_ROUNDING 4e-16             /* what a sum or product can be off, as a share, and as much again */
+#define REAL_ROUNDING 4e-16             /* twice the relative rounding error of a sum or product */
 #define real_sqrt(x) sqrt(x)
 #define real_abs(x) fabs(x)
 #else
@@ -26,14 +26,13 @@ typedef float real;
 /* A literal of type real: R(0.5). */
 #define R(x) ((real)(x))
 
-/* The t of a ray that has met nothing: larger than any of a scene. */
+/* The t of a ray that hits nothing. */
 #define REAL_FAR ((real)1e30)
 
-/* Put before the definition of a stage, a static function that is one plain loop over lanes (static, as clang 14
- * exports clones under another name): it is compiled once for any x86-64, once for AVX2 and once for AVX-512 (gcc), and
- * the loader takes the one that fits. All give the same bytes, because nothing is contracted (-ffp-contract=off) and
- * every operation used is exact by IEEE 754 (+ - * / sqrt, comparisons, conversions); no stage calls libm for anything
- * else. Processors other than x86-64 build the same source without clones. */
+/* Marks a stage: a static function that is one plain loop over lanes. It is compiled for any x86-64, for AVX2 and (by
+ * gcc) for AVX-512, and the loader chooses one. All give the same bytes: stages use only what IEEE 754 rounds exactly
+ * (+ - * / sqrt, comparisons, conversions), without contraction (-ffp-contract=off). Static, as clang 14 exports clones
+ * under another name. Other processors build the same source without clones. */
 #if defined(__x86_64__) && defined(__gnu_linux__) && !defined(KAGE_NO_CLONES)
 #if defined(__clang__)
 #define STAGE __attribute__((target_clones("default", "avx2")))
@@ -44,15 +43,14 @@ typedef float real;
 #define STAGE
 #endif
 
-/* Comparisons as the hardware has them, so that a loop with them stays a plain loop: where x or y is
- * NaN the result is y. (fmin and fmax promise more, and cost a branch.) */
+/* As the SSE instructions: y where x or y is NaN. (fmin and fmax treat NaN otherwise, which costs a branch.) */
 static inline real real_min(real x, real y) { return x < y ? x : y; }
 static inline real real_max(real x, real y) { return x > y ? x : y; }
 static inline double lesser(double x, double y) { return x < y ? x : y; }
 static inline double greater(double x, double y) { return x > y ? x : y; }
 
-/* floor without a call to libm, which SSE2 would need: adding REAL_INTEGER leaves no bit for a fraction. From
- * REAL_INTEGER / 3 on, where it would fail, x comes back; it has no more than one bit of a fraction then. */
+/* floor without libm, which SSE2 would need: adding REAL_INTEGER leaves no bits for a fraction. From |x| =
+ * REAL_INTEGER / 3 on that fails and the result is x, which then has at most one bit of fraction. */
 static inline real real_floor(real x)
 {
     real f = (x + REAL_INTEGER) - REAL_INTEGER;

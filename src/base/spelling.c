@@ -1,4 +1,4 @@
-/* Distances between words (Damerau-Levenshtein), a row of the table at a time. */
+/* The Damerau-Levenshtein distance between words. Three rows of its table are kept. */
 #include "base/spelling.h"
 
 #include <stdio.h>

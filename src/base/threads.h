@@ -1,5 +1,4 @@
-/* How many threads share a piece of work. The count comes from the caller: nothing changes the process's own setting.
- */
+/* The number of threads for a parallel loop. OpenMP's setting of the process is never changed. */
 #ifndef KAGE_BASE_THREADS_H
 #define KAGE_BASE_THREADS_H
 
@@ -9,7 +8,7 @@
 #include <omp.h>
 #endif
 
-/* `asked`, or as many as there are processors where that is 0. Built without OpenMP, the caller's thread alone. */
+/* `asked`; 0: one for each processor. Without OpenMP always 1. */
 static inline int threads_of(int asked)
 {
 #if defined(_OPENMP)
@@ -20,7 +19,7 @@ static inline int threads_of(int asked)
 #endif
 }
 
-/* Whether this thread is the one that began the parallel work. */
+/* Is this the thread that started the parallel loop? */
 static inline bool is_callers_thread(void)
 {
 #if defined(_OPENMP)

@@ -1,4 +1,4 @@
-/* A vector in double, for setting scenes up. Waves have a layout of their own (wave/wave.h). */
+/* A vector in double. Waves store vectors as arrays (wave/wave.h). */
 #ifndef KAGE_BASE_VEC3_H
 #define KAGE_BASE_VEC3_H
 

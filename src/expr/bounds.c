@@ -1,10 +1,9 @@
-/* Bounds of the value, the gradient and the Hessian over a box: the program, run once on intervals instead of on
- * points, in forward mode. A point at which some operand is NaN or a pole counts as outside the expression's domain.
+/* Bounds of the value, the gradient and the Hessian over a box: runs the program once on intervals, in forward mode.
+ * Points where an operand is NaN or has a pole are outside the expression's domain.
  *
- * Bounds of partials are bounds of differences too. So each operation must be Lipschitz over all the values that its
- * operands can take in the box, not only have a derivative almost everywhere: a kink has the derivatives of both its
- * sides and all between, a jump has an infinite one, unless what decides about the jump does not change in that
- * direction. As everywhere here, 0 times infinity is 0: what does not change, changes nothing.
+ * Bounds of partials are Lipschitz bounds, too. So a kink has the derivatives of both its sides and all between, and a
+ * jump has an infinite derivative along each direction in which its condition changes. 0 times infinity is 0: an
+ * operand that is constant along a direction adds nothing.
  */
 #include "expr/operation.h"
 
@@ -19,7 +18,7 @@ typedef struct second {
     interval d[SECONDS];
 } second;
 
-/* Of each of these, its directions. */
+/* The two directions of each second partial. */
 static const int first_of[SECONDS] = {ALONG_U, ALONG_U, ALONG_W}, second_of[SECONDS] = {ALONG_U, ALONG_W, ALONG_W};
 
 static expr_ranges ranges_of(const expr_code *c, const interval *value)
@@ -64,8 +63,8 @@ static slope chain(const expr_code *c, const slope *s, const expr_gradient *g)
     return z;
 }
 
-/* Of an operation that chooses: the slope is that of one of the operands reached. Between operands that meet, as min's
- * do, nothing jumps. */
+/* For an operation that chooses: the hull of the slopes of the operands reached. Where these have the same value, as
+ * those of min do at the change, there is no jump. */
 static slope choice(const expr_code *c, const expr_ranges *r, const slope *s)
 {
     const int set = c->op->reached(r);
@@ -117,8 +116,8 @@ static second chain2(const expr_code *c, const slope *s, const second *h, const 
     return z;
 }
 
-/* Those of the one operand that is reached; between several the slope jumps, except along what none of them depends
- * on. */
+/* Those of the operand reached, if it is the only one. Else the slope jumps, except along directions in which no
+ * operand reached, and no deciding one, changes. */
 static second choice2(const expr_code *c, const expr_ranges *r, const slope *s, const second *h)
 {
     const int set = c->op->reached(r);
@@ -136,7 +135,7 @@ static second choice2(const expr_code *c, const expr_ranges *r, const slope *s, 
     return z;
 }
 
-/* One run over the program; h NULL: without second partials. */
+/* Runs the program over the box u x w. h NULL: without second partials. */
 static void bound(const expr *e, interval u, interval w, expr_bounds *out, second *h)
 {
     static const expr_gradient level;

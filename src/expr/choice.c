@@ -1,4 +1,4 @@
-/* Operations whose result is one of their operands: min, max, select, clamp. It has that operand's partials. */
+/* Operations whose result, with its partials, is one of their operands: min, max, select, clamp. */
 #include "base/real.h"
 #include "expr/operation.h"
 

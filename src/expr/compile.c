@@ -1,4 +1,4 @@
-/* From operations to a program: slots, which parts of a result can differ from 0, constants folded. */
+/* Makes a program of operations: assigns slots, finds which parts of results can be nonzero, folds constants. */
 #include "expr/operation.h"
 
 #include <math.h>
@@ -16,7 +16,7 @@ void emitter_begin(emitter *e)
 
 operand expr_emit_constant(double k) { return (operand){.constant = true, .k = k}; }
 
-/* The second partials that the chain rule makes of first partials i of one operand and j of the other. */
+/* The second partials that are products of first partials i of one operand and j of another. */
 static int cross(int i, int j)
 {
     int has = 0;
@@ -29,8 +29,8 @@ static int cross(int i, int j)
     return has;
 }
 
-/* The parts of a result that can differ from 0: those of the operands, and where f_ij is not 0 for two operands, those
- * of products of their first partials. */
+/* The parts of a result that can be nonzero: those of the operands, and for operands with a nonzero f_ij the products
+ * of their first partials. */
 static int parts_of(const expr_op *op, const uint8_t *has)
 {
     int z = HAS_V;

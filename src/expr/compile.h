@@ -1,5 +1,5 @@
-/* Compiling: the parser states operations, this turns them into a program, folding constants and choosing the cheapest
- * form.
+/* The emitter: the parser calls it for each operation, and it builds a program, folds constants and chooses cheaper
+ * operations where an operand is constant.
  */
 #ifndef KAGE_EXPR_COMPILE_H
 #define KAGE_EXPR_COMPILE_H
@@ -8,7 +8,7 @@
 
 enum { SLOT_U, SLOT_W }; /* the slots of u and w */
 
-/* A constant, or a result in a slot. Each result is an operand once. */
+/* A constant, or a result in a slot, which is used as an operand once. */
 typedef struct operand {
     bool constant;
     double k;
@@ -27,13 +27,13 @@ void emitter_begin(emitter *e);
 
 operand expr_emit_constant(double k);
 
-/* The result of an operation on n operands. After a problem the results have no meaning. */
+/* Emit an operation on n operands. After a problem the results have no meaning. */
 operand expr_emit(emitter *e, const struct expr_op *op, int n, const operand *arg);
 
-/* The result of an operation on one operand, not a constant, and a constant. */
+/* Emit an operation on one operand, which is not constant, and the constant k. */
 operand expr_emit_with(emitter *e, const struct expr_op *op, operand a, double k);
 
-/* The program that computes `result`; NULL: out of memory. */
+/* The program that computes `result`; expr_free. NULL: out of memory. */
 expr *emitter_end(emitter *e, operand result);
 
 #endif

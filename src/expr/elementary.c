@@ -1,6 +1,4 @@
-/* The elementary functions: of each its rule and the bounds of its value and derivatives; then the table. In bounds, a
- * is the range of the operand and f that of the result.
- */
+/* The elementary functions: the rule of each, the bounds of its value and derivatives, and the table of all. */
 #include "expr/operation.h"
 #include "expr/rule.h"
 
@@ -12,8 +10,8 @@
 static expr_gradient slope(interval d) { return (expr_gradient){{d}}; }
 static expr_hessian second(interval dd) { return (expr_hessian){{dd}}; }
 
-/* A derivative that is positive and monotonic, from its values at the ends. Where these underflow it is still not 0,
- * nor as large as the cut in tanh_at leaves it. */
+/* The range of a positive, monotonic derivative from its values at the ends. Values below 1e-300 are inexact, because
+ * of underflow and of the cut in tanh_at, and become 0 below and INTERVAL_TINY above. */
 static interval positive(double x, double y)
 {
     interval z = interval_between(x, y);

@@ -1,4 +1,4 @@
-/* Evaluation: one operation after the other, each over the whole batch. */
+/* Evaluates a program: each operation in turn, over the whole batch. */
 #include <assert.h>
 #include <string.h>
 

@@ -1,8 +1,6 @@
-/* Functions of u and w, given as text (docs/scene.md has the language): parsed once, then evaluated with their exact
- * first and second partial derivatives, a batch of points at a time.
- *
- * Numbers are double in either build of kage: a perturbation is small against the scene, and one set of elementary
- * functions (kmath.h) then serves both.
+/* Functions of u and w, given as text (the language is in docs/scene.md). They are parsed once, then evaluated in
+ * batches of points, with exact first and second partial derivatives. Numbers are double in either build of kage,
+ * because heights are small compared with the scene. An expr is constant: any number of threads may use it.
  */
 #ifndef KAGE_EXPR_EXPR_H
 #define KAGE_EXPR_EXPR_H
@@ -19,7 +17,6 @@ typedef struct expr_jets {
 
 typedef struct expr expr;
 
-/* Where and why a text is no expression. */
 typedef struct expr_error {
     size_t offset;     /* byte in the text */
     char message[160]; /* what is wrong, what was expected; without place or newline */

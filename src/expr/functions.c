@@ -1,6 +1,5 @@
-/* Functions of two and three operands, and powers: of each its rule and the bounds of its value and partials; then the
- * table. Bounds of partials by the operands are in their order, those of second partials in the order aa ab ac bb bc
- * cc.
+/* Functions of two and three operands, and powers: the rule of each, the bounds of its value and partials, and the
+ * table of all. Bounds of second partials are in the order aa ab ac bb bc cc.
  */
 #include "expr/operation.h"
 #include "expr/rule.h"

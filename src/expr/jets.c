@@ -1,5 +1,4 @@
-/* Sums and products of jets, and the chain rule. The loops are stages, each a plain loop over the first n points, in
- * which the result z is never an operand. */
+/* Sums and products of jets, and the chain rule. The loops are stages over n points; z is never also an operand. */
 #include "expr/jets.h"
 
 #include "base/real.h"
@@ -118,7 +117,7 @@ void jets_subtract(int n, expr_view z, const expr_view *x, double k)
 
 /* ---- products and the chain rule ---- */
 
-/* The variables by which a second partial differentiates. */
+/* A second partial and its two first partials. */
 static const struct {
     int ij, i, j;
 } seconds[] = {{PART_UU, PART_U, PART_U}, {PART_UW, PART_U, PART_W}, {PART_WW, PART_W, PART_W}};

@@ -1,35 +1,35 @@
-/* Arithmetic of jets: values with their first and second partials, a batch of points at a time (forward-mode
- * differentiation). Parts of a jet that are 0 for all points are not touched.
+/* Arithmetic of jets (values with first and second partials) for batches of points: forward-mode differentiation. Parts
+ * of a jet that are 0 for all points are neither stored nor read.
  *
- * Partials are sums of products. In them 0 times infinity is 0: where an operand does not change in a direction, a
- * steep function of it does not either. So sqrt(u^2 + w^2) has first partials 0 at its apex.
+ * In the products of the chain rule 0 times infinity is 0: a function of a constant operand is constant, however steep.
+ * So sqrt(u^2 + w^2) has first partials 0 at its apex.
  */
 #ifndef KAGE_EXPR_JETS_H
 #define KAGE_EXPR_JETS_H
 
 #include "expr/program.h"
 
-/* An operand or a result: a jet and those of its parts that are not 0 and are asked for. */
+/* An operand or a result: a jet, and the set of its parts that are nonzero and wanted. */
 typedef struct expr_view {
     expr_jets *jet;
     int has;
 } expr_view;
 
-/* A part, NULL where the view has none. */
+/* A part; NULL if the view does not have it. */
 static inline double *expr_part(expr_view v, int p)
 {
     /* the parts of a jet are arrays of one size, in the order of enum expr_part */
     return v.has >> p & 1 ? (double *)((char *)v.jet + (size_t)p * sizeof v.jet->v) : NULL;
 }
 
-/* The same, an array of zeros where the view has none. */
+/* The same, but zeros if the view does not have it. */
 static inline const double *expr_part_or_zeros(expr_view v, int p)
 {
     static const double zeros[EXPR_BATCH];
     return v.has >> p & 1 ? expr_part(v, p) : zeros;
 }
 
-/* The operands of a function with partials f_i, f_ij: at most three; and the pairs i <= j, as sets. */
+/* A function with partials has at most 3 operands a, b, c, so 6 pairs of them; EXPR_AA ...: sets of pairs. */
 enum { EXPR_CURVED = 3, EXPR_PAIRS = 6 };
 enum { EXPR_AA = 1, EXPR_AB = 2, EXPR_AC = 4, EXPR_BB = 8, EXPR_BC = 16, EXPR_CC = 32, EXPR_ALL = 63 };
 extern const struct expr_pair {

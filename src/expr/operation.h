@@ -1,5 +1,5 @@
-/* The operations of the language. One is described by an expr_op: its name, how it is evaluated, its bounds, its text
- * for POV-Ray. The rest of the room knows no operation but sums and products.
+/* The operations of the language. An expr_op describes one: its name, evaluation, bounds, and text for POV-Ray. Other
+ * files of the room know only sums, products, powers and sqrt by name.
  *
  * To add a function, write its rules and its row into elementary.c (one operand) or functions.c (two or three).
  */
@@ -10,7 +10,7 @@
 #include "expr/jets.h"
 #include "math/interval.h"
 
-/* What an operation's bounds are computed from. */
+/* The arguments of an operation's bounds. */
 typedef struct expr_ranges {
     interval x[EXPR_OPERANDS]; /* of the operands */
     interval f;                /* of the result, for bounds of its partials */
@@ -27,22 +27,22 @@ typedef struct expr_hessian {
     interval dd[EXPR_PAIRS];
 } expr_hessian;
 
-/* How an operation is written in a language of formulas such as POV-Ray's. */
+/* How tightly an operation binds its operands in POV-Ray's text. */
 enum expr_binding { EXPR_CALL, EXPR_SUM, EXPR_PRODUCT };
 
-enum { EXPR_ANY_NUMBER = 1000 }; /* of arguments: a chain, folded from the left */
+enum { EXPR_ANY_NUMBER = 1000 }; /* of arguments; f(a,b,c) is f(f(a,b),c) */
 
 typedef struct expr_op expr_op;
 struct expr_op {
-    /* The language. A row may have no name (+, and what only the compiler uses) or no more than `build` (clamp). */
+    /* The language. NULL for operators and internal operations. */
     const char *name;
     int least, most; /* arguments */
-    /* From the arguments to operations; NULL: to this one. */
+    /* Emits other operations for a call, as clamp does; NULL: this one. */
     operand (*build)(emitter *e, int n, const operand *arg);
 
     int operands;
-    int deciding; /* of these, the first so many only decide between the others: select */
-    int curved;   /* set of EXPR_AA ...: the second partials that can differ from 0 */
+    int deciding; /* how many of the first operands only choose between the others: 1 for select */
+    int curved;   /* set of EXPR_AA ...: the second partials that can be nonzero */
     bool steps;   /* all partials are 0: floor */
 
     /* Evaluation: by `run`, or where that is NULL, by the one rule that is set, and the chain rule. */
@@ -51,18 +51,16 @@ struct expr_op {
     expr_rule2 *rule2;
     expr_rule3 *rule3;
 
-    /* Bounds. The partials are bounds of differences too, so a kink has the derivatives of both its sides and all
-     * between, and a jump an infinite one. */
+    /* Bounds; those of partials are Lipschitz bounds (bounds.c). */
     interval (*value)(const expr_ranges *r);
     expr_gradient (*gradient)(const expr_ranges *r); /* NULL: 0 */
     expr_hessian (*hessian)(const expr_ranges *r);   /* NULL: 0 */
-    /* Instead of gradient and hessian, for an operation whose result is always equal to one of its operands: which of
-     * them it is equal to somewhere, bit k for operand k. */
+    /* Instead of gradient and hessian, if the result is always one of the operands: the set of those that it can be,
+     * bit k for operand k. */
     int (*reached)(const expr_ranges *r);
 
-    /* POV-Ray's text: the name of a function; or a formula in which $1, $2 ... are the operands, put in parentheses
-     * where needed; or what stands between two operands, when `binding` is not EXPR_CALL. NULL: it has no such
-     * function. */
+    /* POV-Ray's text. With EXPR_CALL the name of a function, or a formula of the operands $1, $2 ...; else the operator
+     * between two operands. NULL: POV-Ray has none. */
     const char *pov;
     enum expr_binding binding;
 };

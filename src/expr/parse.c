@@ -1,5 +1,4 @@
-/* The parser: one function for each level of the grammar, which hands each operation to the emitter as soon
- * as its operands are there.
+/* A recursive-descent parser, one function for each rule of the grammar. It emits each operation after its operands.
  *
  *   sum      product { ("+" | "-") product }
  *   product  signed { ("*" | "/") signed }
@@ -61,7 +60,7 @@ static bool accept(parser *p, char c)
     return true;
 }
 
-/* What stands at `at`, for messages. */
+/* The word or character at `at`, for messages. */
 typedef struct found {
     char text[LONGEST_NAME + 8];
 } found;
@@ -152,7 +151,7 @@ static const char *arguments_of(const expr_op *f)
     return f->most == EXPR_ANY_NUMBER ? "2 or more arguments" : words[f->most];
 }
 
-/* Something else stands where an expression could end. */
+/* The error where an expression could have ended. */
 static operand unexpected(parser *p, const char *expected)
 {
     char c = *p->at;

@@ -1,9 +1,8 @@
-/* What an expression is compiled to: a list of operations on slots, without jumps. Private to the room expr and to
- * exports.
+/* A compiled expression: a list of operations on slots, without jumps. Private to this room and to exports.
  *
- * A slot holds the value and the partials of an intermediate result. Slots 0 and 1 are u and w; an operation writes a
- * slot that none of its operands uses. Which partials of a result can differ from 0 is known when it is compiled (6*u
- * has no w, uu, uw, ww): only those are ever computed or read.
+ * A slot stores the jet of an intermediate result. Slots 0 and 1 are u and w. An operation never writes a slot of its
+ * operands. The compiler finds which partials of a result can be nonzero (6*u has no w, uu, uw, ww); only those are
+ * computed and read.
  */
 #ifndef KAGE_EXPR_PROGRAM_H
 #define KAGE_EXPR_PROGRAM_H

@@ -1,8 +1,5 @@
-/* A rule gives the value and the partials of a function at one point, without branches. RULE1(f) makes the loop
- * rule_f, for an expr_op, from the rule f_at. What a loop does not use of a rule, the compiler leaves out.
- *
- * The loops are static, since clang 14 gives a cloned function another name (f.ifunc) to those who call it from outside
- * its file.
+/* A rule computes the value and the partials of a function at one point, without branches. RULE1(f) defines the stage
+ * rule_f, for an expr_op, from the rule f_at. The compiler removes the partials that a loop does not store.
  */
 #ifndef KAGE_EXPR_RULE_H
 #define KAGE_EXPR_RULE_H

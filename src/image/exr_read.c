@@ -1,4 +1,4 @@
-/* Reading OpenEXR files with OpenEXRCore: one channel as heights, or a colour. */
+/* Reads OpenEXR files with OpenEXRCore: one channel, or a colour. */
 #include <openexr.h>
 
 #include <errno.h>
@@ -10,8 +10,7 @@
 
 #include "image/format.h"
 
-/* What a damaged header may make the library ask for at once; more than any sound file of our limits needs in
- * a chunk. */
+/* The largest allocation for a (perhaps damaged) header: more than any chunk within our limits needs. */
 #define MEMORY_LIMIT ((size_t)1 << 32)
 
 /* Zeroed, as a damaged chunk may fill less of its buffer than it claims: the same file gives the same answer. */
@@ -112,7 +111,7 @@ static bool choose_colors(exr_reader *r, const exr_attr_chlist_t *list, const ex
     return true;
 }
 
-/* Where the samples go, and the pipeline that decompresses them, chunk by chunk. */
+/* The image being read, and the pipeline that decompresses it chunk by chunk. */
 typedef struct exr_plane {
     exr_context_t ctx;
     exr_decode_pipeline_t pipe;

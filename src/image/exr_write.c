@@ -1,4 +1,4 @@
-/* Writing OpenEXR files with OpenEXRCore. */
+/* Writes OpenEXR files with OpenEXRCore. */
 #include <openexr.h>
 
 #include <stdlib.h>
@@ -8,8 +8,8 @@
 #include "base/threads.h"
 #include "image/format.h"
 
-/* The codes that the calls return say enough; a handler that asked the context for its data, as the reader's
- * does, could meet a lock that the library holds while it writes. */
+/* Empty: return codes are used instead. A handler like the reader's could deadlock, as the library holds a lock while
+ * it writes. */
 static void on_write_error(exr_const_context_t ctx, exr_result_t code, const char *message)
 {
     (void)ctx, (void)code, (void)message;
@@ -72,8 +72,8 @@ static exr_result_t compress_chunk(exr_context_t ctx, exr_encode_pipeline_t *pip
     return rv ? rv : exr_encoding_run(ctx, 0, pipe);
 }
 
-/* Compression is nearly all the time: the threads share it, and write in turn, so that the order of the file, and
- * with it every byte, is the same for any number of them. */
+/* Compression takes nearly all the time, so the threads share it. They write in order, so that the bytes are the same
+ * for any number of threads. */
 static exr_result_t write_chunks(exr_context_t ctx, int threads, int width, int height, const image_channel *channel)
 {
     int32_t lines = 0;

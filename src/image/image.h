@@ -1,5 +1,5 @@
-/* Image files: height maps and colours in, pictures out. Rows run from top to bottom. Only png.c includes libpng, only
- * exr_read.c and exr_write.c include OpenEXR.
+/* Image files: reads height maps and colours, writes pictures. Rows run from top to bottom. Only png.c includes libpng,
+ * only exr_read.c and exr_write.c include OpenEXR.
  */
 #ifndef KAGE_IMAGE_IMAGE_H
 #define KAGE_IMAGE_IMAGE_H
@@ -11,7 +11,7 @@
 /* Samples of an image: one value a pixel, or four where it was read in colour. */
 typedef struct image {
     int width, height;
-    float *v; /* height x width x values; the owner calls free() */
+    float *v; /* height x width x values; free() */
 } image;
 
 /* The most samples a side and in all of an image that is read or written. */
@@ -22,14 +22,13 @@ enum { IMAGE_MAX_SIDE = 65536 };
  *
  * PNG: grey, 8 or 16 bit (also 1, 2, 4 bit; grey with alpha, the alpha ignored), as sample / (2^bits - 1),
  * so 0..1, without any gamma; `channel` must be NULL. Colour and palette images are refused.
- * OpenEXR: half or float (or uint) scanline or tiled single-part files; the channel named `channel`, or,
- * where that is NULL, the only channel, or Y; otherwise the error lists the names there are. Values as
- * they are; NaN and infinities are refused.
- * The kind of file is recognised by its first bytes, not by its name.
- * False with one message in *e, which begins with the reason and does not name the file. */
+ * OpenEXR: half, float or uint, scanlines or tiles, one part. The channel named `channel`; if that is NULL, the only
+ * channel, or Y. Values are not changed; NaN and infinities are refused.
+ * The format is recognised by the file's first bytes, not by its name.
+ * False, with one message in *e that does not name the file. */
 bool image_read(const char *path, const char *channel, image *out, errors *e);
 
-/* How values of a colour relate to light; IMAGE_BY_KIND: PNG as sRGB, OpenEXR linear. */
+/* The encoding of colours; IMAGE_BY_KIND: sRGB in PNG, linear in OpenEXR. */
 typedef enum image_encoding { IMAGE_BY_KIND, IMAGE_SRGB, IMAGE_LINEAR } image_encoding;
 
 /* Read a file in colour: four values a pixel, that is 4 x width values a row; linear red, green and blue, and alpha,
@@ -51,15 +50,14 @@ typedef struct image_channel {
     const float *v;
 } image_channel;
 
-/* Write an OpenEXR file of float32 channels (scanlines, ZIP), in any order given, with the texts as string
- * attributes and nothing that depends on the clock. The file appears whole (written aside, then renamed)
- * or not at all. `threads` share the work, 0: one for each processor; the bytes are the same. False with a message in
- * *e that names the file. */
+/* Write an OpenEXR file of float32 channels (scanlines, ZIP), given in any order, with the texts as string attributes.
+ * The file appears complete or not at all (file_writer.h). The bytes do not depend on the clock or on `threads` (0: one
+ * for each processor). False, with a message in *e that names the file. */
 bool image_write_exr(const char *path, int threads, int width, int height, int channels, const image_channel *channel,
                      int texts, const image_text *text, errors *e);
 
 /* Write a PNG of 8 or 16 bits from linear R, G, B in 0..1 (clamped; NaN becomes 0) through the sRGB transfer
- * function, marked as sRGB, rounded to nearest, without dither. The same promises as above. */
+ * function, marked as sRGB, rounded to nearest, without dither. Otherwise as image_write_exr. */
 bool image_write_png(const char *path, int width, int height, int bits, const float *r, const float *g, const float *b,
                      int texts, const image_text *text, errors *e);
 

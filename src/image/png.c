@@ -1,4 +1,4 @@
-/* PNG files by libpng: height maps and colours in, pictures out. */
+/* Reads and writes PNG files with libpng. */
 #include <errno.h>
 #include <png.h>
 #include <setjmp.h>
@@ -9,8 +9,8 @@
 #include "image/format.h"
 #include "image/srgb.h"
 
-/* libpng reports an error through a call that must not return, so it ends in a longjmp. All variables that are alive
- * then are in this struct, in the caller's frame: the function with setjmp has none that the jump could spoil. */
+/* libpng's error handler must not return, so it calls longjmp. What is needed after the jump is in this struct, in the
+ * frame of the caller of setjmp's function, where the jump cannot change it. */
 typedef struct png_job {
     jmp_buf jump;
     char *why; /* IMAGE_WHY */
@@ -123,7 +123,6 @@ bool image_read_png(FILE *file, bool color, image *out, char *why)
     return ok;
 }
 
-/* NULL: there is no such text. */
 static const char *find_text(const png_job *job, const char *key)
 {
     png_textp text = NULL;
@@ -134,7 +133,7 @@ static const char *find_text(const png_job *job, const char *key)
     return NULL;
 }
 
-/* The text Software; NULL: none before the samples. The job's. */
+/* The text Software, owned by libpng. NULL: none before the samples. */
 static const char *software(png_job *job, FILE *file)
 {
     if (setjmp(job->jump))

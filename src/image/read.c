@@ -1,4 +1,4 @@
-/* Reading an image: the format is recognised by the first bytes of the file. */
+/* Reads an image by the reader of its format, which its first bytes show; then checks alpha and decodes sRGB. */
 #include "image/format.h"
 
 #include <errno.h>

@@ -1,7 +1,6 @@
-/* No power of a pixel is computed. The function is monotonic, so the code of x is the number of thresholds at or below
- * x, where threshold k is the linear light halfway between codes k-1 and k: rounding to nearest, exactly. The
- * thresholds are computed with + - * / alone, which IEEE 754 defines to the last bit; pow and powf, whose
- * variants differ from one processor or libm to the next, would let the same picture have different bytes.
+/* The sRGB function by a table of thresholds: the code of x is the number of thresholds <= x, where threshold k is the
+ * linear light halfway between codes k-1 and k. Thresholds are computed with + - * / alone, so that they have the same
+ * bytes everywhere; pow differs between processors and libraries.
  */
 #include "image/srgb.h"
 

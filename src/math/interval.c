@@ -1,7 +1,7 @@
-/* Ranges of products, quotients and elementary functions over intervals. */
+/* Products, quotients and elementary functions of intervals. */
 #include "math/interval.h"
 
-/* From here on an end of an angle is taken as unknown: km_sin errs by an ulp of its argument at the most, 1.5e-11 at
+/* A larger angle counts as unknown: km_sin errs by an ulp of its argument at the most, 1.5e-11 at
  * 1e5, which must stay far below the 1e-9 in has_integer. */
 #define LARGEST_ANGLE 1e5
 
@@ -29,7 +29,7 @@ interval interval_reciprocal(interval a)
     return interval_widen(z, INTERVAL_ONE_ROUNDING);
 }
 
-/* A function that does not fall, from its values at the ends. */
+/* The range of an increasing function from its values at the ends. */
 static interval rising(double lo, double hi) { return interval_widen((interval){lo, hi}, INTERVAL_ROUNDINGS); }
 
 /* A function that is extreme at the corners of a rectangle, from its values there. */
@@ -95,7 +95,7 @@ interval interval_cosh(interval a)
 
 interval interval_tanh(interval a) { return rising(km_tanh(a.lo), km_tanh(a.hi)); }
 
-/* What underflows is above 0, and not above 0 alone. */
+/* The range of a function that is never negative; its upper end is not 0, even where it underflows. */
 static interval not_negative(interval z) { return (interval){greater(z.lo, 0), greater(z.hi, INTERVAL_TINY)}; }
 
 interval interval_exp(interval a) { return not_negative(rising(km_exp(a.lo), km_exp(a.hi))); }
@@ -114,7 +114,7 @@ interval interval_sqrt(interval a)
 
 interval interval_floor(interval a) { return (interval){floor(a.lo), floor(a.hi)}; }
 
-/* As C's fmod: it has the sign of a, and is no farther from 0 than a and than b. */
+/* As C's fmod: the sign of a, and at most |a| and |b|. */
 interval interval_mod(interval a, interval b)
 {
     interval m = interval_abs(a), n = interval_abs(b);

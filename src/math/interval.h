@@ -1,9 +1,9 @@
 /* Interval arithmetic: the range of a function over intervals of its arguments.
  *
- * The range is computed in the usual rounding and then widened by more than its error, so it holds the exact values and
- * those computed in floating point. Zero stays zero, so that 0 <= u^2 is kept. The range is that of the arguments at
- * which the function is defined; where it is defined nowhere, or where infinities cancel, an end is infinite. 0 times
- * infinity is 0: an infinite end is a bound of finite numbers.
+ * Ends are computed as usual and then widened by more than their rounding error. So a range includes the exact values
+ * and those computed in floating point. An end that is 0 stays 0, so that u^2 >= 0. Arguments outside the function's
+ * domain are ignored; if there are no others, or infinities cancel, an end is infinite. 0 times infinity is 0, because
+ * an infinite end is a bound of finite numbers.
  */
 #ifndef KAGE_MATH_INTERVAL_H
 #define KAGE_MATH_INTERVAL_H
@@ -35,7 +35,7 @@ static inline interval interval_known(interval a)
     return (interval){a.lo == a.lo ? a.lo : -KM_INF, a.hi == a.hi ? a.hi : KM_INF};
 }
 
-/* The part of a in lo..hi, a function's domain; all of lo..hi where there is none. */
+/* The part of a in the domain lo..hi; all of lo..hi if there is none. */
 static inline interval interval_clip(interval a, double lo, double hi)
 {
     interval c = {greater(a.lo, lo), lesser(a.hi, hi)};
@@ -75,13 +75,13 @@ interval interval_reciprocal(interval a);
 static inline interval interval_square(interval a) { return interval_multiply(interval_abs(a), interval_abs(a)); }
 static inline interval interval_scale(double k, interval a) { return interval_multiply(interval_at(k), a); }
 
-/* A monotonic function, from its values at the two ends, computed with at most 8 ulp of error. */
+/* The range of a monotonic function from its values at the two ends, which may be wrong by 8 ulp. */
 static inline interval interval_between(double x, double y)
 {
     return interval_widen((interval){lesser(x, y), greater(x, y)}, INTERVAL_ROUNDINGS);
 }
 
-/* The elementary functions, of which kmath.h has the values. */
+/* The ranges of the functions of kmath.h. */
 interval interval_sin(interval a);
 interval interval_cos(interval a);
 interval interval_tan(interval a);

@@ -1,4 +1,4 @@
-/* Bounds of the noise over a rectangle: its value and partials at the centre, and how far they can go from there. */
+/* Bounds of the noise over a rectangle, by Taylor's theorem from the values at the centre. */
 #include "math/noise.h"
 
 /* Bounds of all partials in the plane, of order 1, 2 and 3. The first partials are at most 2.9262, at the centre of a

@@ -54,7 +54,7 @@ static void function_jets(const bump *base, int n, const double *u, const double
     }
 }
 
-/* scale times a range; 0 for a scale of 0, even where the range is infinite */
+/* range *= scale; 0 for a scale of 0, even if the range is infinite */
 static void scaled(double scale, double range[2])
 {
     const double a = scale == 0 ? 0 : scale * range[0], b = scale == 0 ? 0 : scale * range[1];
@@ -85,15 +85,14 @@ static double widest(const double range[2], double so_far)
     return greater(so_far, greater(fabs(range[0]), fabs(range[1])));
 }
 
-/* Where part i of n of an extent begins. It is the same number where part i - 1 ends. */
+/* The start of part i of n of an extent; part i - 1 ends at the same number. */
 static double part(const double extent[2], int i, int n)
 {
     return i == 0 ? extent[0] : i == n ? extent[1] : extent[0] + (extent[1] - extent[0]) * i / n;
 }
 
-/* Interval arithmetic takes each u in the expression for a variable of its own, so that its bounds are wide over a wide
- * extent. Over CELLS x CELLS parts of it they are close. The steepest slope of all parts bounds the whole: parts share
- * their edges, so that P cannot jump between them. */
+/* Interval arithmetic treats each u in the expression as a variable of its own, so its bounds are wide over a wide
+ * extent. Over CELLS x CELLS parts they are close. The parts share their edges, so P cannot jump between them. */
 static void function_bounds(const expr *f, const double u[2], const double w[2], double P[2], double slope[2])
 {
     enum { CELLS = 64 }; /* along u and along w */

@@ -3,24 +3,23 @@
  * neighbouring points are interpolated bilinearly".
  *
  * The central differences are computed once, at the samples, with scale and chain rule applied. Interpolated, they are
- * the differences of P over one sample to either side: (P(u + du, w) - P(u - du, w))/(2 du). A clamped map is level
- * beyond its outermost samples (with `cells` from half a cell before its edge on). There the derivatives in that
- * direction are 0, as a difference would reach back to where P is not level. On the outermost sample they are the mean
- * of both sides.
+ * the differences of P over one sample to either side: (P(u + du, w) - P(u - du, w))/(2 du). Beyond the outermost
+ * samples of a clamped map P is constant along that axis, and the derivatives are set to 0, as a difference would
+ * include samples where it is not. On the outermost sample they are the mean of both sides.
  */
 #include "texture/bump.h"
 
 #include <stdlib.h>
 
-#define ROUNDING 1e-12    /* more than the roundings of a coordinate in cells, as a share */
-#define LARGEST_INDEX 1e9 /* a farther cell does not fit an int */
+#define ROUNDING 1e-12    /* relative, more than the rounding of a coordinate in cells */
+#define LARGEST_INDEX 1e9 /* of a cell, so that it fits an int */
 
 enum { P_PU_PW, PUU_PUW_PWW, TABLES };
 
 typedef struct map {
     bump base;
     table_grid grid;
-    real *table[TABLES]; /* row 0 at the lowest w, as in the image */
+    real *table[TABLES]; /* row 0 at the smallest w, as in the image */
 } map;
 
 /* 0 where x is beyond the outermost samples along its axis. */
@@ -71,8 +70,8 @@ static corners corners_of(const map *m, int row, int column)
     return (corners){(double)p[0], (double)p[TABLE_VALUES], (double)q[0], (double)q[TABLE_VALUES]};
 }
 
-/* The cell of a coordinate x among n samples, and where in it. *k, samples a unit, becomes 0 beyond an end. In double,
- * where table.c has `real`. */
+/* The cell of a coordinate x among n samples, and the place in it; table.c's cell_of in double. *k, samples per unit,
+ * becomes 0 beyond an end. */
 static int cell(double x, int n, int repeat, double *fraction, double *k)
 {
     *k = repeat || (x >= 0 && x <= n) ? *k : 0;
@@ -98,8 +97,8 @@ static void map_jets(const bump *base, int n, const double *u, const double *w, 
     }
 }
 
-/* The cells that a range of u or of w touches: the first, wrapped, and how many; at most all of them. beyond: the range
- * may reach beyond an end, where P is level. */
+/* The cells that a range of u or of w overlaps: the first, wrapped, and their number. beyond: the range may go beyond
+ * an end, where P is constant. */
 typedef struct cells {
     int first, n;
     bool beyond;
@@ -128,10 +127,10 @@ static void widen(double range[2], double x)
     range[1] = fmax(range[1], x);
 }
 
-/* Over few cells the bounds come from their samples. Over many those of the whole map are close enough. */
+/* From the samples of the cells if these are few, else those of the whole map. */
 static void map_bound(const bump *base, const double u[2], const double w[2], expr_bounds *out)
 {
-    enum { FEW = 1024 }; /* cells; for more the exact bounds are not worth their time */
+    enum { FEW = 1024 }; /* cells */
     const map *m = (const map *)base;
     const table_grid *g = &m->grid;
     const double ku = (double)g->ku, kw = (double)g->kw, Pu = (double)base->Pu_max, Pw = (double)base->Pw_max;

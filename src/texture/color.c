@@ -1,4 +1,4 @@
-/* Checkers and images as colour textures. */
+/* Colour textures: checkers and images. */
 #include "texture/color.h"
 
 #include <stdlib.h>
@@ -75,16 +75,8 @@ typedef struct image_texture {
     color_texture base;
     const texels *texels;
     table_grid grid;
+    bool nearest;
 } image_texture;
-
-static void bilinear_eval(const color_texture *base, int n, const real *u, const real *w, vec3s *color)
-{
-    const image_texture *p = (const image_texture *)base;
-    int32_t at[LANES];
-    real a[LANES], b[LANES];
-    table_cells(&p->grid, n, u, w, at, a, b);
-    table_three(&p->grid, p->texels->v, n, at, a, b, color->x, color->y, color->z);
-}
 
 /* Each pixel is a cell, with the colour of the sample at its upper left corner. At the end of the table, 1 in the last
  * cell is the last sample. */
@@ -94,29 +86,31 @@ STAGE static void to_corner(int n, real *restrict a)
         a[i] = a[i] < 1 ? 0 : R(1);
 }
 
-static void nearest_eval(const color_texture *base, int n, const real *u, const real *w, vec3s *color)
+static void image_eval(const color_texture *base, int n, const real *u, const real *w, vec3s *color)
 {
     const image_texture *p = (const image_texture *)base;
     int32_t at[LANES];
     real a[LANES], b[LANES];
     table_cells(&p->grid, n, u, w, at, a, b);
-    to_corner(n, a);
-    to_corner(n, b);
+    if (p->nearest) {
+        to_corner(n, a);
+        to_corner(n, b);
+    }
     table_three(&p->grid, p->texels->v, n, at, a, b, color->x, color->y, color->z);
 }
 
-static const color_texture_ops bilinear_methods = {.kind = "image", .eval = bilinear_eval};
-static const color_texture_ops nearest_methods = {.kind = "image", .eval = nearest_eval};
+static const color_texture_ops image_methods = {.kind = "image", .eval = image_eval};
 
 color_texture *color_image_new(const texels *t, const map_layout *l, bool nearest)
 {
     image_texture *p = calloc(1, sizeof *p);
     if (!p)
         return NULL;
-    p->base.ops = nearest ? &nearest_methods : &bilinear_methods;
+    p->base.ops = &image_methods;
     p->texels = t;
+    p->nearest = nearest;
     table_lay(&p->grid, t->width, t->height, l);
-    if (nearest) { /* half a pixel on, so that cells begin where their pixels do */
+    if (nearest) { /* half a pixel more, so that cells begin at the edges of pixels */
         p->grid.ou += R(0.5);
         p->grid.ow += R(0.5);
     }

@@ -1,5 +1,5 @@
-/* Colour textures: linear colours as a function of (u,w), a checker or an image. They know nothing of surfaces or
- * light. A texture does not change once it is made, and any number of threads may use it. */
+/* Colour textures: linear colours as a function of (u,w), by a checker or an image. Independent of surfaces and light.
+ * Constant after construction, so any number of threads may use one. */
 #ifndef KAGE_TEXTURE_COLOR_H
 #define KAGE_TEXTURE_COLOR_H
 
@@ -12,10 +12,10 @@ typedef struct color_texture color_texture;
 typedef struct color_texture_ops {
     const char *kind; /* as in the scene file */
 
-    /* The linear colour at (u,w). A stage: n lanes, no allocation, reentrant. */
+    /* The linear colours at n <= LANES places. Reentrant, no allocation. */
     void (*eval)(const color_texture *p, int n, const real *u, const real *w, vec3s *color);
 
-    void (*free)(color_texture *p); /* NULL: it owns nothing but itself */
+    void (*free)(color_texture *p); /* NULL: as free() */
 } color_texture_ops;
 
 struct color_texture {
@@ -25,16 +25,16 @@ struct color_texture {
 /* The pixels of an image as a table; several colour textures can share them. */
 typedef struct texels texels;
 
-/* From an image of four values a pixel, which is copied. The wrap is the layout's. NULL: out of memory, fewer than 2 x
- * 2 pixels, or more than 2^29. */
-texels *texels_new(const image *m, const map_layout *l);
+/* From an image of four values a pixel, which is copied, and the layout's wrap. NULL: out of memory, fewer than 2 x 2
+ * pixels, or more than 2^29. */
+texels *texels_new(const image *rgba, const map_layout *l);
 void texels_free(texels *t);
 
-/* Two colours in turn, in fields of size[0] x size[1] in (u,w), with a corner at `offset`. NULL: out of memory. */
+/* Two alternating colours in fields of size[0] x size[1] in (u,w), with a corner at `offset`. NULL: out of memory. */
 color_texture *color_checker_new(const vec3 color[2], const double size[2], const double offset[2]);
 
-/* The image on (u,w), by a layout of the same wrap as that of the texels, which must outlive the texture. Colours are
- * those of the nearest pixel, or bilinear between the middles of pixels. NULL: out of memory. */
+/* The image on (u,w). The layout has the wrap that the texels were made with; they must outlive the texture. Colours
+ * are of the nearest pixel, or bilinear between the centres of pixels. NULL: out of memory. */
 color_texture *color_image_new(const texels *t, const map_layout *l, bool nearest);
 
 void color_texture_free(color_texture *p);

@@ -1,4 +1,4 @@
-/* P and colours with u reflected at the ends of a range: each wraps the texture that it looks up. */
+/* Bumps and colours that wrap another one and reflect u at the ends of a range before they look it up. */
 #include "texture/mirrored_uv.h"
 
 #include <stdlib.h>
@@ -8,7 +8,7 @@ typedef struct ends {
     real lo, hi;
 } ends;
 
-/* u as it is looked up, and its sign there. */
+/* u after reflection, and the sign of its derivative. */
 STAGE static void reflect(int n, const ends *k, const real *restrict u, real *restrict to, real *restrict sign)
 {
     const real lo = k->lo, hi = k->hi;

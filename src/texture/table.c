@@ -1,20 +1,20 @@
-/* Bilinear look-up in tables, and how tables are laid out. */
+/* Bilinear look-up in tables, and the layout of tables on (u,w). */
 #include "texture/table.h"
 
 #include <stddef.h>
 
-/* Where a coordinate lies among n samples: at i + fraction, 0 <= i < n, the fraction in 0..1, for any x, NaN too. */
+/* The cell i of a coordinate, 0 <= i < n, and its fraction in the cell, 0..1; for any x, also NaN. */
 static inline int cell_of(real x, int n, int repeat, real *fraction)
 {
     real N = (real)n, iN = 1 / N, y = repeat ? x - real_floor(x * iN) * N : x;
-    y = real_min(real_max(y, 0), N); /* the line above gives anything for a distant x or NaN */
+    y = real_min(real_max(y, 0), N); /* without a meaning for a distant x or NaN */
     int i = (int)y;                  /* y >= 0, so this is the floor */
     i = i < n ? i : n - 1;
     *fraction = y - (real)i;
     return i;
 }
 
-/* To be called with a constant `repeat`: a choice within the loop would prevent SIMD. */
+/* Called with a constant `repeat`, as a choice in the loop would prevent SIMD. */
 static inline void cells(const table_grid *t, int repeat, int n, const real *restrict u, const real *restrict w,
                          int32_t *restrict at, real *restrict a, real *restrict b)
 {
@@ -52,9 +52,9 @@ STAGE static void map_one(const table_grid *t, const real *restrict v, int n, co
     }
 }
 
-/* All three values: the left corners of a cell are one vector of 8, and so are the right ones. Twelve gathers would
- * cost about twice as much. The fourth value is padding, yet it must not look dead to the compiler, which would then
- * split the vector. So this is a stage of its own, and the next one picks out the arrays. */
+/* All three values: the two upper corners of a cell are one vector of 8, and so are the lower ones. Twelve gathers
+ * would cost about twice as much. The fourth value is padding, but if it looked dead the compiler would split the
+ * vector. So this stage stores it, and the next one copies the other three. */
 STAGE static void map_interpolate(const table_grid *t, const real *restrict v, int n, const int32_t *restrict at,
                                   const real *restrict a, const real *restrict b, real (*restrict out)[TABLE_VALUES])
 {
@@ -99,15 +99,14 @@ void table_three(const table_grid *t, const real *v, int n, const int32_t *at, c
 
 /* ---- layout ---- */
 
-/* Cells after which the map repeats, or ends. */
+/* The number of cells after which the map repeats or ends. */
 static int period(int n, const map_layout *l)
 {
     int cells = n - (l->corners || l->wrap == MAP_CLAMP);
     return l->wrap == MAP_MIRROR ? 2 * cells : cells;
 }
 
-/* A mirror with samples in the middle of cells repeats the first and the last; with samples on the edges it does not.
- */
+/* A mirrored map repeats its first and last samples if they are in the middle of cells. */
 int table_sample(int i, int n, const map_layout *l)
 {
     if (l->wrap == MAP_CLAMP)

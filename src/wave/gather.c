@@ -1,4 +1,4 @@
-/* Lanes are copied one by one where a group is not the whole wave, and as blocks where it is. */
+/* Copies lanes: as a block where a group is the whole wave, else one by one. */
 #include "wave/gather.h"
 
 #include <string.h>
@@ -88,7 +88,7 @@ int32_t gather_next_group(int n, const rays *x, hits *h, hit_group *g)
     g->n = count(n, h->id, id);
     g->whole = g->n == n;
     if (!g->whole)
-        for (int i = first, m = 0; m < g->n; i++) { /* without a branch: at a silhouette it would be a toss-up */
+        for (int i = first, m = 0; m < g->n; i++) { /* no branch, as it would be unpredictable at a silhouette */
             g->lane[m] = i;
             m += h->id[i] == id;
         }

@@ -1,5 +1,5 @@
-/* The lanes of a wave that have hit one object, side by side, with all that the stages of trace.c find out about them.
- * Its arrays are never cleared: stages write before they read.
+/* The lanes of a wave that hit one object, and the results of all stages of trace.c for them. Arrays are not
+ * initialised: each stage reads only what earlier stages wrote.
  */
 #ifndef KAGE_WAVE_HIT_GROUP_H
 #define KAGE_WAVE_HIT_GROUP_H
@@ -10,13 +10,13 @@
 
 typedef struct hit_group {
     int n;
-    bool whole;          /* all the lanes of the wave, so in its order */
-    int32_t lane[LANES]; /* their places in the wave */
+    bool whole;          /* all lanes of the wave; then `lane` is not set */
+    int32_t lane[LANES]; /* their lanes in the wave */
 
     /* the smooth hit */
     rays x;
     real t[LANES];       /* t_hit */
-    int32_t part[LANES]; /* of the surface; u and w are its own */
+    int32_t part[LANES]; /* of the surface; u and w belong to it */
     real u[LANES], w[LANES];
     partials q;
 
@@ -26,20 +26,20 @@ typedef struct hit_group {
     vec3s n_bump;   /* n', unit */
 
     /* the method */
-    real tau[LANES];      /* the shift, */
-    real t0[LANES];       /* t_hit + tau: the shifted place is r + s t0 */
-    int32_t order[LANES]; /* really used; method_code's numbers */
+    real tau[LANES];      /* the shift */
+    real t0[LANES];       /* t_hit + tau: the shadow ray starts at r + s t0 */
+    int32_t order[LANES]; /* used; method_code's numbers */
 
-    /* the light at hand: the segments to it, and 1 where it is seen, 0 where not */
+    /* the current light: the segments to it; 1 lit, 0 in shadow */
     rays to_light;
     real lit[LANES];
-    vec3s tint; /* what is left of it behind transparent casters, where a scene has some */
+    vec3s tint; /* its transmission by transparent casters, if the scene has some */
 
-    vec3s color; /* of the material, where it is not constant */
-    vec3s rgb;   /* linear, as the eye gets it */
+    vec3s color; /* of the material, if not constant */
+    vec3s rgb;   /* linear, the result */
 } hit_group;
 
-/* The place in the wave of a group's lane. */
+/* The lane of the wave for a lane of the group. */
 static inline int hit_group_place(const hit_group *g, int i) { return g->whole ? i : g->lane[i]; }
 
 #endif

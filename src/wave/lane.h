@@ -1,4 +1,4 @@
-/* One lane of a wave as a vector of bumpshadow.h. Loops over these stay plain loops over the arrays. */
+/* One lane of a wave as a vector of bumpshadow.h. Inlined, so that loops with these still vectorise. */
 #ifndef KAGE_WAVE_LANE_H
 #define KAGE_WAVE_LANE_H
 

@@ -1,7 +1,5 @@
-/* A wave: some LANES rays that travel together through the stages of trace.c, each quantity in an array
- * of its own (structure of arrays), so that a stage is one plain loop over the lanes.
- *
- * Arrays hold LANES entries; the first n are in use. What lies beyond n is undefined and never read.
+/* A wave: up to LANES rays that go through the stages of trace.c together, as a structure of arrays, so that a stage
+ * is one plain loop. The first n entries of each array are in use; the others are undefined and never read.
  */
 #ifndef KAGE_WAVE_WAVE_H
 #define KAGE_WAVE_WAVE_H
@@ -11,7 +9,7 @@
 #include "base/real.h"
 #include "base/vec3.h"
 
-enum { LANES = 128 }; /* a tile of 16 x 8 pixels; all that one wave touches stays in a first-level cache */
+enum { LANES = 128 }; /* a tile of 16 x 8 pixels; a wave's data fit the first-level cache */
 
 typedef struct vec3s {
     real x[LANES], y[LANES], z[LANES];
@@ -52,22 +50,22 @@ typedef struct rays {
     vec3s r, s;
 } rays;
 
-/* Where each ray has met a smooth surface first. id < 0: nowhere, and then t is REAL_FAR. */
+/* The first hit of each ray with a smooth surface. id < 0: none, and t is REAL_FAR. */
 typedef struct hits {
     real t[LANES];
     int32_t id[LANES];   /* index of the object in the scene */
-    int32_t part[LANES]; /* of its surface; set by displaced surfaces and meshes, others find it in `locate` */
+    int32_t part[LANES]; /* of its surface; set only by displaced surfaces and meshes */
 } hits;
 
-/* Where `take`, ray i has met object `id` at t. */
+/* If `take`, ray i hits object `id` at t. */
 static inline void hits_take(hits *h, int i, int take, real t, int32_t id)
 {
     h->t[i] = take ? t : h->t[i];
     h->id[i] = take ? id : h->id[i];
 }
 
-/* The starts of rays that leave a surface: the object, the part of its surface, and the place on its smooth shape.
- * There the ray begins for the surface itself, while r is where it begins for all others. */
+/* The starts of rays that leave a surface: the object, the part of its surface, and the point on its smooth shape. For
+ * hits with this surface the ray starts there, for all others at r. */
 typedef struct ray_origins {
     int32_t id[LANES], part[LANES];
     vec3s at;
@@ -83,8 +81,8 @@ typedef struct bump_values {
     real P[LANES], Pu[LANES], Pw[LANES], Puu[LANES], Puw[LANES], Pww[LANES];
 } bump_values;
 
-/* Places in space as seen from a surface: the foot of the perpendicular (u,w), the height over it along n/|n|, and the
- * gradients of the three. */
+/* The closest points of a surface to points in space: (u,w), the height above it along n/|n|, and the gradients of the
+ * three. */
 typedef struct closest_points {
     real u[LANES], w[LANES], h[LANES];
     vec3s gu, gw, gh;
