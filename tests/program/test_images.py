@@ -143,7 +143,7 @@ def test_constant_bump_under_other_lights(tmp_path: Path, light: str) -> None:
     assert shadows_differ(none, moved)[0] > 100
     if "area" in light:
         assert set(np.unique(bumped["visibility.lamp"] * 16) % 1) == {0}
-    assert len(np.unique(bumped["visibility.lamp"])) == 17
+        assert len(np.unique(bumped["visibility.lamp"])) == 17
 
 
 @pytest.mark.parametrize("method, exact", [("1", True), ("2", True), ("2+", True), ("0", False)])
