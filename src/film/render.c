@@ -205,7 +205,7 @@ static bool run(const tracer *tr, const render_options *o, pass *p, film *f, sta
     const long count = tiles(part);
     bool good = true;
     const int threads = threads_of(o->threads);
-    (void)threads; /* without OpenMP */
+    (void)threads;       /* without OpenMP */
     show(o, p, p->done); /* here and at the end, as other threads may take all the tiles of a small picture */
 #pragma omp parallel num_threads(threads)
     {
