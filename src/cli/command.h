@@ -40,7 +40,7 @@ typedef struct arguments {
 bool arguments_read(arguments *a, int argc, char **argv, int command);
 void arguments_free(arguments *a);
 
-int command_render(const arguments *a);
+int command_render(const arguments *given);
 int command_check(const arguments *a);
 int command_pixel(const arguments *a);
 int command_pov(const arguments *a);

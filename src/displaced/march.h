@@ -37,7 +37,7 @@ struct domain {
 /* The first hits with 0 < t < end[i]: t[i], where found[i] is DISPLACED_HIT (or DISPLACED_UNCERTAIN: then the best
  * guess). own: 1 where the ray starts on this piece's displaced surface, so that the hit at t = 0 does not count; NULL:
  * none does. P must satisfy displaced_has_bounds. Returns how often P was evaluated. */
-long displaced_search(const domain *g, const bump *P, int n, const rays *x, const real *end, const int32_t *own,
+long displaced_search(const domain *f, const bump *P, int n, const rays *x, const real *end, const int32_t *own,
                       real *t, int32_t *found);
 
 #endif

@@ -85,6 +85,6 @@ typedef struct noise_bounds {
 
 /* Bounds of the noise and its partials over a rectangle: close if it is small; those of the whole plane if its sides
  * add up to 2 or more (noise_bounds.c). */
-noise_bounds noise_bounds_over(interval x, interval y);
+noise_bounds noise_bounds_over(interval a, interval b);
 
 #endif

@@ -25,9 +25,9 @@ surface *patch_surface_new(patch *q);
 /* The same; *bounded is false where Q has no bounds or is a point. */
 surface *patch_surface_new_bounded(patch *q, bool *bounded);
 
-/* The image of a patch surface by an affine map, which unlike that by surface_transformed can be displaced. `from` must
+/* The image of a patch surface by an affine map, which unlike that by surface_transformed can be displaced. `base` must
  * outlive it. Where the map mirrors, u runs the other way. NULL: as patch_surface_new. */
-surface *patch_surface_affine(const surface *from, const affine *m);
+surface *patch_surface_affine(const surface *base, const affine *m);
 
 /* A closed form's formula as a patch surface, for true displacement of shapes whose closest points have no closed form.
  * `kind` must outlive it; threads: as patch.threads. NULL: out of memory. */
