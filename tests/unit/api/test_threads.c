@@ -70,7 +70,7 @@ static void threads_share_a_scene(void **state)
 static void *read_model(void *user)
 {
     kage_scene *s = NULL;
-    *(int *)user = kage_scene_parse(MODEL, strlen(MODEL), "m", KAGE_TESTS_DIR "/../scenes/data", NULL, &s, NULL);
+    *(int *)user = (int)kage_scene_parse(MODEL, strlen(MODEL), "m", KAGE_TESTS_DIR "/../scenes/data", NULL, &s, NULL);
     kage_scene_free(s);
     return NULL;
 }
