@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Make the OpenEXR files that tests/test_image.c reads, of kinds that kage itself does not write.
+"""Make the OpenEXR files that tests/unit/image/test_image.c reads, of kinds that kage itself does not write.
 
 Needs the packages OpenEXR (3.4 or later) and numpy. All hold, at column x of row y of the data window,
 ((7 x + 13 y) mod 64) / 64, which every sample type but uint holds exactly (uint: without the division).

@@ -1,6 +1,6 @@
 """Pictures as a whole: what the method must give exactly, and the same bytes on every processor.
 
-The unit tests (tests/test_shift.c and its neighbours) look at the formulas; here the whole way from the scene file to
+The unit tests (tests/unit/method) look at the formulas; here the whole way from the scene file to
 the layers of the EXR is looked at.
 """
 

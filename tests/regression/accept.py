@@ -1,5 +1,5 @@
 """Accept changed pictures: show old, new and difference on a page, ask, then keep the new ones for
-tests/test_regression.py.
+tests/program/test_regression.py.
 
 ACCEPT=yes answers the question beforehand. Without it and without a terminal nothing is kept.
 
