@@ -194,7 +194,7 @@ $(BUILD)/flags: FORCE
 	@mkdir -p $(BUILD)
 	@echo '$(CC) $(CFLAGS) $(LDFLAGS)' | cmp -s - $@ || echo '$(CC) $(CFLAGS) $(LDFLAGS)' > $@
 
-$(BUILD)/mesh/load.o: DEFINES += -DKAGE_LIBEXEC='"$(LIBEXEC)"'
+$(BUILD)/mesh/load.o: private DEFINES += -DKAGE_LIBEXEC='"$(LIBEXEC)"'
 $(BUILD)/mesh/load.o: $(BUILD)/libexec
 
 $(BUILD)/libexec: FORCE
@@ -221,7 +221,7 @@ $(UNITS:%=$(BUILD)/%): $(BUILD)/%: $(BUILD)/%.o $(BUILD)/internal.a
 
 # A test in which memory runs out: our own objects ask its functions.
 WRAPPED   = malloc calloc realloc posix_memalign strdup free fy_node_build_from_malloc_string
-$(BUILD)/unit/api/test_memory: override LDFLAGS += $(WRAPPED:%=-Wl,--wrap=%)
+$(BUILD)/unit/api/test_memory: private override LDFLAGS += $(WRAPPED:%=-Wl,--wrap=%)
 
 # ---- tests ----
 
