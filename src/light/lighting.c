@@ -6,34 +6,38 @@
 
 #define SHORT 1e-6 /* scene units */
 
-STAGE static void aim_at_place(hit_group *restrict g, const light *l, const real *restrict t)
+STAGE static void aim_at_place(const light *l, int n, const rays *restrict x, const real *restrict t,
+                               rays *restrict to_light)
 {
     const real lx = (real)l->at.x, ly = (real)l->at.y, lz = (real)l->at.z;
-    for (int i = 0; i < g->n; i++) {
-        bs_vec3 o = lane_at(&g->x, i, t[i]), d = {lx - o.x, ly - o.y, lz - o.z};
-        lane_set(&g->to_light.r, i, o);
-        lane_set(&g->to_light.s, i, d);
+    for (int i = 0; i < n; i++) {
+        bs_vec3 o = lane_at(x, i, t[i]), d = {lx - o.x, ly - o.y, lz - o.z};
+        lane_set(&to_light->r, i, o);
+        lane_set(&to_light->s, i, d);
     }
 }
 
 /* To the light's plane. Behind the plane there is light without shadows, as in POV-Ray: there the ray is only SHORT. */
-STAGE static void aim_along(hit_group *restrict g, const light *l, const real *restrict t)
+STAGE static void aim_along(const light *l, int n, const rays *restrict x, const real *restrict t,
+                            rays *restrict to_light)
 {
     const real lx = (real)l->at.x, ly = (real)l->at.y, lz = (real)l->at.z;
     const real ax = (real)l->axis.x, ay = (real)l->axis.y, az = (real)l->axis.z;
-    for (int i = 0; i < g->n; i++) {
-        bs_vec3 o = lane_at(&g->x, i, t[i]);
+    for (int i = 0; i < n; i++) {
+        bs_vec3 o = lane_at(x, i, t[i]);
         real depth = real_max((o.x - lx) * ax + (o.y - ly) * ay + (o.z - lz) * az, R(SHORT));
         bs_vec3 d = {-depth * ax, -depth * ay, -depth * az};
-        lane_set(&g->to_light.r, i, o);
-        lane_set(&g->to_light.s, i, d);
+        lane_set(&to_light->r, i, o);
+        lane_set(&to_light->s, i, d);
     }
 }
 
-void lighting_aim(const light *l, const real *t, hit_group *g)
+void lighting_rays(const light *l, int n, const rays *x, const real *t, rays *to_light)
 {
-    (l->kind == LIGHT_PARALLEL ? aim_along : aim_at_place)(g, l, t);
+    (l->kind == LIGHT_PARALLEL ? aim_along : aim_at_place)(l, n, x, t, to_light);
 }
+
+void lighting_aim(const light *l, const real *t, hit_group *g) { lighting_rays(l, g->n, &g->x, t, &g->to_light); }
 
 STAGE static void add(const hit_group *restrict g, real share, real *restrict sum)
 {

@@ -8,4 +8,7 @@
  * materials. */
 void shadow_light(const tracer *tr, int32_t id, const light *l, workspace *v);
 
+/* Whether object `id` casts shadows. */
+bool shadow_casts(const tracer *tr, int32_t id);
+
 #endif

@@ -10,6 +10,7 @@
 #include "render/trace.h"
 
 #include "method/shift.h"
+#include "render/auto.h"
 #include "render/intersect.h"
 #include "light/lighting.h"
 #include "light/shade.h"
@@ -39,6 +40,8 @@ static void shape_and_shift(const tracer *tr, int32_t id, workspace *v)
         displaced_shift(&v->displaced[id].base, g);
     else
         st->evaluations += shift_group(g, P, tr->shadow, tr->guard);
+    if (P && tr->shadow.kind == METHOD_AUTO)
+        auto_shift(tr, id, v);
     stats_stage(st, STAGE_SHIFT);
     if (P)
         stats_orders(st, g->n, g->order, method_code(tr->shadow));
