@@ -1,9 +1,8 @@
 /* Draws brackets together: bounds, steps, secants. */
 #include "method/bracket.h"
 
-#include <string.h>
-
 #include "method/method.h"
+#include "wave/gather.h"
 #include "wave/lane.h"
 
 enum {
@@ -14,84 +13,100 @@ enum {
 
 static inline bs_view view(const brackets *k, int i) { return (bs_view){k->sn[i], k->a[i], k->b[i]}; }
 
-/* Where the ray is at height P over the smooth surface: the root of 1/2 curvature tau^2 - sn tau + P near P/sn. Where
- * there is none, the place where the height is nearest to P. */
-static inline real reaches(bs_view v, real curvature, real P)
-{
-    const real A = R(0.5) * curvature, B = -v.sn, d = B * B - 4 * A * P;
-    real root = bs_tau2(v, B, d > 0 ? d : 0, P), turn = v.sn / curvature;
-    return d >= 0 ? root : turn;
-}
-
-STAGE static void begin(const hit_group *restrict g, real Pmin, real Pmax, brackets *restrict k)
+/* Order 0, or none where the surface is not regular, and the ray relative to the surface. */
+STAGE static void begin(hit_group *restrict g, brackets *restrict k)
 {
     for (int i = 0; i < g->n; i++) {
         bs_vec3 n = lane_get(&g->n_smooth, i), Qu = lane_get(&g->q.Qu, i), Qw = lane_get(&g->q.Qw, i);
         bs_view v = bs_view_of(lane_get(&g->x.s, i), n, Qu, Qw);
-        real curvature =
-            bs_curvature(v, n, lane_get(&g->q.Quu, i), lane_get(&g->q.Quw, i), lane_get(&g->q.Qww, i));
-        real x = reaches(v, curvature, Pmin), y = reaches(v, curvature, Pmax);
+        int regular = bs_regular(n, Qu, Qw);
+        real tau = bs_tau0(v, g->bump.P[i]);
         k->sn[i] = v.sn;
         k->a[i] = v.a;
         k->b[i] = v.b;
-        k->curvature[i] = curvature;
-        k->front[i] = real_max(real_min(x, y), -g->t[i]); /* not before the ray's start */
-        k->back[i] = real_max(real_max(x, y), -g->t[i]);
+        k->curvature[i] =
+            bs_curvature(v, n, lane_get(&g->q.Quu, i), lane_get(&g->q.Quw, i), lane_get(&g->q.Qww, i));
+        g->tau[i] = regular ? tau : 0;
+        g->order[i] = regular ? 0 : -1;
     }
 }
 
-/* No bracket where there is no order 0, and where its ends are not finite. */
-STAGE static void close_open_ends(const hit_group *restrict g, brackets *restrict k)
+STAGE static int any_curved(int n, const real *restrict curvature)
+{
+    int some = 0;
+    for (int i = 0; i < n; i++)
+        some |= curvature[i] != 0;
+    return some;
+}
+
+/* Where the ray is at height P over the smooth surface: the root of 1/2 curvature tau^2 - sn tau + P near P/sn. Where
+ * there is none, the place where the height is nearest to P. Without curvature it is P/sn to the last bit. */
+static inline real reaches(bs_view v, real curvature, real P)
+{
+    const real A = R(0.5) * curvature, B = -v.sn, d = bs_discriminant(A, B, P);
+    real root = bs_tau2(v, B, d > 0 ? d : 0, P), turn = v.sn / curvature;
+    return d >= 0 ? root : turn;
+}
+
+/* Both ends, not before the ray's start; tau where there is no bracket. */
+static inline void set_ends(const hit_group *restrict g, int i, real x, real y, brackets *restrict k)
+{
+    real tau = g->tau[i], start = -g->t[i], front = real_max(real_min(x, y), start), back = real_max(x, y);
+    int good = (g->order[i] >= 0) & (back - front < REAL_FAR);
+    back = real_max(back, start);
+    k->front[i] = good ? front : tau;
+    k->back[i] = good ? back : tau;
+}
+
+STAGE static void ends_flat(const hit_group *restrict g, real Pmin, real Pmax, brackets *restrict k)
+{
+    for (int i = 0; i < g->n; i++)
+        set_ends(g, i, Pmin / k->sn[i], Pmax / k->sn[i], k);
+}
+
+STAGE static void ends_curved(const hit_group *restrict g, real Pmin, real Pmax, brackets *restrict k)
 {
     for (int i = 0; i < g->n; i++) {
-        real tau = g->tau[i], front = k->front[i], back = k->back[i];
-        int good = (g->order[i] >= 0) & (back - front < REAL_FAR);
-        k->front[i] = good ? front : tau;
-        k->back[i] = good ? back : tau;
+        bs_view v = view(k, i);
+        set_ends(g, i, reaches(v, k->curvature[i], Pmin), reaches(v, k->curvature[i], Pmax), k);
     }
 }
 
-int bracket_begin(const hit_group *g, const bump *P, brackets *k)
+void bracket_begin(hit_group *g, const bump *P, brackets *k)
 {
-    const bool bounded = P->Pmax - P->Pmin < REAL_FAR;
     k->n = g->n;
-    memcpy(k->u, g->u, sizeof k->u);
-    memcpy(k->w, g->w, sizeof k->w);
-    memcpy(k->tau, g->tau, sizeof k->tau);
-    memcpy(k->order, g->order, sizeof k->order);
-    begin(g, P->Pmin, P->Pmax, k);
-    close_open_ends(g, k);
-    return bounded ? 0 : g->n;
+    begin(g, k);
+    (any_curved(g->n, k->curvature) ? ends_curved : ends_flat)(g, P->Pmin, P->Pmax, k);
 }
 
-void bracket_pick(int n, const int32_t *lane, const brackets *from, brackets *to)
+void places_pick(const hit_group *g, const brackets *k, int n, const int32_t *lane, places *p)
 {
-    to->n = n;
+    p->k.n = n;
     for (int i = 0; i < n; i++) {
         const int j = lane[i];
-        to->lane[i] = from->lane[j];
-        to->sn[i] = from->sn[j];
-        to->a[i] = from->a[j];
-        to->b[i] = from->b[j];
-        to->curvature[i] = from->curvature[j];
-        to->u[i] = from->u[j];
-        to->w[i] = from->w[j];
-        to->front[i] = from->front[j];
-        to->back[i] = from->back[j];
-        to->tau[i] = from->tau[j];
-        to->pixels[i] = from->pixels[j];
-        to->order[i] = from->order[j];
+        p->lane[i] = j;
+        p->k.sn[i] = k->sn[j];
+        p->k.a[i] = k->a[j];
+        p->k.b[i] = k->b[j];
+        p->k.curvature[i] = k->curvature[j];
+        p->k.front[i] = k->front[j];
+        p->k.back[i] = k->back[j];
+        p->t[i] = g->t[j];
+        p->u[i] = g->u[j];
+        p->w[i] = g->w[j];
+        p->tau[i] = g->tau[j];
+        p->pixels[i] = 0;
+        p->order[i] = g->order[j];
     }
+    gather_rays(n, lane, &g->x, &p->x);
 }
 
-int bracket_wide(const brackets *k, real error, int32_t *lane)
+void places_put(const places *p, hit_group *g)
 {
-    int n = 0;
-    for (int i = 0; i < k->n; i++) { /* without a branch */
-        lane[n] = i;
-        n += (k->back[i] - k->front[i]) * k->pixels[i] > error;
+    for (int i = 0; i < p->k.n; i++) {
+        g->tau[p->lane[i]] = p->tau[i];
+        g->order[p->lane[i]] = p->order[i];
     }
-    return n;
 }
 
 /* ---- the search ---- */
@@ -106,10 +121,11 @@ typedef struct search {
     bump_values h;
 } search;
 
-STAGE static void search_begin(const brackets *restrict k, real per_step, search *restrict s)
+STAGE static void search_begin(const places *restrict p, real per_step, search *restrict s)
 {
+    const brackets *k = &p->k;
     for (int i = 0; i < k->n; i++) {
-        real steps = real_floor((k->back[i] - k->front[i]) * k->pixels[i] / per_step) + 1;
+        real steps = real_floor((k->back[i] - k->front[i]) * p->pixels[i] / per_step) + 1;
         s->steps[i] = real_min(steps, STEPS_MAX);
         s->front[i] = k->front[i];
         s->back[i] = k->back[i];
@@ -153,35 +169,36 @@ STAGE static void secant_place(int n, search *restrict s)
 }
 
 /* Take the place in, unless the lane is done; the end that stays counts half, so that both ends move (Illinois). */
-STAGE static void secant_step(brackets *restrict k, real error, search *restrict s)
+STAGE static void secant_step(places *restrict p, real error, search *restrict s)
 {
+    const brackets *k = &p->k;
     for (int i = 0; i < k->n; i++) {
         bs_view v = view(k, i);
         real gap = bs_gap(v, k->curvature[i], s->at[i], s->h.P[i]), above = v.sn < 0 ? gap : -gap, at = s->at[i];
         real front = s->front[i], back = s->back[i], high = s->above[i], low = s->below[i];
-        real rise = high - low, left = real_abs(above) * (back - front), tau = k->tau[i];
+        real rise = high - low, left = real_abs(above) * (back - front), tau = p->tau[i];
         int open = (s->found[i] != 0) & (s->done[i] == 0), hit = above <= 0;
-        k->tau[i] = open ? at : tau;
+        p->tau[i] = open ? at : tau;
         s->front[i] = hit ? front : at;
         s->above[i] = hit ? high * R(0.5) : above;
         s->back[i] = hit ? at : back;
         s->below[i] = hit ? above : low * R(0.5);
-        s->done[i] |= left * k->pixels[i] <= error * rise;
+        s->done[i] |= left * p->pixels[i] <= error * rise;
     }
 }
 
-STAGE static void places(const brackets *restrict k, search *restrict s)
+STAGE static void search_places(const places *restrict p, search *restrict s)
 {
-    for (int i = 0; i < k->n; i++) {
-        s->u[i] = k->u[i] + k->a[i] * s->at[i];
-        s->w[i] = k->w[i] + k->b[i] * s->at[i];
+    for (int i = 0; i < p->k.n; i++) {
+        s->u[i] = p->u[i] + p->k.a[i] * s->at[i];
+        s->w[i] = p->w[i] + p->k.b[i] * s->at[i];
     }
 }
 
-static void look_up(const brackets *k, const bump *P, search *s)
+static void look_up(const places *p, const bump *P, search *s)
 {
-    places(k, s);
-    P->ops->eval(P, k->n, s->u, s->w, 0, &s->h);
+    search_places(p, s);
+    P->ops->eval(P, p->k.n, s->u, s->w, 0, &s->h);
 }
 
 static bool all(int n, const int32_t *x)
@@ -192,26 +209,27 @@ static bool all(int n, const int32_t *x)
     return m == n;
 }
 
-long bracket_search(brackets *k, const bump *P, real error)
+long places_search(places *p, const bump *P, real error)
 {
+    const int n = p->k.n;
     search s;
     long looks = 0;
-    search_begin(k, STEP_ERRORS * error, &s);
-    for (int step = 0; step <= STEPS_MAX && !all(k->n, s.found); step++) {
-        search_place(k, (real)step, &s);
-        look_up(k, P, &s);
-        search_step(k, (real)step, &s);
-        looks += k->n;
+    search_begin(p, STEP_ERRORS * error, &s);
+    for (int step = 0; step <= STEPS_MAX && !all(n, s.found); step++) {
+        search_place(&p->k, (real)step, &s);
+        look_up(p, P, &s);
+        search_step(&p->k, (real)step, &s);
+        looks += n;
     }
-    for (int i = 0; i < k->n; i++)
+    for (int i = 0; i < n; i++)
         s.done[i] = !s.found[i];
-    for (int secant = 0; secant < SECANTS_MAX && !all(k->n, s.done); secant++) {
-        secant_place(k->n, &s);
-        look_up(k, P, &s);
-        secant_step(k, error, &s);
-        looks += k->n;
+    for (int secant = 0; secant < SECANTS_MAX && !all(n, s.done); secant++) {
+        secant_place(n, &s);
+        look_up(p, P, &s);
+        secant_step(p, error, &s);
+        looks += n;
     }
-    for (int i = 0; i < k->n; i++)
-        k->order[i] = s.found[i] ? method_code((method){METHOD_MARCH, 1}) : 0;
+    for (int i = 0; i < n; i++)
+        p->order[i] = s.found[i] ? method_code((method){METHOD_MARCH, 1}) : 0;
     return looks;
 }

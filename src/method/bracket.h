@@ -12,33 +12,35 @@
 #include "texture/bump.h"
 #include "wave/hit_group.h"
 
-/* Each lane's ray relative to the surface (bs_view), its bracket, and its place within. */
+/* Each lane's ray relative to the surface (bs_view), and its bracket. */
 typedef struct brackets {
     int n;
-    int32_t lane[LANES]; /* in the group */
     real sn[LANES], a[LANES], b[LANES], curvature[LANES];
-    real u[LANES], w[LANES];        /* of the smooth hit */
     real front[LANES], back[LANES]; /* as tau; front is the viewer's side. Both are tau where there is no bracket. */
-    real tau[LANES];                /* the place */
-    real pixels[LANES];             /* so many is an error of 1 in tau on the screen */
-    int32_t order[LANES];           /* the method that found the place, as method_code has it */
 } brackets;
 
-/* The brackets of the lanes of g; the place is g->tau, by order 0. There is none where P has no bounds or the surface
- * is not regular. Neither `pixels` nor `lane` is set. Returns how many have none for want of bounds. */
-int bracket_begin(const hit_group *g, const bump *P, brackets *k);
+/* Some lanes of a group, whose place is sought. */
+typedef struct places {
+    brackets k;
+    int32_t lane[LANES]; /* of the group */
+    rays x;
+    real t[LANES];           /* t_hit */
+    real u[LANES], w[LANES]; /* of the smooth hit */
+    real tau[LANES];         /* the place, in the bracket */
+    real pixels[LANES];      /* so many is an error of 1 in tau on the screen */
+    int32_t order[LANES];    /* the method that found it, as method_code has it */
+} places;
 
-/* Copy lanes lane[0..n-1]; `lane` of the copies is that of the originals. */
-void bracket_pick(int n, const int32_t *lane, const brackets *from, brackets *to);
+/* g->tau and g->order by order 0, and the brackets. There is no bracket where the surface is not regular, or where P
+ * has no bounds. */
+void bracket_begin(hit_group *g, const bump *P, brackets *k);
 
-/* The number of lanes whose bracket is wider than `error` pixels, and these lanes. */
-int bracket_wide(const brackets *k, real error, int32_t *lane);
+/* Pick lanes lane[0..n-1] of a group, with g's places; `pixels` is 0. And put their places back. */
+void places_pick(const hit_group *g, const brackets *k, int n, const int32_t *lane, places *p);
+void places_put(const places *p, hit_group *g);
 
-/* Draw the brackets together by bounds of P over what they cover. Returns how often P was looked up. */
-long bracket_thin(brackets *k, const bump *P);
-
-/* Find the place in each bracket to `error` pixels: steps through it to the first crossing, then secant steps. Returns
- * how often P was looked up. */
-long bracket_search(brackets *k, const bump *P, real error);
+/* Find the places to `error` pixels: steps through each bracket to the first crossing, then secant steps. Returns how
+ * often P was looked up. */
+long places_search(places *p, const bump *P, real error);
 
 #endif

@@ -224,9 +224,7 @@ long shift_group(hit_group *g, const bump *P, method m, bool guard)
         }
         return 0;
     }
-    if (m.kind == METHOD_AUTO)
-        order_0(g, P->Pmin, P->Pmax);
-    else if (m.kind == METHOD_ORDER)
+    if (m.kind == METHOD_ORDER)
         by_orders[guard][m.n](g, P->Pmin, P->Pmax);
     else
         evaluations = (m.kind == METHOD_ITER ? iterate : march)(g, P, m);

@@ -1,6 +1,5 @@
 /* Each lane's true place is in a bracket on its viewing ray (method/bracket.h). Where a light sees the whole bracket
- * alike, the place within does not matter, and order 0's is kept. For the others the bracket is drawn together until
- * the light sees it alike, or it is no longer than the error on the screen.
+ * alike, the place within does not matter, and order 0's is kept. For the others it is found.
  *
  * What a light sees: the shadow rays from a bracket sweep a triangle with the light as its apex. A caster whose box the
  * triangle does not meet cannot matter. A convex caster that hides both ends hides all. Anything else counts as not
@@ -8,19 +7,37 @@
  */
 #include "render/auto.h"
 
+#include <string.h>
+
 #include "light/lighting.h"
 #include "method/bracket.h"
+#include "render/intersect.h"
 #include "render/shadow.h"
-#include "wave/gather.h"
 #include "wave/lane.h"
 
-/* ---- what a light sees of the brackets ---- */
+STAGE static int any(int n, const int32_t *x)
+{
+    int some = 0;
+    for (int i = 0; i < n; i++)
+        some |= x[i];
+    return some;
+}
 
-/* The lanes' viewing rays and smooth hits. */
-typedef struct lanes {
-    rays x;
-    real t[LANES];
-} lanes;
+/* ---- what a light sees ---- */
+
+/* The rays to a light from both ends and from the middle of each lane's bracket. */
+typedef struct sweep {
+    const light *l;
+    const brackets *k;
+    const rays *x; /* the viewing rays, and their smooth hits */
+    const real *t;
+    rays middle, front, back;
+    real half[LANES];              /* half the bracket, in t */
+    bool ends;                     /* front and back are set */
+    bool met;                      /* some caster is near some lane */
+    int32_t near[LANES];           /* the current caster may matter */
+    int32_t some[LANES], dark[LANES]; /* over all casters: one may matter; an opaque one hides both ends */
+} sweep;
 
 STAGE static void middles(const brackets *restrict k, const real *restrict t, real *restrict middle,
                           real *restrict half)
@@ -57,48 +74,39 @@ STAGE static void near_box(int n, const rays *restrict to_light, const vec3s *re
     }
 }
 
-/* The rays to a light from both ends and the middle of each bracket. */
-typedef struct sweep {
-    rays middle, front, back;
-    real half[LANES];
-    bool ends; /* front and back are set */
-} sweep;
-
-static void sweep_ends(const light *l, const brackets *k, const rays *x, const real *t, sweep *w)
+static void sweep_begin(const light *l, const brackets *k, const rays *x, const real *t, sweep *w)
 {
+    real middle[LANES];
+    w->l = l;
+    w->k = k;
+    w->x = x;
+    w->t = t;
+    w->ends = w->met = false;
+    middles(k, t, middle, w->half);
+    lighting_rays(l, k->n, x, middle, &w->middle);
+    memset(w->some, 0, sizeof w->some);
+    memset(w->dark, 0, sizeof w->dark);
+}
+
+static void sweep_ends(sweep *w)
+{
+    const int n = w->k->n;
     real at[LANES];
     if (w->ends)
         return;
-    sums(k->n, t, k->front, at);
-    lighting_rays(l, k->n, x, at, &w->front);
-    sums(k->n, t, k->back, at);
-    lighting_rays(l, k->n, x, at, &w->back);
+    sums(n, w->t, w->k->front, at);
+    lighting_rays(w->l, n, w->x, at, &w->front);
+    sums(n, w->t, w->k->back, at);
+    lighting_rays(w->l, n, w->x, at, &w->back);
     w->ends = true;
-}
-
-static int any(int n, const int32_t *x)
-{
-    int some = 0;
-    for (int i = 0; i < n; i++)
-        some |= x[i];
-    return some;
-}
-
-/* differs |= the caster is near, and does not hide both ends; dark |= it hides both. */
-static void join(int n, const int32_t *near, const real *front, const real *back, int32_t *differs, int32_t *dark)
-{
-    for (int i = 0; i < n; i++) {
-        dark[i] |= front[i] + back[i] == 0;
-        differs[i] |= near[i];
-    }
 }
 
 /* The box of a caster, grown by the light's area. False: it has no end, as a plane. */
 static bool box_of(const surface *f, const light *l, real lo[3], real hi[3])
 {
-    double a[3], b[3];
     const double grown[3] = {(fabs(l->u.x) + fabs(l->w.x)) / 2, (fabs(l->u.y) + fabs(l->w.y)) / 2,
                              (fabs(l->u.z) + fabs(l->w.z)) / 2};
+    double a[3], b[3];
     bool ends = true;
     f->ops->box(f, a, b);
     for (int k = 0; k < 3; k++) {
@@ -109,47 +117,96 @@ static bool box_of(const surface *f, const light *l, real lo[3], real hi[3])
     return ends;
 }
 
-/* One caster. */
-static void compare(const surface *f, const light *l, const brackets *k, const rays *x, const real *t, sweep *w,
-                    int32_t *differs, int32_t *dark)
+STAGE static void differ(int n, const real *restrict front, const real *restrict back, int32_t *restrict near)
 {
-    int32_t near[LANES];
-    real lo[3], hi[3], front[LANES], back[LANES];
-    const bool boxed = box_of(f, l, lo, hi), area = l->samples[0] * l->samples[1] > 1;
-    if (boxed) {
-        near_box(k->n, &w->middle, &x->s, w->half, lo, hi, near);
-        if (!any(k->n, near))
-            return;
-    }
-    sweep_ends(l, k, x, t, w);
-    for (int i = 0; i < k->n; i++)
-        front[i] = back[i] = 1;
-    f->ops->occlude(f, k->n, &w->front, front);
-    f->ops->occlude(f, k->n, &w->back, back);
-    for (int i = 0; !boxed && i < k->n; i++)
+    for (int i = 0; i < n; i++)
         near[i] = front[i] != back[i];
-    for (int i = 0; area && i < k->n; i++) /* hidden from the light's middle says nothing of the others */
-        front[i] = 1;
-    join(k->n, near, front, back, differs, dark);
 }
 
-/* The lanes whose bracket the light does not see alike: into differs[]. */
-static void see(const tracer *tr, int32_t id, const light *l, const workspace *v, const brackets *k, const rays *x,
-                const real *t, int32_t *differs)
+STAGE static void add_dark(int n, const real *restrict front, const real *restrict back, int32_t *restrict dark)
 {
-    sweep w;
-    real middle[LANES];
-    int32_t dark[LANES] = {0};
-    w.ends = false;
-    middles(k, t, middle, w.half);
-    lighting_rays(l, k->n, x, middle, &w.middle);
-    for (int i = 0; i < k->n; i++)
-        differs[i] = 0;
-    for (int32_t j = 0; j < tr->scene->objects; j++)
-        if (j != id && shadow_casts(tr, j))
-            compare(v->surface[j], l, k, x, t, &w, differs, dark);
-    for (int i = 0; i < k->n; i++)
-        differs[i] &= !dark[i];
+    for (int i = 0; i < n; i++)
+        dark[i] |= front[i] + back[i] == 0;
+}
+
+STAGE static void add_near(int n, const int32_t *restrict near, int32_t *restrict some)
+{
+    for (int i = 0; i < n; i++)
+        some[i] |= near[i];
+}
+
+/* One caster, for the lanes in only[]; NULL: for all. A caster without an end matters where the ends differ. That both
+ * ends are dark says nothing where the caster is clear or the light has an area. */
+static void sweep_caster(sweep *w, const surface *f, bool clear, const int32_t *only)
+{
+    const int n = w->k->n;
+    const bool hides = !clear && w->l->samples[0] * w->l->samples[1] == 1;
+    real lo[3], hi[3], front[LANES], back[LANES];
+    const bool boxed = box_of(f, w->l, lo, hi);
+    if (boxed)
+        near_box(n, &w->middle, &w->x->s, w->half, lo, hi, w->near);
+    for (int i = 0; boxed && only && i < n; i++)
+        w->near[i] &= only[i];
+    if (boxed && !any(n, w->near))
+        return;
+    w->met = true;
+    if (hides || !boxed) {
+        sweep_ends(w);
+        for (int i = 0; i < n; i++)
+            front[i] = back[i] = 1;
+        f->ops->occlude(f, n, &w->front, front);
+        f->ops->occlude(f, n, &w->back, back);
+        if (hides)
+            add_dark(n, front, back, w->dark);
+        if (!boxed)
+            differ(n, front, back, w->near);
+    }
+    add_near(n, w->near, w->some);
+}
+
+static bool is_clear(const scene *s, int32_t id) { return material_clear(&s->material[s->object[id].material]); }
+
+/* Many objects: each lane has those that the hierarchy finds on one of three rays, from both ends and from tau. */
+static void sweep_candidates(const tracer *tr, int32_t id, workspace *v, const real *tau, sweep *w)
+{
+    const scene *s = tr->scene;
+    const int n = w->k->n;
+    rays place;
+    real at[LANES], end[LANES];
+    int32_t lane[LANES];
+    sweep_ends(w);
+    sums(n, w->t, tau, at);
+    lighting_rays(w->l, n, w->x, at, &place);
+    const rays *const from[] = {&w->front, &place, &w->back};
+    for (int i = 0; i < n; i++)
+        end[i] = 1;
+    for (int k = 0; k < 3; k++) {
+        object_bvh_find(s->object_bvh, n, from[k], end, NULL, v->candidates);
+        for (int32_t j = candidates_next(v->candidates, -1); j >= 0; j = candidates_next(v->candidates, j)) {
+            int32_t only[LANES] = {0};
+            const int some = candidates_rays(v->candidates, j, lane);
+            if (j == id || !shadow_casts(tr, j))
+                continue;
+            for (int i = 0; i < some; i++)
+                only[lane[i]] = 1;
+            sweep_caster(w, v->surface[j], is_clear(s, j), only);
+        }
+    }
+}
+
+/* differs[i] |= the light may not see lane i's bracket alike. False: no caster is near any lane. */
+static bool see(const tracer *tr, int32_t id, workspace *v, const real *tau, sweep *w, int32_t *differs)
+{
+    if (v->candidates) {
+        sweep_candidates(tr, id, v, tau, w);
+        w->met = true; /* others than the candidates may be near */
+    } else
+        for (int32_t j = 0; j < tr->scene->objects; j++)
+            if (j != id && shadow_casts(tr, j))
+                sweep_caster(w, v->surface[j], is_clear(tr->scene, j), NULL);
+    for (int i = 0; w->met && i < w->k->n; i++)
+        differs[i] |= w->some[i] & !w->dark[i];
+    return w->met;
 }
 
 /* ---- the cascade ---- */
@@ -166,6 +223,17 @@ STAGE static void measure(int n, const rays *restrict x, const real *restrict t,
     }
 }
 
+static void measure_all(const scene *s, places *p)
+{
+    const real pixel = (real)(2 * vec3_length(s->camera.right) / s->width);
+    const bool fixed = s->camera.orthographic;
+    rays to_light;
+    for (int l = 0; l < s->lights; l++) {
+        lighting_rays(&s->light[l], p->k.n, &p->x, p->t, &to_light);
+        measure(p->k.n, &p->x, p->t, &to_light, fixed ? pixel : 0, fixed ? 0 : pixel, p->pixels);
+    }
+}
+
 static int listed(int n, const int32_t *is, int32_t *lane)
 {
     int m = 0;
@@ -176,54 +244,28 @@ static int listed(int n, const int32_t *is, int32_t *lane)
     return m;
 }
 
-/* The lanes of k that some light does not see alike. */
-static int see_all(const tracer *tr, int32_t id, const workspace *v, const brackets *k, const rays *x, const real *t,
-                   int32_t *lane)
-{
-    int32_t differs[LANES], some[LANES] = {0};
-    for (int l = 0; l < tr->scene->lights; l++) {
-        see(tr, id, &tr->scene->light[l], v, k, x, t, differs);
-        for (int i = 0; i < k->n; i++)
-            some[i] |= differs[i];
-    }
-    return listed(k->n, some, lane);
-}
-
-static void take(const int32_t *lane, int n, const lanes *from, lanes *to)
-{
-    gather_rays(n, lane, &from->x, &to->x);
-    for (int i = 0; i < n; i++)
-        to->t[i] = from->t[lane[i]];
-}
-
 void auto_shift(const tracer *tr, int32_t id, workspace *v)
 {
     const scene *s = tr->scene;
     const bump *P = s->object[id].bump;
-    const real error = (real)tr->shadow.n / METHOD_PIXEL, pixel = (real)(2 * vec3_length(s->camera.right) / s->width);
+    const real error = (real)tr->shadow.n / METHOD_PIXEL;
     hit_group *g = &v->g;
-    brackets all, some;
-    int32_t lane[LANES];
-    lanes few;
-    v->stats->fell_back += bracket_begin(g, P, &all);
-    const int n = see_all(tr, id, v, &all, &g->x, g->t, lane);
+    brackets k;
+    sweep w;
+    places p;
+    int32_t differs[LANES] = {0}, lane[LANES];
+    bool met = false;
+    bracket_begin(g, P, &k);
+    for (int l = 0; l < s->lights; l++) {
+        sweep_begin(&s->light[l], &k, &g->x, g->t, &w);
+        met |= see(tr, id, v, g->tau, &w, differs);
+    }
+    v->alone = !met;
+    const int n = met ? listed(g->n, differs, lane) : 0;
     if (n == 0)
         return;
-    for (int i = 0; i < g->n; i++)
-        all.lane[i] = i, all.pixels[i] = 0;
-    bracket_pick(n, lane, &all, &some);
-    gather_rays(n, lane, &g->x, &few.x);
-    for (int i = 0; i < n; i++)
-        few.t[i] = g->t[lane[i]];
-    for (int l = 0; l < s->lights; l++) {
-        rays to_light;
-        lighting_rays(&s->light[l], n, &few.x, few.t, &to_light);
-        measure(n, &few.x, few.t, &to_light, s->camera.orthographic ? pixel : 0, s->camera.orthographic ? 0 : pixel, some.pixels);
-    }
-    v->stats->evaluations += bracket_search(&some, P, error);
-    for (int i = 0; i < n; i++) {
-        g->tau[some.lane[i]] = some.tau[i];
-        g->order[some.lane[i]] = some.order[i];
-    }
-    (void)take;
+    places_pick(g, &k, n, lane, &p);
+    measure_all(s, &p);
+    v->stats->evaluations += places_search(&p, P, error);
+    places_put(&p, g);
 }

@@ -189,8 +189,10 @@ static void shadow_place(const tracer *tr, int32_t id, const light *l, workspace
         lighting_aim(l, g->t, g); /* from p1 */
         cast_own(tr, id, v);
     }
-    lighting_aim(l, g->t0, g); /* from r + s t0 */
-    cast_others(tr, id, v);
+    if (!v->alone) {
+        lighting_aim(l, g->t0, g); /* from r + s t0 */
+        cast_others(tr, id, v);
+    }
     v->stats->shadow_rays += g->n;
 }
 
