@@ -2,10 +2,10 @@
  * bumps stay where they are on the surface, and a high one does not hide what is behind it. Shaded where the shadow ray
  * starts, they move as in parallax mapping.
  *
- * (u,w) moves by (a,b) tau along the ray (bs_place). On a plane that is all; on a curved surface the place is the foot
- * of the point on the surface, in closed form, or by Newton's steps from (a,b) tau. No seam shows: flat parts and the
- * sides of cones go on beyond their edges; spheres, tori and patches have a closest point everywhere; on a mesh the
- * foot may be on any triangle.
+ * (u,w) moves by (a,b) tau along the ray (bs_place_of). On a plane that is all. On a curved surface the place is the
+ * foot of the point on the surface, in closed form, or by Newton's steps, of which (a,b) tau is the first. No seam
+ * shows: flat parts and the sides of cones go on beyond their edges; spheres, tori and patches have a closest point
+ * everywhere; on a mesh the foot may be on any triangle.
  */
 #include "render/place.h"
 
@@ -14,7 +14,7 @@
 #include "method/shift.h"
 #include "wave/lane.h"
 
-enum { STEPS = 4 }; /* of Newton's iteration: its error is squared by each, times the curvature */
+enum { STEPS = 5 }; /* of Newton's iteration; the first is (a,b) tau, each further one squares the error */
 
 void place_smooth(hit_group *g) { memcpy(g->t_shade, g->t, sizeof g->t); }
 
@@ -25,38 +25,25 @@ STAGE static void choose(int n, const real *restrict t, const real *restrict t0,
         shade[i] = t0[i] > 0 && t0[i] < REAL_FAR ? t0[i] : t[i];
 }
 
-STAGE static void first_guess(const hit_group *restrict g, real *restrict u, real *restrict w)
-{
-    for (int i = 0; i < g->n; i++) {
-        bs_vec3 n = lane_get(&g->n_smooth, i), Qu = lane_get(&g->q.Qu, i), Qw = lane_get(&g->q.Qw, i);
-        bs_place p = bs_place_of(bs_view_of(lane_get(&g->x.s, i), n, Qu, Qw), g->u[i], g->w[i], g->tau[i]);
-        int regular = bs_regular(n, Qu, Qw);
-        u[i] = regular ? p.u : g->u[i];
-        w[i] = regular ? p.w : g->w[i];
-    }
-}
-
 /* Move (u,w) by the part of r + s t - Q that is in the tangent plane. */
-STAGE static void newton_step(const hit_group *restrict g, const partials *restrict q, real *restrict u,
-                              real *restrict w)
+STAGE static void newton_step(hit_group *restrict g, const partials *restrict q)
 {
     for (int i = 0; i < g->n; i++) {
         bs_vec3 x = lane_at(&g->x, i, g->t_shade[i]), Q = lane_get(&q->Q, i), Qu = lane_get(&q->Qu, i),
                 Qw = lane_get(&q->Qw, i), n = bs_normal(Qu, Qw), d = {x.x - Q.x, x.y - Q.y, x.z - Q.z};
         bs_view v = bs_view_of(d, n, Qu, Qw);
         int regular = bs_regular(n, Qu, Qw);
-        u[i] += regular ? v.a : 0;
-        w[i] += regular ? v.b : 0;
+        g->u[i] += regular ? v.a : 0;
+        g->w[i] += regular ? v.b : 0;
     }
 }
 
 static void foot_by_steps(const surface *f, hit_group *g)
 {
     partials q;
-    first_guess(g, g->u, g->w);
     for (int k = 0; k < STEPS; k++) {
         f->ops->eval(f, g->n, g->shade_part, g->u, g->w, 1, &q);
-        newton_step(g, &q, g->u, g->w);
+        newton_step(g, &q);
     }
 }
 
