@@ -109,6 +109,75 @@ void places_put(const places *p, hit_group *g)
     }
 }
 
+void places_keep(places *p, int n, const int32_t *lane)
+{
+    for (int i = 0; i < n; i++) {
+        const int j = lane[i];
+        p->lane[i] = p->lane[j];
+        p->k.sn[i] = p->k.sn[j];
+        p->k.a[i] = p->k.a[j];
+        p->k.b[i] = p->k.b[j];
+        p->k.curvature[i] = p->k.curvature[j];
+        p->k.front[i] = p->k.front[j];
+        p->k.back[i] = p->k.back[j];
+        p->t[i] = p->t[j];
+        p->u[i] = p->u[j];
+        p->w[i] = p->w[j];
+        p->tau[i] = p->tau[j];
+        p->pixels[i] = p->pixels[j];
+        p->order[i] = p->order[j];
+        lane_set(&p->x.r, i, lane_get(&p->x.r, j));
+        lane_set(&p->x.s, i, lane_get(&p->x.s, j));
+    }
+    p->k.n = n;
+}
+
+/* ---- bounds ---- */
+
+typedef struct rectangles {
+    real u0[LANES], u1[LANES], w0[LANES], w1[LANES];
+} rectangles;
+
+STAGE static void cover(const places *restrict p, rectangles *restrict c)
+{
+    for (int i = 0; i < p->k.n; i++) {
+        real u = p->u[i], w = p->w[i], a = p->k.a[i], b = p->k.b[i], front = p->k.front[i], back = p->k.back[i];
+        real uf = u + a * front, ub = u + a * back, wf = w + b * front, wb = w + b * back;
+        c->u0[i] = real_min(uf, ub);
+        c->u1[i] = real_max(uf, ub);
+        c->w0[i] = real_min(wf, wb);
+        c->w1[i] = real_max(wf, wb);
+    }
+}
+
+STAGE static void narrow(places *restrict p, const bump_ranges *restrict r)
+{
+    brackets *k = &p->k;
+    for (int i = 0; i < k->n; i++) {
+        bs_view v = view(k, i);
+        real x = reaches(v, k->curvature[i], r->lo[i]), y = reaches(v, k->curvature[i], r->hi[i]);
+        real front = real_max(k->front[i], real_min(x, y)), back = real_min(k->back[i], real_max(x, y));
+        front = real_min(front, k->back[i]); /* rounding may have passed the other end */
+        back = real_max(back, front);
+        k->front[i] = front;
+        k->back[i] = back;
+        p->tau[i] = real_min(real_max(p->tau[i], front), back);
+    }
+}
+
+long places_thin(places *p, const bump *P)
+{
+    enum { TIMES = 1 };
+    rectangles c;
+    bump_ranges r;
+    for (int k = 0; k < TIMES; k++) {
+        cover(p, &c);
+        P->ops->range(P, p->k.n, c.u0, c.u1, c.w0, c.w1, &r);
+        narrow(p, &r);
+    }
+    return (long)TIMES * p->k.n;
+}
+
 /* ---- the search ---- */
 
 /* The ends of the brackets that the search has reached, and the gaps there, positive above the rough surface. */
@@ -178,11 +247,15 @@ STAGE static void secant_step(places *restrict p, real error, search *restrict s
         real front = s->front[i], back = s->back[i], high = s->above[i], low = s->below[i];
         real rise = high - low, left = real_abs(above) * (back - front), tau = p->tau[i];
         int open = (s->found[i] != 0) & (s->done[i] == 0), hit = above <= 0;
-        p->tau[i] = open ? at : tau;
-        s->front[i] = hit ? front : at;
-        s->above[i] = hit ? high * R(0.5) : above;
-        s->back[i] = hit ? at : back;
-        s->below[i] = hit ? above : low * R(0.5);
+        front = hit ? front : at;
+        back = hit ? at : back;
+        high = hit ? high : above;
+        low = hit ? above : low;
+        p->tau[i] = open ? front + (back - front) * (high > low ? high / (high - low) : 0) : tau;
+        s->front[i] = front;
+        s->above[i] = hit ? high * R(0.5) : high;
+        s->back[i] = back;
+        s->below[i] = hit ? low : low * R(0.5);
         s->done[i] |= left * p->pixels[i] <= error * rise;
     }
 }

@@ -39,6 +39,13 @@ void bracket_begin(hit_group *g, const bump *P, brackets *k);
 void places_pick(const hit_group *g, const brackets *k, int n, const int32_t *lane, places *p);
 void places_put(const places *p, hit_group *g);
 
+/* Draw the brackets together: twice by the bounds of P over the (u,w) that they cover. The places stay within. Returns
+ * how often P was looked up. */
+long places_thin(places *p, const bump *P);
+
+/* Keep lanes lane[0..n-1] alone. */
+void places_keep(places *p, int n, const int32_t *lane);
+
 /* Find the places to `error` pixels: steps through each bracket to the first crossing, then secant steps. Returns how
  * often P was looked up. */
 long places_search(places *p, const bump *P, real error);

@@ -74,6 +74,44 @@ STAGE static void near_box(int n, const rays *restrict to_light, const vec3s *re
     }
 }
 
+/* Whether a plane along the axis across (y,z) and along the triangle's side v parts triangle and box. The box has half
+ * size h and its middle at c from a corner on that side; e is from there to the other end of the bracket. */
+static inline int parts(real vy, real vz, real cy, real cz, real ey, real ez, real hy, real hz)
+{
+    real c = vy * cz - vz * cy, e = vy * ez - vz * ey, reach = real_abs(vz) * hy + real_abs(vy) * hz;
+    return (c - reach > real_max(e, 0)) | (c + reach < real_min(e, 0));
+}
+
+static inline int any_parts(bs_vec3 v, bs_vec3 c, bs_vec3 e, bs_vec3 h)
+{
+    return parts(v.y, v.z, c.y, c.z, e.y, e.z, h.y, h.z) | parts(v.z, v.x, c.z, c.x, e.z, e.x, h.z, h.x) |
+           parts(v.x, v.y, c.x, c.y, e.x, e.y, h.x, h.y);
+}
+
+/* Whether the triangle meets the box, where it may: planes that may part them are tried, the triangle's own, and those
+ * along its two sides and an axis. With D half the bracket, M its middle and d from there to the light, the sides run
+ * along D + d and D - d; those of a parallel light along d (apex 0). */
+STAGE static void near_triangle(int n, const rays *restrict to_light, const vec3s *restrict s,
+                                const real *restrict half, real apex, const real *restrict lo,
+                                const real *restrict hi, int32_t *restrict near)
+{
+    const bs_vec3 middle = {R(0.5) * (lo[0] + hi[0]), R(0.5) * (lo[1] + hi[1]), R(0.5) * (lo[2] + hi[2])};
+    const bs_vec3 h = {R(0.5) * (hi[0] - lo[0]), R(0.5) * (hi[1] - lo[1]), R(0.5) * (hi[2] - lo[2])};
+    for (int i = 0; i < n; i++) {
+        bs_vec3 D = {s->x[i] * half[i], s->y[i] * half[i], s->z[i] * half[i]}, d = lane_get(&to_light->s, i);
+        bs_vec3 c = {middle.x - to_light->r.x[i], middle.y - to_light->r.y[i], middle.z - to_light->r.z[i]};
+        bs_vec3 from_front = {c.x + D.x, c.y + D.y, c.z + D.z}, from_back = {c.x - D.x, c.y - D.y, c.z - D.z};
+        bs_vec3 front = {apex * D.x + d.x, apex * D.y + d.y, apex * D.z + d.z};
+        bs_vec3 back = {apex * D.x - d.x, apex * D.y - d.y, apex * D.z - d.z};
+        bs_vec3 whole = {2 * D.x, 2 * D.y, 2 * D.z}, back_to_front = {-whole.x, -whole.y, -whole.z};
+        bs_vec3 across = bs_cross(D, d);
+        real reach = real_abs(across.x) * h.x + real_abs(across.y) * h.y + real_abs(across.z) * h.z;
+        int parted = (real_abs(bs_dot(across, c)) > reach) | any_parts(front, from_front, whole, h) |
+                     any_parts(back, from_back, back_to_front, h);
+        near[i] &= parted == 0;
+    }
+}
+
 static void sweep_begin(const light *l, const brackets *k, const rays *x, const real *t, sweep *w)
 {
     real middle[LANES];
@@ -150,6 +188,8 @@ static void sweep_caster(sweep *w, const surface *f, bool clear, const int32_t *
     if (boxed && !any(n, w->near))
         return;
     w->met = true;
+    if (boxed)
+        near_triangle(n, &w->middle, &w->x->s, w->half, w->l->kind == LIGHT_PARALLEL ? 0 : 1, lo, hi, w->near);
     if (hides || !boxed) {
         sweep_ends(w);
         for (int i = 0; i < n; i++)
@@ -266,6 +306,18 @@ void auto_shift(const tracer *tr, int32_t id, workspace *v)
         return;
     places_pick(g, &k, n, lane, &p);
     measure_all(s, &p);
+    if (0) v->stats->evaluations += places_thin(&p, P);
+    for (int round = 0; round < 0; round++) {
+        memset(differs, 0, sizeof differs);
+        for (int l = 0; l < s->lights; l++) {
+            sweep_begin(&s->light[l], &p.k, &p.x, p.t, &w);
+            see(tr, id, v, p.tau, &w, differs);
+        }
+        int m = listed(p.k.n, differs, lane);
+        places_put(&p, g);
+        places_keep(&p, m, lane);
+    }
+    if (p.k.n == 0) return;
     v->stats->evaluations += places_search(&p, P, error);
     places_put(&p, g);
 }
