@@ -9,7 +9,7 @@ enum {
     STEPS_MAX = 16,  /* through a bracket */
     SECANTS_MAX = 8, /* after them */
 };
-#define STEP_ERRORS 16 /* the length of a step in errors */
+#define STEP_ERRORS 32 /* the length of a step in errors */
 
 static inline bs_view view(const brackets *k, int i) { return (bs_view){k->sn[i], k->a[i], k->b[i]}; }
 
