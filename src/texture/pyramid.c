@@ -21,44 +21,37 @@ struct pyramid {
 
 /* ---- look-up ---- */
 
-/* Where a range begins and ends, in cells from the first one. Its end may be up to a period behind the grid's where
- * that repeats; elsewhere both are on the grid, as P is constant beyond it. `air` is more than the roundings of this
- * and of table_cells. */
-static inline void place(real k, real o, real cells, int repeat, real x0, real x1, real *restrict first,
-                         real *restrict last)
-{
-    const real y0 = x0 * k + o, y1 = x1 * k + o, lo = real_min(y0, y1), hi = real_max(y0, y1);
-    const real air = 2 * R(REAL_ROUNDING) * (real_abs(lo) + real_abs(hi) + real_abs(o) + cells);
-    const real from = lo - air, to = hi + air, start = repeat ? real_floor(from / cells) * cells : 0;
-    const int some = to - from < cells; /* not NaN */
-    const real a = real_min(real_max(from - start, 0), cells), b = real_max(to - start, a);
-    *first = some ? a : 0;
-    *last = some ? (repeat ? real_min(b, 2 * cells) : real_min(b, cells)) : cells;
-}
+/* The grid along an axis. */
+typedef struct axis {
+    real k, o, cells;
+} axis;
 
-/* Called with a constant `repeat`, as a choice in the loop would prevent SIMD. */
-static inline void places(const pyramid *y, int repeat, int n, const real *restrict u0, const real *restrict u1,
-                          const real *restrict w0, const real *restrict w1, real *restrict a0, real *restrict a1,
-                          real *restrict b0, real *restrict b1)
+/* Where ranges begin and end, in cells from the first one. The end may be up to a period behind the grid's where that
+ * repeats; elsewhere both are on the grid, as P is constant beyond it. `air` is more than the roundings of this and of
+ * table_cells. Called with a constant `repeat`, as a choice in the loop would prevent SIMD. */
+static inline void place(axis g, int repeat, int n, const real *restrict x0, const real *restrict x1,
+                         real *restrict first, real *restrict last)
 {
-    const real columns = (real)y->grid.columns, rows = (real)y->grid.rows;
-    const real ku = y->grid.ku, kw = y->grid.kw, ou = y->grid.ou, ow = y->grid.ow;
+    const real cells = g.cells, k = g.k, o = g.o, each = 1 / cells, most = repeat ? 2 * cells : cells;
     for (int i = 0; i < n; i++) {
-        place(ku, ou, columns, repeat, u0[i], u1[i], &a0[i], &a1[i]);
-        place(kw, ow, rows, repeat, w0[i], w1[i], &b0[i], &b1[i]);
+        const real y0 = x0[i] * k + o, y1 = x1[i] * k + o, lo = real_min(y0, y1), hi = real_max(y0, y1);
+        const real air = 2 * R(REAL_ROUNDING) * (real_abs(lo) + real_abs(hi) + real_abs(o) + cells);
+        const real from = lo - air, to = hi + air, start = repeat ? real_floor(from * each) * cells : 0;
+        const int some = to - from < cells; /* not NaN */
+        const real a = real_min(real_max(from - start, 0), cells), b = real_min(real_max(to - start, a), most);
+        first[i] = some ? a : 0;
+        last[i] = some ? b : cells;
     }
 }
 
-STAGE static void places_repeat(const pyramid *y, int n, const real *u0, const real *u1, const real *w0, const real *w1,
-                                real *a0, real *a1, real *b0, real *b1)
+STAGE static void place_repeat(axis g, int n, const real *x0, const real *x1, real *first, real *last)
 {
-    places(y, 1, n, u0, u1, w0, w1, a0, a1, b0, b1);
+    place(g, 1, n, x0, x1, first, last);
 }
 
-STAGE static void places_clamp(const pyramid *y, int n, const real *u0, const real *u1, const real *w0, const real *w1,
-                               real *a0, real *a1, real *b0, real *b1)
+STAGE static void place_clamp(axis g, int n, const real *x0, const real *x1, real *first, real *last)
 {
-    places(y, 0, n, u0, u1, w0, w1, a0, a1, b0, b1);
+    place(g, 0, n, x0, x1, first, last);
 }
 
 /* The level of each range: what it goes over fits a node. `share` of a node is a cell there. */
@@ -145,7 +138,10 @@ void pyramid_ranges(const pyramid *y, int n, const real *u0, const real *u1, con
     real a0[LANES], a1[LANES], b0[LANES], b1[LANES], four[LANES][TABLE_VALUES];
     int32_t p[LANES], q[LANES], r[LANES], s[LANES];
     level_of l;
-    (y->grid.repeat ? places_repeat : places_clamp)(y, n, u0, u1, w0, w1, a0, a1, b0, b1);
+    const table_grid *g = &y->grid;
+    const axis u = {g->ku, g->ou, (real)g->columns}, w = {g->kw, g->ow, (real)g->rows};
+    (g->repeat ? place_repeat : place_clamp)(u, n, u0, u1, a0, a1);
+    (g->repeat ? place_repeat : place_clamp)(w, n, w0, w1, b0, b1);
     level_bottom(y, n, a0, a1, b0, b1, &l);
     for (int k = 1; k < y->levels; k++)
         level_up(y, k, n, (real)(1 << (k - 1)), &l);
