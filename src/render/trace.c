@@ -18,6 +18,13 @@
 #include "render/shadow.h"
 #include "wave/gather.h"
 
+/* The derivatives of Q that the method needs. */
+static int surface_order(const tracer *tr, const surface *f, const bump *P)
+{
+    const bool flat = tr->shadow.kind == METHOD_AUTO && surface_is_flat(f); /* auto leaves zeros out */
+    return P && method_bends(tr->shadow) && !flat ? 2 : 1;
+}
+
 /* The smooth hit Q and its partials; P and its partials, a map's by bilinear interpolation of differences
  * (texture/bump_map.c); n' (bs_perturbed_normal); and tau (method/shift.c by bs_tau0, bs_tau1, bs_tau2). The guard
  * keeps tau within the slab of P (bs_slab_of). */
@@ -28,7 +35,7 @@ static void shape_and_shift(const tracer *tr, int32_t id, workspace *v)
     hit_group *g = &v->g;
     stats *st = v->stats;
     f->ops->locate(f, g->n, &g->x, g->t, g->part, g->u, g->w);
-    f->ops->eval(f, g->n, g->part, g->u, g->w, P && method_bends(tr->shadow) ? 2 : 1, &g->q);
+    f->ops->eval(f, g->n, g->part, g->u, g->w, surface_order(tr, f, P), &g->q);
     stats_stage(st, STAGE_SURFACE);
     if (P) {
         P->ops->eval(P, g->n, g->u, g->w, method_order(tr->shadow), &g->bump);
@@ -46,7 +53,7 @@ static void shape_and_shift(const tracer *tr, int32_t id, workspace *v)
         st->evaluations += shift_group(g, P, tr->shadow, tr->guard);
     stats_stage(st, STAGE_SHIFT);
     if (P)
-        stats_orders(st, g->n, g->order, method_code(tr->shadow));
+        stats_orders(st, g->n, g->order, tr->shadow.kind == METHOD_AUTO ? ORDER_ANY : method_code(tr->shadow));
 }
 
 static void shape_displaced(int32_t id, workspace *v)
