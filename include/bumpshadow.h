@@ -302,8 +302,8 @@ typedef struct bs_way {
     bs_real end;       /* t at which the way leaves the slab, at most 1 */
 } bs_way;
 
-/* The t at which a way has risen by D >= 0, or is highest, where the surface rises more and it never gets there. At most
- * 1, the light. */
+/* The t at which a way has risen by D >= 0, or is highest, where the surface rises more and it never gets there. At
+ * most 1, the light. */
 static inline bs_real bs_way_to(bs_view d, bs_real curvature, bs_real D)
 {
     bs_real k = (bs_real)-0.5 * curvature, q = d.sn * d.sn + 4 * k * D, root = BS_SQRT(q > 0 ? q : 0);

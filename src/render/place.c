@@ -11,12 +11,18 @@
 
 #include <string.h>
 
+#include "method/own_shadow.h"
 #include "method/shift.h"
 #include "wave/lane.h"
 
 enum { STEPS = 5 }; /* of Newton's iteration; the first is (a,b) tau, each further one squares the error */
 
-void place_smooth(hit_group *g) { memcpy(g->t_shade, g->t, sizeof g->t); }
+void place_smooth(bool own, hit_group *g)
+{
+    memcpy(g->t_shade, g->t, sizeof g->t);
+    if (own)
+        own_places(g, &g->rough);
+}
 
 /* t0 where it can be shaded. */
 STAGE static void choose(int n, const real *restrict t, const real *restrict t0, real *restrict shade)
@@ -53,7 +59,7 @@ STAGE static void places(hit_group *restrict g)
         lane_set(&g->q.Q, i, lane_at(&g->x, i, g->t_shade[i]));
 }
 
-void place_shifted(const surface *f, const bump *P, hit_group *g)
+void place_shifted(const surface *f, const bump *P, bool own, hit_group *g)
 {
     choose(g->n, g->t, g->t0, g->t_shade);
     memcpy(g->shade_part, g->part, sizeof g->part);
@@ -61,8 +67,10 @@ void place_shifted(const surface *f, const bump *P, hit_group *g)
         f->ops->foot(f, g->n, &g->x, g->t_shade, g->shade_part, g->u, g->w);
     else
         foot_by_steps(f, g);
-    f->ops->eval(f, g->n, g->shade_part, g->u, g->w, 1, &g->q);
+    f->ops->eval(f, g->n, g->shade_part, g->u, g->w, own ? 2 : 1, &g->q);
     P->ops->eval(P, g->n, g->u, g->w, 1, &g->bump);
     shift_normals(g, P);
+    if (own)
+        own_places(g, &g->rough);
     places(g);
 }
