@@ -368,20 +368,20 @@ static inline bs_real bs_horizon(bs_real at_k, bs_real at_next, bs_real fraction
 
 /* The share of an area light above the horizon, 0..1 (ours): `above` is the rise minus the horizon in the light's
  * middle, and `u` and `w` what it changes by from there to the edge, along the light's two sides. It is the part of the
- * square -1..1 where above + u x + w y > 0, u and w being at least `least` > 0. */
-static inline bs_real bs_positive_square(bs_real x) { return x > 0 ? x * x : 0; }
+ * square -1..1 where above + u x + w y > 0; the larger of |u| and |w| counts as at least `least` > 0. */
+static inline bs_real bs_mean_above(bs_real y, bs_real e) /* the mean of max(y + e q, 0) over q in -1..1 */
+{
+    bs_real rest = y > e ? y - e : 0, part = (y < e ? y : e) + e, in = part > 0 ? part : 0;
+    return rest + in * in / (4 * e);
+}
 
 static inline bs_real bs_horizon_share(bs_real above, bs_real u, bs_real w, bs_real least)
 {
-    bs_real U = BS_ABS(u) > least ? BS_ABS(u) : least, W = BS_ABS(w) > least ? BS_ABS(w) : least;
-    bs_real large = U > W ? U : W, small = U > W ? W : U;
-    bs_real x = above / large, e = small / large; /* where x + p + e q > 0, p and q in -1..1 */
-    e = e > (bs_real)0.01 ? e : (bs_real)0.01;
-    bs_real share = (bs_positive_square(x + 1 + e) - bs_positive_square(x + 1 - e) - bs_positive_square(x - 1 + e) +
-                     bs_positive_square(x - 1 - e)) /
-                    (8 * e);
-    share = share > 0 ? share : 0;
-    return x > 1 + e || share > 1 ? 1 : share; /* above it the squares cancel */
+    bs_real U = BS_ABS(u), W = BS_ABS(w), large = U > W ? U : W, small = U > W ? W : U;
+    bs_real by = large > least ? large : least, x = above / by, e = small / by; /* where x + p + e q > 0 */
+    bs_real X = x < 3 ? x : 3, E = e > (bs_real)1e-3 ? e : (bs_real)1e-3;
+    bs_real share = (bs_mean_above(X + 1, E) - bs_mean_above(X - 1, E)) / 2;
+    return share < 1 ? share : 1;
 }
 
 #endif
