@@ -10,6 +10,7 @@
 #include "render/trace.h"
 
 #include "method/shift.h"
+#include "render/auto.h"
 #include "render/intersect.h"
 #include "render/place.h"
 #include "light/lighting.h"
@@ -43,7 +44,10 @@ static void shape_and_shift(const tracer *tr, int32_t id, workspace *v)
     stats_stage(st, STAGE_BUMP);
     shift_normals(g, P);
     stats_stage(st, STAGE_NORMAL);
-    if (P && tr->shadow.kind == METHOD_EXACT)
+    v->alone = false;
+    if (P && tr->shadow.kind == METHOD_AUTO)
+        auto_shift(tr, id, v);
+    else if (P && tr->shadow.kind == METHOD_EXACT)
         displaced_shift(&v->displaced[id].base, g);
     else
         st->evaluations += shift_group(g, P, tr->shadow, tr->guard);
@@ -54,6 +58,7 @@ static void shape_and_shift(const tracer *tr, int32_t id, workspace *v)
 
 static void shape_displaced(int32_t id, workspace *v)
 {
+    v->alone = false;
     displaced_shape(v->surface[id], &v->g);
     stats_orders(v->stats, v->g.n, v->g.order, ORDER_EXACT);
     stats_stage(v->stats, STAGE_SURFACE);
