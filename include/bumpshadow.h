@@ -95,6 +95,23 @@ static inline bs_view bs_view_of(bs_vec3 s, bs_vec3 n, bs_vec3 Qu, bs_vec3 Qw)
     return v;
 }
 
+/* A place (u,w) of the surface. */
+typedef struct bs_place {
+    bs_real u, w;
+} bs_place;
+
+/* The place to shade (ours), instead of the smooth hit (u0,w0): below r + s (t_hit + tau), where the shadow ray starts.
+ *     (u,w) = (u0,w0) + (a,b) tau
+ * Evaluate Q, P and n' there. Exact on a plane. On a curved surface take a step more: evaluate Q, Qu and Qw there, and
+ * add the a and b of bs_view_of(r + s (t_hit + tau) - Q, ...). */
+static inline bs_place bs_place_of(bs_view v, bs_real u0, bs_real w0, bs_real tau)
+{
+    bs_place p;
+    p.u = u0 + v.a * tau;
+    p.w = w0 + v.b * tau;
+    return p;
+}
+
 /* The smooth surface's curvature along the ray, L a^2 + 2 M a b + N b^2 with the second fundamental form
  * L = Quu.n/|n|, M = Quw.n/|n|, N = Qww.n/|n|. (Ours: the paper leaves it out, section 6.) */
 static inline bs_real bs_curvature(bs_view v, bs_vec3 n, bs_vec3 Quu, bs_vec3 Quw, bs_vec3 Qww)

@@ -33,6 +33,11 @@ typedef struct surface_ops {
      * triangle. */
     void (*locate)(const surface *f, int n, const rays *x, const real *t, int32_t *part, real *u, real *w);
 
+    /* The place whose normal leads to r + s t, a point near the surface; the ray meets the surface on part[i] at
+     * (u[i],w[i]). (u,w) may go beyond the part's edge. On a mesh part[i] changes with the triangle. NULL: there is no
+     * closed form; Newton's steps from the ray's hit find it (render/place.c). */
+    void (*foot)(const surface *f, int n, const rays *x, const real *t, int32_t *part, real *u, real *w);
+
     /* Q, Qu and Qw at (u,w); order 2: also Quu, Quw and Qww. */
     void (*eval)(const surface *f, int n, const int32_t *part, const real *u, const real *w, int order, partials *q);
 

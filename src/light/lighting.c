@@ -55,13 +55,13 @@ STAGE static void add_tint(const hit_group *restrict g, real share, vec3s *restr
 
 void lighting_add_tint(const hit_group *g, real share, vec3s *sum) { add_tint(g, share, sum); }
 
-/* The distance of p1 from the light, or from its plane, and the cosine of the angle to its axis. */
+/* The distance of the shaded place from the light, or from its plane, and the cosine of the angle to its axis. */
 STAGE static void place(const hit_group *restrict g, const light *l, double *restrict distance, double *restrict cosine)
 {
     const real lx = (real)l->at.x, ly = (real)l->at.y, lz = (real)l->at.z;
     const real ax = (real)l->axis.x, ay = (real)l->axis.y, az = (real)l->axis.z, flat = l->kind == LIGHT_PARALLEL;
     for (int i = 0; i < g->n; i++) {
-        bs_vec3 p = lane_at(&g->x, i, g->t[i]);
+        bs_vec3 p = lane_at(&g->x, i, g->t_shade[i]);
         real x = p.x - lx, y = p.y - ly, z = p.z - lz;
         real far = real_sqrt(x * x + y * y + z * z), deep = x * ax + y * ay + z * az;
         distance[i] = (double)(far + flat * (real_abs(deep) - far));

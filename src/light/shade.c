@@ -47,7 +47,7 @@ static inline way way_against(const light *l)
  * smooth surface. */
 static inline real facing(const hit_group *g, int i, way to, bs_vec3 *L, bs_vec3 *n)
 {
-    bs_vec3 p = lane_at(&g->x, i, g->t[i]);
+    bs_vec3 p = lane_at(&g->x, i, g->t_shade[i]);
     bs_vec3 d = {to.at.x - to.near * p.x, to.at.y - to.near * p.y, to.at.z - to.near * p.z};
     bs_vec3 smooth = lane_get(&g->n_smooth, i), bumped = lane_get(&g->n_bump, i);
     real lit = g->lit[i]; /* always read: a conditional read would be a branch */

@@ -101,7 +101,7 @@ static void read_own_bump(reader *r, node *at, object *o)
         yaml_error(r->y, at,
                    "no bounds of P or of its slope are known, expected them for %s: a function that is bounded, "
                    "without jumps, over the whole surface",
-                   r->s->displaced ? "surface displaced" : "shadow exact");
+                   scene_truth_name(r->s));
 }
 
 static void read_object(reader *r, const queue *q, int i)

@@ -4,7 +4,7 @@
 #include <time.h>
 
 const char *const stage_names[STAGES] = {
-    "camera", "hit", "sort", "surface", "bump", "normal", "shift", "shadow", "shade", "film",
+    "camera", "hit", "sort", "surface", "bump", "normal", "shift", "place", "shadow", "shade", "film",
 };
 
 double stats_clock(void)

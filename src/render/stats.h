@@ -16,6 +16,7 @@ enum stage {
     STAGE_BUMP,
     STAGE_NORMAL,
     STAGE_SHIFT,
+    STAGE_PLACE,
     STAGE_SHADOW,
     STAGE_SHADE,
     STAGE_FILM,

@@ -11,6 +11,7 @@
 
 #include "method/shift.h"
 #include "render/intersect.h"
+#include "render/place.h"
 #include "light/lighting.h"
 #include "light/shade.h"
 #include "render/shadow.h"
@@ -51,6 +52,19 @@ static void shape_displaced(int32_t id, workspace *v)
     stats_stage(v->stats, STAGE_SURFACE);
 }
 
+/* Where it is shaded: at the smooth hit, or at r + s t0. */
+static void place(const tracer *tr, int32_t id, workspace *v)
+{
+    const bump *P = tr->scene->object[id].bump;
+    if (!tr->shifted || !P || displaced_is(v->surface[id])) {
+        place_smooth(&v->g);
+        return;
+    }
+    place_shifted(v->surface[id], P, &v->g);
+    v->stats->evaluations += v->g.n;
+    stats_stage(v->stats, STAGE_PLACE);
+}
+
 /* The light that object `id` sends to the eye. */
 static void light_group(const tracer *tr, int32_t id, workspace *v)
 {
@@ -81,6 +95,7 @@ void trace_group(const tracer *tr, int32_t id, workspace *v)
     if (v->of)
         shift_within(&v->g);
     shift_origins(&v->g);
+    place(tr, id, v);
     light_group(tr, id, v);
 }
 

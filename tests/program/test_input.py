@@ -28,7 +28,8 @@ REPLACED = [
     ("camera-key-far", "fov: 40", "lens: 40", "1:58: camera has no 'lens', expected one of: from at up fov width"),
     ("image-key", "size: [40, 30]", "sise: [40, 30]", "2:9: image has no 'sise', did you mean 'size'?"),
     ("render-key", "aa: 1", "antialias: 1",
-     "3:34: render has no 'antialias', expected one of: shadow guard aa aa_threshold depth surface self_shadow"),
+     "3:34: render has no 'antialias', expected one of: shadow guard shade bump_shadow aa aa_threshold "
+     "depth surface self_shadow"),
     ("light-key", "color: [1, 1, 1]", "colour: [1, 1, 1]", "5:27: a light has no 'colour', did you mean 'color'?"),
     ("spot-key", "color: [1, 1, 1]", "spot: {to: [0, 0, 0], angle: 3}",
      "5:49: spot has no 'angle', expected one of: to radius falloff tightness"),
@@ -774,7 +775,8 @@ def test_set_in_a_map_that_the_scene_lacks(bench: Kage) -> None:
     assert errors_in(lines) == [
         "--set:1:12: no '0' here: what stands before it is a single value, expected a map or a list",
         "--set:1:12: a single value, expected [width, height] in pixels, from 1 to 32768",
-        "--set:1:8: render has no 'foo', expected one of: shadow guard aa aa_threshold depth surface self_shadow",
+        "--set:1:8: render has no 'foo', expected one of: shadow guard shade bump_shadow aa "
+        "aa_threshold depth surface self_shadow",
     ]
     assert lines[-1] == "3 errors"
 
