@@ -6,33 +6,60 @@
 
 #define SHORT 1e-6 /* scene units */
 
-STAGE static void aim_at_place(hit_group *restrict g, const light *l, const real *restrict t)
+/* The segment from o to the light. Called with constants, as a choice in the loop would prevent SIMD. */
+static inline void aim_at(hit_group *restrict g, int i, bs_vec3 o, bs_vec3 to)
 {
-    const real lx = (real)l->at.x, ly = (real)l->at.y, lz = (real)l->at.z;
-    for (int i = 0; i < g->n; i++) {
-        bs_vec3 o = lane_at(&g->x, i, t[i]), d = {lx - o.x, ly - o.y, lz - o.z};
-        lane_set(&g->to_light.r, i, o);
-        lane_set(&g->to_light.s, i, d);
-    }
+    lane_set(&g->to_light.r, i, o);
+    lane_set(&g->to_light.s, i, (bs_vec3){to.x - o.x, to.y - o.y, to.z - o.z});
 }
 
 /* To the light's plane. Behind the plane there is light without shadows, as in POV-Ray: there the ray is only SHORT. */
-STAGE static void aim_along(hit_group *restrict g, const light *l, const real *restrict t)
+static inline void aim_along(hit_group *restrict g, int i, bs_vec3 o, bs_vec3 to, bs_vec3 axis)
 {
-    const real lx = (real)l->at.x, ly = (real)l->at.y, lz = (real)l->at.z;
-    const real ax = (real)l->axis.x, ay = (real)l->axis.y, az = (real)l->axis.z;
-    for (int i = 0; i < g->n; i++) {
-        bs_vec3 o = lane_at(&g->x, i, t[i]);
-        real depth = real_max((o.x - lx) * ax + (o.y - ly) * ay + (o.z - lz) * az, R(SHORT));
-        bs_vec3 d = {-depth * ax, -depth * ay, -depth * az};
-        lane_set(&g->to_light.r, i, o);
-        lane_set(&g->to_light.s, i, d);
-    }
+    real depth = (o.x - to.x) * axis.x + (o.y - to.y) * axis.y + (o.z - to.z) * axis.z;
+    depth = real_max(depth, R(SHORT));
+    lane_set(&g->to_light.r, i, o);
+    lane_set(&g->to_light.s, i, (bs_vec3){-depth * axis.x, -depth * axis.y, -depth * axis.z});
+}
+
+static inline bs_vec3 rounded(vec3 x) { return (bs_vec3){(real)x.x, (real)x.y, (real)x.z}; }
+
+STAGE static void aim_rays_at(hit_group *restrict g, const light *l, const real *restrict t)
+{
+    const bs_vec3 at = rounded(l->at);
+    for (int i = 0; i < g->n; i++)
+        aim_at(g, i, lane_at(&g->x, i, t[i]), at);
+}
+
+STAGE static void aim_rays_along(hit_group *restrict g, const light *l, const real *restrict t)
+{
+    const bs_vec3 at = rounded(l->at), axis = rounded(l->axis);
+    for (int i = 0; i < g->n; i++)
+        aim_along(g, i, lane_at(&g->x, i, t[i]), at, axis);
+}
+
+STAGE static void aim_places_at(hit_group *restrict g, const light *l, const vec3s *restrict from)
+{
+    const bs_vec3 at = rounded(l->at);
+    for (int i = 0; i < g->n; i++)
+        aim_at(g, i, lane_get(from, i), at);
+}
+
+STAGE static void aim_places_along(hit_group *restrict g, const light *l, const vec3s *restrict from)
+{
+    const bs_vec3 at = rounded(l->at), axis = rounded(l->axis);
+    for (int i = 0; i < g->n; i++)
+        aim_along(g, i, lane_get(from, i), at, axis);
 }
 
 void lighting_aim(const light *l, const real *t, hit_group *g)
 {
-    (l->kind == LIGHT_PARALLEL ? aim_along : aim_at_place)(g, l, t);
+    (l->kind == LIGHT_PARALLEL ? aim_rays_along : aim_rays_at)(g, l, t);
+}
+
+void lighting_aim_from(const light *l, const vec3s *from, hit_group *g)
+{
+    (l->kind == LIGHT_PARALLEL ? aim_places_along : aim_places_at)(g, l, from);
 }
 
 STAGE static void add(const hit_group *restrict g, real share, real *restrict sum)
