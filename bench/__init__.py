@@ -11,4 +11,5 @@
     summary.py, claims.py   make these data, and judge the paper's claims by them
     tables.py, plots.py, page.py, report.py, templates/     the report's files
     readme.py               the tables of README.md and docs/
+    widths.py               by itself: derivatives over a width as large as the shift, for docs/method.md
 """

@@ -11,6 +11,9 @@ void lighting_rays(const light *l, int n, const rays *x, const real *t, rays *to
 /* The same into g->to_light. t is g->t or g->t0. */
 void lighting_aim(const light *l, const real *t, hit_group *g);
 
+/* The same from any places. */
+void lighting_aim_from(const light *l, const vec3s *from, hit_group *g);
+
 /* sum += share * g->lit, for one sample of an area light; with tint: share * g->lit * g->tint. */
 void lighting_add(const hit_group *g, real share, real *sum);
 void lighting_add_tint(const hit_group *g, real share, vec3s *sum);

@@ -373,7 +373,7 @@ void auto_shift(const tracer *tr, int32_t id, workspace *v)
     brackets k;
     places p;
     int32_t lane[LANES];
-    bracket_begin(g, P, surface_is_flat(v->surface[id]), &k);
+    bracket_begin(g, P, v->surface[id]->ops->flat, &k);
     if (!bump_is_bounded(P)) {
         v->stats->fell_back += g->n;
         return;

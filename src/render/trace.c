@@ -18,11 +18,12 @@
 #include "render/shadow.h"
 #include "wave/gather.h"
 
-/* The derivatives of Q that the method needs. */
-static int surface_order(const tracer *tr, const surface *f, const bump *P)
+/* The partials of Q at the smooth hit: for its curvature the second ones, too. */
+static int partials_needed(const tracer *tr, int32_t id, const workspace *v)
 {
-    const bool flat = tr->shadow.kind == METHOD_AUTO && surface_is_flat(f); /* auto leaves zeros out */
-    return P && method_bends(tr->shadow) && !flat ? 2 : 1;
+    const bool flat = tr->shadow.kind == METHOD_AUTO && v->surface[id]->ops->flat; /* auto leaves zeros out */
+    const bool bends = (method_bends(tr->shadow) && !flat) || (shadow_is_own(tr, id, v) && !tr->shifted);
+    return tr->scene->object[id].bump && bends ? 2 : 1;
 }
 
 /* The smooth hit Q and its partials; P and its partials, a map's by bilinear interpolation of differences
@@ -35,7 +36,7 @@ static void shape_and_shift(const tracer *tr, int32_t id, workspace *v)
     hit_group *g = &v->g;
     stats *st = v->stats;
     f->ops->locate(f, g->n, &g->x, g->t, g->part, g->u, g->w);
-    f->ops->eval(f, g->n, g->part, g->u, g->w, surface_order(tr, f, P), &g->q);
+    f->ops->eval(f, g->n, g->part, g->u, g->w, partials_needed(tr, id, v), &g->q);
     stats_stage(st, STAGE_SURFACE);
     if (P) {
         P->ops->eval(P, g->n, g->u, g->w, method_order(tr->shadow), &g->bump);
@@ -68,11 +69,12 @@ static void shape_displaced(int32_t id, workspace *v)
 static void place(const tracer *tr, int32_t id, workspace *v)
 {
     const bump *P = tr->scene->object[id].bump;
+    const bool own = shadow_is_own(tr, id, v);
     if (!tr->shifted || !P || displaced_is(v->surface[id])) {
-        place_smooth(&v->g);
+        place_smooth(own, &v->g);
         return;
     }
-    place_shifted(v->surface[id], P, &v->g);
+    place_shifted(v->surface[id], P, own, &v->g);
     v->stats->evaluations += v->g.n;
     stats_stage(v->stats, STAGE_PLACE);
 }
@@ -84,6 +86,7 @@ static void light_group(const tracer *tr, int32_t id, workspace *v)
     const object *o = &s->object[id];
     const material *m = &s->material[o->material];
     hit_group *g = &v->g;
+    const bool own = shadow_is_own(tr, id, v);
     if (o->color)
         o->color->ops->eval(o->color, g->n, g->u, g->w, &g->color);
     shade_ambient(g, m);
@@ -93,7 +96,7 @@ static void light_group(const tracer *tr, int32_t id, workspace *v)
         if (tr->layers)
             samples_put_visibility(g, s->clear, v->visibility[l]);
         lighting_fade(&s->light[l], g);
-        shade_light(g, m, &s->light[l], s->clear);
+        shade_light(g, m, &s->light[l], s->clear, !own);
         stats_stage(v->stats, STAGE_SHADE);
     }
 }
