@@ -349,13 +349,12 @@ static void measure(const scene *s, bool everywhere, places *p)
 
 /* ---- the method ---- */
 
-/* Whether more than shadows of other objects depends on the place: what is shaded there, the bumps' own shadows, or
- * the rays that leave from it. */
+/* Whether more than shadows of other objects depends on the place: what is shaded there, or the rays that leave from
+ * it. */
 static bool needs_place(const tracer *tr, int32_t id, const workspace *v)
 {
     const scene *s = tr->scene;
-    return tr->shifted || tr->bump_shadow.kind != BUMP_SHADOW_NONE ||
-           (v->left > 0 && material_sends(&s->material[s->object[id].material]));
+    return tr->shifted || (v->left > 0 && material_sends(&s->material[s->object[id].material]));
 }
 
 static int all_lanes(int n, int32_t *lane)
