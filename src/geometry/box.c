@@ -98,10 +98,11 @@ STAGE static void box_foot(const surface *base, int n, const rays *x, const real
         real px = (x->r.x[i] + x->s.x[i] * t[i] - f.lo[0]) / dx;
         real py = (x->r.y[i] + x->s.y[i] * t[i] - f.lo[1]) / dy;
         real pz = (x->r.z[i] + x->s.z[i] * t[i] - f.lo[2]) / dz;
-        int k = part[i] >> 1, high = part[i] & 1;
-        real a = k == 0 ? py : k == 1 ? pz : px, b = k == 0 ? pz : k == 1 ? px : py;
-        u[i] = high ? a : b;
-        w[i] = high ? b : a;
+        /* sums with weights of 0 and 1, as choices would be branches */
+        real on_x = (real)(part[i] < 2), on_z = (real)(part[i] > 3), on_y = 1 - on_x - on_z, high = (real)(part[i] & 1);
+        real a = on_x * py + on_y * pz + on_z * px, b = on_x * pz + on_y * px + on_z * py;
+        u[i] = high * a + (1 - high) * b;
+        w[i] = high * b + (1 - high) * a;
     }
 }
 
@@ -249,6 +250,7 @@ static const surface_ops box_methods = {
     .occlude_own = box_occlude_own,
     .extent = extent_unit,
     .box = box_box,
+    .flat = true,
     .parts = 6,
     .bound = box_bound,
     .closest = box_closest,

@@ -2,10 +2,10 @@
  * bumps stay where they are on the surface, and a high one does not hide what is behind it. Shaded where the shadow ray
  * starts, they move as in parallax mapping.
  *
- * (u,w) moves by (a,b) tau along the ray (bs_place). On a plane that is all; on a curved surface the place is the foot
- * of the point on the surface, in closed form, or by Newton's steps from (a,b) tau. No seam shows: flat parts and the
- * sides of cones go on beyond their edges; spheres, tori and patches have a closest point everywhere; on a mesh the
- * foot may be on any triangle.
+ * (u,w) moves by (a,b) tau along the ray (bs_place_of). On a plane that is all. On a curved surface the place is the
+ * foot of the point on the surface, in closed form, or by Newton's steps, of which (a,b) tau is the first. No seam
+ * shows: flat parts and the sides of cones go on beyond their edges; spheres, tori and patches have a closest point
+ * everywhere; on a mesh the foot may be on any triangle.
  */
 #include "render/place.h"
 
@@ -14,7 +14,7 @@
 #include "method/shift.h"
 #include "wave/lane.h"
 
-enum { STEPS = 4 }; /* of Newton's iteration: its error is squared by each, times the curvature */
+enum { STEPS = 5 }; /* of Newton's iteration; the first is (a,b) tau, each further one squares the error */
 
 void place_smooth(hit_group *g) { memcpy(g->t_shade, g->t, sizeof g->t); }
 
@@ -25,38 +25,25 @@ STAGE static void choose(int n, const real *restrict t, const real *restrict t0,
         shade[i] = t0[i] > 0 && t0[i] < REAL_FAR ? t0[i] : t[i];
 }
 
-STAGE static void first_guess(const hit_group *restrict g, real *restrict u, real *restrict w)
-{
-    for (int i = 0; i < g->n; i++) {
-        bs_vec3 n = lane_get(&g->n_smooth, i), Qu = lane_get(&g->q.Qu, i), Qw = lane_get(&g->q.Qw, i);
-        bs_place p = bs_place_of(bs_view_of(lane_get(&g->x.s, i), n, Qu, Qw), g->u[i], g->w[i], g->tau[i]);
-        int regular = bs_regular(n, Qu, Qw);
-        u[i] = regular ? p.u : g->u[i];
-        w[i] = regular ? p.w : g->w[i];
-    }
-}
-
 /* Move (u,w) by the part of r + s t - Q that is in the tangent plane. */
-STAGE static void newton_step(const hit_group *restrict g, const partials *restrict q, real *restrict u,
-                              real *restrict w)
+STAGE static void newton_step(hit_group *restrict g, const partials *restrict q)
 {
     for (int i = 0; i < g->n; i++) {
         bs_vec3 x = lane_at(&g->x, i, g->t_shade[i]), Q = lane_get(&q->Q, i), Qu = lane_get(&q->Qu, i),
                 Qw = lane_get(&q->Qw, i), n = bs_normal(Qu, Qw), d = {x.x - Q.x, x.y - Q.y, x.z - Q.z};
         bs_view v = bs_view_of(d, n, Qu, Qw);
         int regular = bs_regular(n, Qu, Qw);
-        u[i] += regular ? v.a : 0;
-        w[i] += regular ? v.b : 0;
+        g->u[i] += regular ? v.a : 0;
+        g->w[i] += regular ? v.b : 0;
     }
 }
 
 static void foot_by_steps(const surface *f, hit_group *g)
 {
     partials q;
-    first_guess(g, g->u, g->w);
     for (int k = 0; k < STEPS; k++) {
         f->ops->eval(f, g->n, g->shade_part, g->u, g->w, 1, &q);
-        newton_step(g, &q, g->u, g->w);
+        newton_step(g, &q);
     }
 }
 
@@ -64,6 +51,25 @@ STAGE static void places(hit_group *restrict g)
 {
     for (int i = 0; i < g->n; i++)
         lane_set(&g->q.Q, i, lane_at(&g->x, i, g->t_shade[i]));
+}
+
+/* Qu and Qw at the height of the bump, so that n' has the smooth surface's curvature in it. */
+STAGE static void raise(hit_group *restrict g)
+{
+    for (int i = 0; i < g->n; i++) {
+        bs_vec3 Qu = lane_get(&g->q.Qu, i), Qw = lane_get(&g->q.Qw, i), n = bs_normal(Qu, Qw);
+        bs_offset o = bs_offset_of(n, Qu, Qw, lane_get(&g->q.Quu, i), lane_get(&g->q.Quw, i), lane_get(&g->q.Qww, i),
+                                   g->bump.P[i]);
+        int good = bs_regular(n, Qu, Qw) & (bs_dot(n, bs_normal(o.Qu, o.Qw)) > 0);
+        o.Qu.x = good ? o.Qu.x : Qu.x;
+        o.Qu.y = good ? o.Qu.y : Qu.y;
+        o.Qu.z = good ? o.Qu.z : Qu.z;
+        o.Qw.x = good ? o.Qw.x : Qw.x;
+        o.Qw.y = good ? o.Qw.y : Qw.y;
+        o.Qw.z = good ? o.Qw.z : Qw.z;
+        lane_set(&g->q.Qu, i, o.Qu);
+        lane_set(&g->q.Qw, i, o.Qw);
+    }
 }
 
 void place_shifted(const surface *f, const bump *P, hit_group *g)
@@ -74,8 +80,10 @@ void place_shifted(const surface *f, const bump *P, hit_group *g)
         f->ops->foot(f, g->n, &g->x, g->t_shade, g->shade_part, g->u, g->w);
     else
         foot_by_steps(f, g);
-    f->ops->eval(f, g->n, g->shade_part, g->u, g->w, 1, &g->q);
+    f->ops->eval(f, g->n, g->shade_part, g->u, g->w, f->ops->flat ? 1 : 2, &g->q);
     P->ops->eval(P, g->n, g->u, g->w, 1, &g->bump);
+    if (!f->ops->flat)
+        raise(g);
     shift_normals(g, P);
     places(g);
 }
