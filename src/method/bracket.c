@@ -10,8 +10,7 @@ enum {
     STEPS_MAX = 16,
     SECANTS_MAX = 8, /* after them */
 };
-#define STEP_ERRORS 32 /* the length of a step in errors */
-#define LEAST_GAP 0.1  /* of an end, of what the ray sinks in its bracket */
+#define LEAST_GAP 0.1 /* of an end, of what the ray sinks in its bracket */
 
 static inline bs_view view(const brackets *k, int i) { return (bs_view){k->sn[i], k->a[i], k->b[i]}; }
 
@@ -271,12 +270,12 @@ static void search_put(search *s, places *p)
     s->n = n;
 }
 
-long places_search(places *p, const bump *P, real error)
+long places_search(places *p, const bump *P, real error, real per_step)
 {
     search s;
     long looks = 0;
     s.n = p->k.n;
-    search_begin(p, STEP_ERRORS * error, &s);
+    search_begin(p, per_step, &s);
     for (int i = 0; i < s.n; i++)
         p->order[i] = s.open[i] ? method_code((method){METHOD_MARCH, 1}) : p->order[i];
     for (int step = 1; step <= STEPS_MAX + SECANTS_MAX && s.n > 0; step++) {

@@ -40,8 +40,9 @@ void bracket_begin(hit_group *g, const bump *P, bool flat, brackets *k);
 void places_pick(const hit_group *g, const brackets *k, int n, const int32_t *lane, places *p);
 void places_put(const places *p, hit_group *g);
 
-/* Find the places to `error` pixels: steps through each bracket to the first crossing, then secant steps. Returns how
- * often P was looked up. */
-long places_search(places *p, const bump *P, real error);
+/* Find the places to `error` pixels: steps of `per_step` pixels at most, but not more than 16, through each bracket to
+ * the first crossing, then secant steps. A bump that is narrower than a step may be missed. Returns how often P was
+ * looked up. */
+long places_search(places *p, const bump *P, real error, real per_step);
 
 #endif
