@@ -10,96 +10,57 @@ typedef struct open_ways {
     int n;
     int32_t lane[LANES], below[LANES]; /* of the group; met the rough surface */
     real side[LANES], sn[LANES], a[LANES], b[LANES], curvature[LANES], end[LANES]; /* as own_ways */
-    real u[LANES], w[LANES], P[LANES], Pu[LANES], Pw[LANES];
+    real u[LANES], w[LANES], P[LANES];
 } open_ways;
 
-static void move(const open_ways *from, int i, open_ways *to, int k)
+/* Whether P stays below the way: P rises by at most Pu |a| + Pw |b| per t, the way by at least sn, less what the
+ * surface's curvature takes. */
+static inline int rises_faster(real sn, real a, real b, real curvature, real end, real Pu, real Pw)
 {
-    to->lane[k] = from->lane[i];
-    to->side[k] = from->side[i];
-    to->sn[k] = from->sn[i];
-    to->a[k] = from->a[i];
-    to->b[k] = from->b[i];
-    to->curvature[k] = from->curvature[i];
-    to->end[k] = from->end[i];
-    to->u[k] = from->u[i];
-    to->w[k] = from->w[i];
-    to->P[k] = from->P[i];
-    to->Pu[k] = from->Pu[i];
-    to->Pw[k] = from->Pw[i];
-}
-
-/* Keep those that are open. */
-static void drop_settled(open_ways *o, const int32_t *open)
-{
-    int n = 0;
-    for (int i = 0; i < o->n; i++) {
-        if (n < i)
-            move(o, i, o, n);
-        n += open[i];
-    }
-    o->n = n;
-}
-
-static void begin(const hit_group *g, const own_ways *y, int seen_from, open_ways *o)
-{
-    int n = 0;
-    for (int i = 0; i < g->n; i++) { /* without a branch */
-        o->lane[n] = i;
-        o->side[n] = y->side[i];
-        o->sn[n] = y->sn[i];
-        o->a[n] = y->a[i];
-        o->b[n] = y->b[i];
-        o->curvature[n] = y->curvature[i];
-        o->end[n] = y->end[i];
-        o->u[n] = g->u[i];
-        o->w[n] = g->w[i];
-        o->P[n] = g->bump.P[i];
-        o->Pu[n] = g->bump.Pu[i];
-        o->Pw[n] = g->bump.Pw[i];
-        n += (g->lit[i] > 0) & (y->end[i] > 0) & ((real)seen_from * y->side[i] >= 0);
-    }
-    o->n = n;
-}
-
-/* open[i] = 0 where P stays below the way: P rises by at most Pu |a| + Pw |b| per t, the way by at least sn, less what
- * the surface's curvature takes. */
-STAGE static void rises_faster(const open_ways *restrict o, const real *restrict Pu, const real *restrict Pw,
-                               int32_t *restrict open)
-{
-    for (int i = 0; i < o->n; i++) {
-        real rise = o->sn[i] - real_max(o->curvature[i], 0) * o->end[i];
-        real most = Pu[i] * real_abs(o->a[i]) + Pw[i] * real_abs(o->b[i]);
-        open[i] = !(rise >= most);
-    }
+    return sn - real_max(curvature, 0) * end >= Pu * real_abs(a) + Pw * real_abs(b);
 }
 
 /* The same from the slope of P at the start, and bounds of its second partials: the way and P part by sn - P' per t,
- * and come together again by at most half the curvature of both. */
-STAGE static void parts_for_good(const open_ways *restrict o, real Puu, real Puw, real Pww, int32_t *restrict open)
+ * and come together again by at most half the curvature of both. Not so where a bound is infinite. */
+static inline int parts_for_good(real apart, real a, real b, real curvature, real end, const real second[3])
 {
-    for (int i = 0; i < o->n; i++) {
-        real a = real_abs(o->a[i]), b = real_abs(o->b[i]);
-        real apart = o->sn[i] - o->side[i] * (o->Pu[i] * o->a[i] + o->Pw[i] * o->b[i]);
-        real together = Puu * a * a + 2 * Puw * a * b + Pww * b * b + o->curvature[i];
-        open[i] = !(apart >= R(0.5) * real_max(together, 0) * o->end[i]);
+    real together = second[0] * a * a + 2 * second[1] * real_abs(a * b) + second[2] * b * b + curvature;
+    return apart >= R(0.5) * real_max(together, 0) * end;
+}
+
+/* The lanes whose ways bounds of the whole P do not settle. */
+STAGE static void find_open(const hit_group *restrict g, const bump *P, const own_ways *restrict y, real seen_from,
+                            int32_t *restrict open)
+{
+    const real Pu = P->Pu_max, Pw = P->Pw_max, second[3] = {P->Puu_max, P->Puw_max, P->Pww_max};
+    for (int i = 0; i < g->n; i++) {
+        real sn = y->sn[i], a = y->a[i], b = y->b[i], curvature = y->curvature[i], end = y->end[i], side = y->side[i];
+        real apart = sn - side * (g->bump.Pu[i] * a + g->bump.Pw[i] * b), lit = g->lit[i];
+        int settled =
+            rises_faster(sn, a, b, curvature, end, Pu, Pw) | parts_for_good(apart, a, b, curvature, end, second);
+        open[i] = (lit > 0) & (end > 0) & (seen_from * side >= 0) & !settled;
     }
 }
 
-static void settle_by_slopes(const bump *P, open_ways *o)
+static void gather_open(const hit_group *g, const own_ways *y, const int32_t *open, open_ways *o)
 {
-    real Pu[LANES], Pw[LANES];
-    int32_t open[LANES];
-    if (P->Puu_max < REAL_FAR && P->Puw_max < REAL_FAR && P->Pww_max < REAL_FAR)
-        parts_for_good(o, P->Puu_max, P->Puw_max, P->Pww_max, open);
-    else {
-        for (int i = 0; i < o->n; i++) {
-            Pu[i] = P->Pu_max;
-            Pw[i] = P->Pw_max;
-        }
-        rises_faster(o, Pu, Pw, open);
+    o->n = 0;
+    for (int i = 0; i < g->n; i++) {
+        if (!open[i])
+            continue;
+        const int k = o->n++;
+        o->lane[k] = i;
+        o->below[k] = 0;
+        o->side[k] = y->side[i];
+        o->sn[k] = y->sn[i];
+        o->a[k] = y->a[i];
+        o->b[k] = y->b[i];
+        o->curvature[k] = y->curvature[i];
+        o->end[k] = y->end[i];
+        o->u[k] = g->u[i];
+        o->w[k] = g->w[i];
+        o->P[k] = g->bump.P[i];
     }
-    drop_settled(o, open);
 }
 
 /* The rectangle of (u,w) that a way is over. */
@@ -125,6 +86,34 @@ STAGE static void shorten(open_ways *restrict o, const bump_ranges *restrict k)
     }
 }
 
+STAGE static void still_open(const open_ways *restrict o, const bump_ranges *restrict k, int32_t *restrict open)
+{
+    for (int i = 0; i < o->n; i++)
+        open[i] = !rises_faster(o->sn[i], o->a[i], o->b[i], o->curvature[i], o->end[i], k->Pu[i], k->Pw[i]);
+}
+
+static void drop_settled(open_ways *o, const int32_t *open)
+{
+    int n = 0;
+    for (int i = 0; i < o->n; i++) {
+        if (!open[i])
+            continue;
+        o->lane[n] = o->lane[i];
+        o->side[n] = o->side[i];
+        o->sn[n] = o->sn[i];
+        o->a[n] = o->a[i];
+        o->b[n] = o->b[i];
+        o->curvature[n] = o->curvature[i];
+        o->end[n] = o->end[i];
+        o->u[n] = o->u[i];
+        o->w[n] = o->w[i];
+        o->P[n] = o->P[i];
+        n++;
+    }
+    o->n = n;
+}
+
+/* By bounds of P over the rectangles of the ways. */
 static void settle_by_ranges(const bump *P, open_ways *o)
 {
     enum { TIMES = 2 };
@@ -135,7 +124,7 @@ static void settle_by_ranges(const bump *P, open_ways *o)
         rectangles(o, u0, u1, w0, w1);
         P->ops->range(P, o->n, u0, u1, w0, w1, &k);
         shorten(o, &k);
-        rises_faster(o, k.Pu, k.Pw, open);
+        still_open(o, &k, open);
         drop_settled(o, open);
     }
 }
@@ -162,14 +151,13 @@ STAGE static void step_below(open_ways *restrict o, int step, int steps, const r
 long own_march(hit_group *g, const bump *P, const own_ways *y, int steps, int seen_from)
 {
     real u[LANES], w[LANES];
+    int32_t open[LANES];
     open_ways o;
     bump_values h;
-    begin(g, y, seen_from, &o);
-    settle_by_slopes(P, &o);
+    find_open(g, P, y, (real)seen_from, open);
+    gather_open(g, y, open, &o);
     if (P->pyramid)
         settle_by_ranges(P, &o);
-    for (int i = 0; i < o.n; i++)
-        o.below[i] = 0;
     for (int step = 1; step <= steps && o.n; step++) {
         step_places(&o, step, steps, u, w);
         P->ops->eval(P, o.n, u, w, 0, &h);
