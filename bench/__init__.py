@@ -12,4 +12,5 @@
     claims.py, bounds.py    judge the paper's claims by them, kage's, and what kage demands of itself
     tables.py, plots.py, page.py, report.py, templates/     the report's files
     readme.py               the tables of README.md and docs/
+    widths.py               by itself: derivatives over a width as large as the shift, for docs/method.md
 """

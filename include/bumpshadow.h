@@ -297,4 +297,114 @@ static inline bs_march bs_march_step(bs_march m, bs_real tau, bs_real gap, bs_vi
     return m;
 }
 
+/* ---- the bumps' own shadows ----
+ *
+ * N. Max, "Shadows for bump-mapped surfaces", 1986 (the paper's case 1); the march is ours. Is a
+ * place of the rough surface, X = Q + P n/|n| over the (u,w) that is shaded, in the shadow of the bumps around it?
+ * With d = light - X, so that the light is at t = 1, the height of X + d t over the smooth surface is
+ *     P + t (d.n/|n|) - 1/2 (L a^2 + 2 M a b + N b^2) t^2,
+ * and P's own there is P(u + a t, w + b t), with (a,b) of bs_view_of(d, n, Qu, Qw). The march looks P up on the way,
+ * until it leaves the slab:
+ *
+ *     bs_view d = bs_view_of(light - X, n, Qu, Qw);
+ *     bs_way y = bs_way_of(s.n < 0 ? 1 : -1, d, bs_curvature(d, n, Quu, Quw, Qww), P, Pmin, Pmax);
+ *     int dark = y.side * bs_dot(np, light - X) <= 0;
+ *     for (int i = 1; i <= N; i++) {
+ *         bs_real t = bs_way_step(y.end, i, N);
+ *         dark |= bs_way_below(y, t, height(u + y.d.a * t, w + y.d.b * t));
+ *     }
+ *
+ * It starts on the rough surface itself, and needs no epsilon: it compares the way's rise since X with P's, and both
+ * are 0 at t = 0. Which side the way leaves to is known from n'.
+ */
+typedef struct bs_way {
+    bs_real side;      /* of the viewer, 1: the front, -1: the back. What follows is as seen from that side: */
+    bs_view d;         /* to the light; d.sn > 0: the light is above the tangent plane */
+    bs_real curvature; /* along d */
+    bs_real P;         /* at X, from the front */
+    bs_real end;       /* t at which the way leaves the slab, at most 1 */
+} bs_way;
+
+/* The t at which a way has risen by D >= 0, or is highest, where the surface rises more and it never gets there. At
+ * most 1, the light. */
+static inline bs_real bs_way_to(bs_view d, bs_real curvature, bs_real D)
+{
+    bs_real k = (bs_real)-0.5 * curvature, q = d.sn * d.sn + 4 * k * D, root = BS_SQRT(q > 0 ? q : 0);
+    bs_real rising = q >= 0 ? 2 * D / (d.sn + root) : d.sn / curvature; /* the first root of k t^2 + sn t = D */
+    bs_real dipping = k > 0 ? (root - d.sn) / (2 * k) : 1;
+    bs_real t = d.sn > 0 ? rising : dipping;
+    return t < 1 ? t : 1;
+}
+
+static inline bs_way bs_way_of(bs_real side, bs_view d, bs_real curvature, bs_real P, bs_real Pmin, bs_real Pmax)
+{
+    bs_way y;
+    y.side = side;
+    y.d = d;
+    y.d.sn = side * d.sn;
+    y.curvature = side * curvature;
+    y.P = P;
+    y.end = bs_way_to(y.d, y.curvature, side > 0 ? Pmax - P : P - Pmin);
+    return y;
+}
+
+/* The place of step i of 1..N: near X they are denser, as there P is nearest to the way. */
+static inline bs_real bs_way_step(bs_real end, int i, int N)
+{
+    bs_real x = (bs_real)i / (bs_real)N;
+    return end * x * x;
+}
+
+/* Whether the way is below P at t. */
+static inline int bs_way_below(bs_way y, bs_real t, bs_real P)
+{
+    return bs_gap(y.d, y.curvature, t, y.side * (P - y.P)) < 0;
+}
+
+/* Max's horizon map. For K directions in (u,w), bearing k of which is 4 k/K, a table holds for each place the horizon:
+ * the most that P rises from there, per unit of the way. Directions and ways are measured in samples, by their sum:
+ * with ku and kw samples per u and per w,
+ *     x = ku a, y = kw b, per unit of |x| + |y|,
+ * so that a bearing needs no angle, a map on a sphere needs no scene units, and between two directions next to each
+ * other a slope that is the same all around is interpolated exactly. bearing: 0 along +u, 1 along +w, 2 and 3 against
+ * them, less than 4. rise: of the way to the light. The light is seen where its rise is above the horizon. */
+typedef struct bs_bearing {
+    bs_real bearing, rise;
+} bs_bearing;
+
+static inline bs_bearing bs_bearing_of(bs_view d, bs_real ku, bs_real kw)
+{
+    bs_real x = d.a * ku, y = d.b * kw, way = BS_ABS(x) + BS_ABS(y) + (bs_real)1e-20; /* straight up: any bearing */
+    bs_real q = y / way, right = y < 0 ? 4 + q : q;
+    bs_bearing r;
+    r.bearing = x < 0 ? 2 - q : right;
+    r.bearing = r.bearing < 4 ? r.bearing : 0; /* rounding */
+    r.rise = d.sn / way;
+    return r;
+}
+
+/* Between the horizons of directions k and k + 1, where K bearing/4 = k + fraction; bilinear over (u,w) before. */
+static inline bs_real bs_horizon(bs_real at_k, bs_real at_next, bs_real fraction)
+{
+    return at_k + (at_next - at_k) * fraction;
+}
+
+/* The share of an area light above the horizon, 0..1 (ours): `above` is the rise minus the horizon in the light's
+ * middle, and `u` and `w` what it changes by from there to the edge, along the light's two sides. It is the part of the
+ * square -1..1 where above + u x + w y > 0; the larger of |u| and |w| counts as at least `least` > 0. */
+static inline bs_real bs_mean_above(bs_real y, bs_real e) /* the mean of max(y + e q, 0) over q in -1..1 */
+{
+    bs_real rest = y > e ? y - e : 0, part = (y < e ? y : e) + e, in = part > 0 ? part : 0;
+    return rest + in * in / (4 * e);
+}
+
+static inline bs_real bs_horizon_share(bs_real above, bs_real u, bs_real w, bs_real least)
+{
+    bs_real U = BS_ABS(u), W = BS_ABS(w), large = U > W ? U : W, small = U > W ? W : U;
+    bs_real by = large > least ? large : least, x = above / by, e = small / by; /* where x + p + e q > 0 */
+    bs_real X = x < 3 ? x : 3, E = e > (bs_real)1e-3 ? e : (bs_real)1e-3;
+    bs_real share = (bs_mean_above(X + 1, E) - bs_mean_above(X - 1, E)) / 2;
+    return share < 1 ? share : 1;
+}
+
 #endif

@@ -107,6 +107,7 @@ typedef struct scene {
     int materials;
     object *object;
     int objects;
+    struct horizons *horizons;     /* for bump_shadow horizon; otherwise NULL */
     struct object_bvh *object_bvh; /* of many objects; NULL: few, all are tested */
 } scene;
 

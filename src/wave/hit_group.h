@@ -34,6 +34,8 @@ typedef struct hit_group {
     real t_shade[LANES];
     int32_t shade_part[LANES]; /* of the surface; only with r + s t0 */
 
+    vec3s rough; /* X = Q + P n/|n| over the place that is shaded; only for the bumps' own shadows */
+
     /* the current light: the segments to it; 1 lit, 0 in shadow */
     rays to_light;
     real lit[LANES];
