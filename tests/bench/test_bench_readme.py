@@ -73,7 +73,8 @@ def test_update_keeps_and_writes(data: dict[str, Any], tmp_path: Path, monkeypat
     monkeypatch.setattr(readme, "RESULT", tmp_path / "result.json")
     monkeypatch.setattr(readme, "kept", lambda report, sheets: report | {"sheets": sheets})
     readme.update(data, TOP / "docs")
-    assert json.loads((tmp_path / "result.json").read_text()) == data
+    sheets = {sheet: readme.pixels_digest(TOP / "docs" / sheet) for sheet in readme.SHEETS}
+    assert json.loads((tmp_path / "result.json").read_text()) == data | {"sheets": sheets}
     assert readme.disagreements(data) == []
     assert (tmp_path / "README.md").read_text() == (TOP / "README.md").read_text()
 
