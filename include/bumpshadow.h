@@ -112,6 +112,29 @@ static inline bs_place bs_place_of(bs_view v, bs_real u0, bs_real w0, bs_real ta
     return p;
 }
 
+/* The partials of the offset surface Q + h n/|n|, h constant (ours). With these in place of Qu and Qw, and P for h,
+ * bs_perturbed_normal is the normal of the rough surface itself; with Qu and Qw it leaves out the smooth surface's
+ * curvature. Nothing to do on a plane. */
+typedef struct bs_offset {
+    bs_vec3 Qu, Qw;
+} bs_offset;
+
+static inline bs_offset bs_offset_of(bs_vec3 n, bs_vec3 Qu, bs_vec3 Qw, bs_vec3 Quu, bs_vec3 Quw, bs_vec3 Qww,
+                                     bs_real h)
+{
+    bs_vec3 a = bs_cross(Quu, Qw), b = bs_cross(Qu, Quw), c = bs_cross(Quw, Qw), d = bs_cross(Qu, Qww);
+    bs_vec3 nu = {a.x + b.x, a.y + b.y, a.z + b.z}, nw = {c.x + d.x, c.y + d.y, c.z + d.z}; /* the partials of n */
+    bs_real i2 = 1 / bs_dot(n, n), k = h * BS_SQRT(i2), pu = bs_dot(nu, n) * i2, pw = bs_dot(nw, n) * i2;
+    bs_offset o;
+    o.Qu.x = Qu.x + k * (nu.x - pu * n.x);
+    o.Qu.y = Qu.y + k * (nu.y - pu * n.y);
+    o.Qu.z = Qu.z + k * (nu.z - pu * n.z);
+    o.Qw.x = Qw.x + k * (nw.x - pw * n.x);
+    o.Qw.y = Qw.y + k * (nw.y - pw * n.y);
+    o.Qw.z = Qw.z + k * (nw.z - pw * n.z);
+    return o;
+}
+
 /* The smooth surface's curvature along the ray, L a^2 + 2 M a b + N b^2 with the second fundamental form
  * L = Quu.n/|n|, M = Quw.n/|n|, N = Qww.n/|n|. (Ours: the paper leaves it out, section 6.) */
 static inline bs_real bs_curvature(bs_view v, bs_vec3 n, bs_vec3 Quu, bs_vec3 Quw, bs_vec3 Qww)

@@ -250,6 +250,7 @@ static const surface_ops box_methods = {
     .occlude_own = box_occlude_own,
     .extent = extent_unit,
     .box = box_box,
+    .flat = true,
     .parts = 6,
     .bound = box_bound,
     .closest = box_closest,

@@ -54,6 +54,7 @@ typedef struct surface_ops {
     /* The bounding box, up to rounding. Ends are infinite where the surface has none. */
     void (*box)(const surface *f, double lo[3], double hi[3]);
 
+    bool flat; /* all parts are: Quu, Quw and Qww are 0 */
     int parts; /* how many; 1 for a mesh, though `part` is a triangle there */
 
     /* For displaced surfaces (displaced.h), over one part of the surface alone. All three are NULL where closest points

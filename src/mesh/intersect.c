@@ -118,7 +118,7 @@ void mesh_occlude(const surface *base, int n, const rays *x, real *lit)
     }
 }
 
-bool mesh_near(const mesh *f, vec3 p, vec3 N, int32_t *part, vec3 *at)
+bool mesh_near(const mesh *f, vec3 p, vec3 N, int32_t *part)
 {
     mesh_query out = {.f = f}, in = {.f = f};
     const vec3 down = vec3_scale(N, -1);
@@ -128,7 +128,6 @@ bool mesh_near(const mesh *f, vec3 p, vec3 N, int32_t *part, vec3 *at)
     if (q->index < 0)
         return false;
     *part = q->index;
-    *at = vec3_add(p, vec3_scale(in.index >= 0 ? down : N, q->to));
     return true;
 }
 
