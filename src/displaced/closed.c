@@ -1,4 +1,4 @@
-/* Displaced surfaces over those whose closest points have closed forms: the members bound, closest and lipschitz of
+/* Displaced surfaces over those whose closest points have closed forms: the members bound, closest and bend of
  * surface_ops. Each part of the surface is searched alone, by march.h. */
 #include "displaced/form.h"
 #include "displaced/march.h"
@@ -29,12 +29,34 @@ static void part_closest(const domain *g, int n, const int32_t *lane, const rays
     k->f->ops->closest(k->f, k->part, n, x, t, p);
 }
 
-static void part_lipschitz(const domain *g, int n, const int32_t *lane, const rays *x, const closest_points *p,
-                           real Pu_max, real Pw_max, real *rate, real *reach)
+static void part_bend(const domain *g, int n, const int32_t *lane, const rays *x, const closest_points *p,
+                      path_bends *out)
 {
     const part_domain *k = part_of(g);
     (void)lane;
-    k->f->ops->lipschitz(k->f, k->part, n, x, p, Pu_max, Pw_max, rate, reach);
+    k->f->ops->bend(k->f, k->part, n, x, p, out);
+}
+
+/* What of a range is within a part; where that goes around, a range beyond an end is all of it. */
+STAGE static void cut_range(int n, real lo, real hi, int around, real *restrict from, real *restrict to)
+{
+    for (int i = 0; i < n; i++) {
+        const int beyond = around & ((from[i] < lo) | (to[i] > hi));
+        const real a = real_min(real_max(from[i], lo), hi), b = real_min(real_max(to[i], lo), hi);
+        from[i] = beyond ? lo : a;
+        to[i] = beyond ? hi : b;
+    }
+}
+
+static void part_places(const domain *g, int n, const int32_t *lane, rectangles *r)
+{
+    const part_domain *k = part_of(g);
+    const int around = k->part == 0 ? k->f->ops->around : 0;
+    double U[2], W[2];
+    (void)lane;
+    k->f->ops->extent(k->f, k->part, U, W);
+    cut_range(n, (real)U[0], (real)U[1], (around & AROUND_U) != 0, r->u0, r->u1);
+    cut_range(n, (real)W[0], (real)W[1], (around & AROUND_W) != 0, r->w0, r->w1);
 }
 
 static void part_within(const domain *g, int n, const int32_t *lane, const closest_points *p, real *u, real *w)
@@ -51,11 +73,19 @@ static void part_within(const domain *g, int n, const int32_t *lane, const close
 
 /* own[i]: the ray starts on this part's displaced surface. Returns how often P was evaluated. */
 static long search_part(const displaced *d, int part, int n, const rays *x, const real *end, const int32_t *own,
-                        real *t, int32_t *found)
+                        bool any, real *t, int32_t *found)
 {
     const surface *f = d->smooth;
-    const part_domain k = {{part_bound, part_closest, part_lipschitz, part_within, f->ops->unclamped, STEPS}, f, part};
-    return displaced_search(&k.base, d->P, n, x, end, own, t, found);
+    const part_domain k = {{.bound = part_bound,
+                            .closest = part_closest,
+                            .bend = part_bend,
+                            .places = part_places,
+                            .within = part_within,
+                            .unclamped = f->ops->unclamped,
+                            .steps = STEPS},
+                           f,
+                           part};
+    return displaced_search(&k.base, d->P, n, x, end, own, any, t, found);
 }
 
 static bool closed_fits(const surface *f) { return f->ops->closest != NULL; }
@@ -69,7 +99,7 @@ static void closed_hit(const displaced *d, int n, const rays *x, const ray_origi
         long uncertain = 0;
         for (int i = 0; i < n; i++)
             own[i] = from && from->id[i] == id && from->part[i] == part;
-        const long evaluations = search_part(d, part, n, x, h->t, own, t, found);
+        const long evaluations = search_part(d, part, n, x, h->t, own, false, t, found);
         for (int i = 0; i < n; i++)
             if (found[i] != DISPLACED_MISSED && t[i] > 0 && t[i] < h->t[i]) {
                 h->t[i] = t[i];
@@ -91,7 +121,7 @@ static void closed_occlude(const displaced *d, int n, const rays *x, const int32
         long uncertain = 0;
         for (int i = 0; i < n; i++)
             own[i] = on && on[i] == part;
-        const long evaluations = search_part(d, part, n, x, end, own, t, found);
+        const long evaluations = search_part(d, part, n, x, end, own, true, t, found);
         for (int i = 0; i < n; i++)
             if (found[i] != DISPLACED_MISSED) {
                 lit[i] = 0;

@@ -92,9 +92,9 @@ static void displaced_free(surface *f)
     free(d);
 }
 
-surface *displaced_new(const surface *f, const bump *P)
+surface *displaced_new(const surface *f, bump *P)
 {
-    displaced *d = calloc(1, sizeof *d);
+    displaced *d = bump_prepare(P) ? calloc(1, sizeof *d) : NULL;
     if (!d)
         return NULL;
     d->base = (surface){&displaced_ops, displaced_free};

@@ -76,9 +76,10 @@ static void triangles_closest(const domain *g, int n, const int32_t *lane, const
 }
 
 /* Normals that turn by `turn` along the shortest side meet about side/turn away. Halfway there gradients at most
- * double. Heights beyond a tenth of that distance are not counted on: there P folds the surface anyway. */
-static void triangles_lipschitz(const domain *g, int n, const int32_t *lane, const rays *x, const closest_points *p,
-                                real Pu_max, real Pw_max, real *rate, real *reach)
+ * double, and no part of the way changes them by more than its share of that twice over. Heights beyond a tenth of that
+ * distance are not counted on: there P folds the surface anyway. */
+static void triangles_bend(const domain *g, int n, const int32_t *lane, const rays *x, const closest_points *p,
+                           path_bends *out)
 {
     const double height = ((const triangles *)g)->height;
     for (int i = 0; i < n; i++) {
@@ -91,11 +92,26 @@ static void triangles_lipschitz(const domain *g, int n, const int32_t *lane, con
         const double bend = side / fmax(turn, FLATTEST), radius = fmax(bend - height, 0.1 * bend);
         const bs_vec3 gu = lane_get(&p->gu, i), gw = lane_get(&p->gw, i), gh = lane_get(&p->gh, i),
                       d = lane_get(&x->s, i);
-        const real s = real_sqrt(bs_dot(d, d));
-        const real k = 2 * (real_sqrt(bs_dot(gu, gu)) * Pu_max + real_sqrt(bs_dot(gw, gw)) * Pw_max);
-        const real up = (turn > 0 ? 2 : 1) * real_sqrt(bs_dot(gh, gh));
-        rate[i] = s * (up + k);
-        reach[i] = (real)(0.5 * radius) / s;
+        const real s2 = bs_dot(d, d), k = turn > 0 ? 4 * s2 / (real)radius : 0;
+        out->u[i] = k * real_sqrt(bs_dot(gu, gu));
+        out->w[i] = k * real_sqrt(bs_dot(gw, gw));
+        out->h[i] = k * real_sqrt(bs_dot(gh, gh));
+        out->reach[i] = (real)(0.5 * radius) / real_sqrt(s2);
+    }
+}
+
+/* All of each triangle, with its overlap. */
+static void triangles_places(const domain *g, int n, const int32_t *lane, rectangles *r)
+{
+    for (int i = 0; i < n; i++) {
+        const mesh_triangle *x = piece(g, lane[i]);
+        const double u0 = fmin(x->u[0], fmin(x->u[1], x->u[2])), u1 = fmax(x->u[0], fmax(x->u[1], x->u[2])),
+                     w0 = fmin(x->w[0], fmin(x->w[1], x->w[2])), w1 = fmax(x->w[0], fmax(x->w[1], x->w[2])),
+                     over = 2 * PRISM_OVERLAP, du = over * (u1 - u0), dw = over * (w1 - w0);
+        r->u0[i] = (real)(u0 - du);
+        r->u1[i] = (real)(u1 + du);
+        r->w0[i] = (real)(w0 - dw);
+        r->w1[i] = (real)(w1 + dw);
     }
 }
 
@@ -162,7 +178,8 @@ static void search_all(traversal *tv)
 {
     const triangles g = {{.bound = triangles_bound,
                           .closest = triangles_closest,
-                          .lipschitz = triangles_lipschitz,
+                          .bend = triangles_bend,
+                          .places = triangles_places,
                           .within = triangles_within,
                           .unclamped = true,
                           .steps = SEARCH},
@@ -174,7 +191,7 @@ static void search_all(traversal *tv)
     for (int i = 0; i < tv->n; i++)
         end[i] = tv->end[tv->of[i]];
     starts_on(tv, &g, own);
-    displaced_count(tv->d, displaced_search(&g.base, tv->d->P, tv->n, &tv->y, end, own, t, found), 0);
+    displaced_count(tv->d, displaced_search(&g.base, tv->d->P, tv->n, &tv->y, end, own, false, t, found), 0);
     for (int i = 0; i < tv->n; i++) {
         const int at = tv->of[i];
         const bool nearer = found[i] != DISPLACED_MISSED && t[i] > 0 &&

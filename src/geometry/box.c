@@ -216,20 +216,6 @@ static void box_closest(const surface *base, int part, int n, const rays *x, con
     }
 }
 
-static void box_lipschitz(const surface *base, int part, int n, const rays *x, const closest_points *p, real Pu_max,
-                          real Pw_max, real *rate, real *reach)
-{
-    const box *f = (const box *)base;
-    const face c = box_face(f, part);
-    const real *s = axis(&x->s, c.k), *sa = axis(&x->s, c.a), *sb = axis(&x->s, c.b);
-    const real iu = 1 / (f->hi[c.a] - f->lo[c.a]), iw = 1 / (f->hi[c.b] - f->lo[c.b]);
-    (void)p;
-    for (int i = 0; i < n; i++) {
-        rate[i] = real_abs(s[i]) + real_abs(sa[i]) * iu * Pu_max + real_abs(sb[i]) * iw * Pw_max;
-        reach[i] = REAL_FAR;
-    }
-}
-
 static void box_box(const surface *base, double lo[3], double hi[3])
 {
     const box *f = (const box *)base;
@@ -254,7 +240,7 @@ static const surface_ops box_methods = {
     .parts = 6,
     .bound = box_bound,
     .closest = box_closest,
-    .lipschitz = box_lipschitz,
+    .bend = bend_flat,
 };
 
 /* Whether no side is 0 once rounded to `real`. */

@@ -110,4 +110,12 @@ void formula_revolve(form_formula *f, frame axes, const char *rho, const char *y
 void extent_unit(const surface *f, int part, double u[2], double w[2]);
 void extent_polar(const surface *f, int part, double u[2], double w[2]);
 
+/* Also there. The member `bend` of flat surfaces: u, w and the height are linear along a ray. */
+void bend_flat(const surface *f, int part, int n, const rays *x, const closest_points *p, path_bends *out);
+
+/* Within REACH of the distance at which a gradient of 1/distance would be infinite, it is below BEND_MORE of what it
+ * was. */
+#define BEND_REACH 0.25
+#define BEND_MORE (1 / (1 - BEND_REACH))
+
 #endif

@@ -233,26 +233,29 @@ static void cone_closest(const surface *base, int part, int n, const rays *x, co
         cone_cap(base, part)->ops->closest(cone_cap(base, part), 0, n, x, t, p);
 }
 
-/* The directions of h, of w and around the axis are at right angles, so that the ray's way is shared between them
- * (Cauchy and Schwarz); |grad u| is 1/(distance to the axis), within half of which it at most doubles. */
-STAGE static void cone_side_lipschitz(int n, const rays *restrict x, const closest_points *restrict p, real Pu_max,
-                                      real Pw_max, real *restrict rate, real *restrict reach)
+/* w and the height are linear in the distance d to the axis and the way along it. Along a unit vector |d''| <= 1/d,
+ * which is |grad u|. */
+STAGE static void cone_side_bend(int n, const rays *restrict x, const closest_points *restrict p,
+                                 path_bends *restrict out)
 {
     for (int i = 0; i < n; i++) {
         real sx = x->s.x[i], sy = x->s.y[i], sz = x->s.z[i], s = real_sqrt(sx * sx + sy * sy + sz * sz);
-        real gu2 = p->gu.x[i] * p->gu.x[i] + p->gu.y[i] * p->gu.y[i] + p->gu.z[i] * p->gu.z[i];
-        rate[i] = s * real_sqrt(1 + Pw_max * Pw_max + 4 * gu2 * Pu_max * Pu_max);
-        reach[i] = R(0.5) / (real_sqrt(gu2) * s);
+        real gu = s * real_sqrt(p->gu.x[i] * p->gu.x[i] + p->gu.y[i] * p->gu.y[i] + p->gu.z[i] * p->gu.z[i]);
+        real gw = s * real_sqrt(p->gw.x[i] * p->gw.x[i] + p->gw.y[i] * p->gw.y[i] + p->gw.z[i] * p->gw.z[i]);
+        real u = R(BEND_MORE) * gu;
+        out->u[i] = u * u;
+        out->w[i] = u * gw;
+        out->h[i] = u * s;
+        out->reach[i] = R(BEND_REACH) / gu;
     }
 }
 
-static void cone_lipschitz(const surface *base, int part, int n, const rays *x, const closest_points *p, real Pu_max,
-                           real Pw_max, real *rate, real *reach)
+static void cone_bend(const surface *base, int part, int n, const rays *x, const closest_points *p, path_bends *out)
 {
     if (part == 0)
-        cone_side_lipschitz(n, x, p, Pu_max, Pw_max, rate, reach);
+        cone_side_bend(n, x, p, out);
     else
-        cone_cap(base, part)->ops->lipschitz(cone_cap(base, part), 0, n, x, p, Pu_max, Pw_max, rate, reach);
+        bend_flat(base, part, n, x, p, out);
 }
 
 /* The methods of a cone or a cylinder, open or capped. */
@@ -261,7 +264,7 @@ static void cone_lipschitz(const surface *base, int part, int n, const rays *x, 
         .kind = name, .hit = cone_##form##_hit, .hit_own = cone_##form##_hit_own, .locate = cone_locate,               \
         .foot = cone_foot, .eval = cone_eval, .occlude = cone_##form##_occlude,                                        \
         .occlude_own = cone_##form##_occlude_own, .extent = cone_extent, .box = cone_box, .parts = number,             \
-        .bound = cone_bound, .closest = cone_closest, .lipschitz = cone_lipschitz, .unclamped = is_cone                \
+        .bound = cone_bound, .closest = cone_closest, .bend = cone_bend, .around = AROUND_U, .unclamped = is_cone      \
     }
 
 static const surface_ops cone_methods[2][2] = {

@@ -188,21 +188,6 @@ STAGE static void plane_closest(const surface *base, int part, int n, const rays
     vec3s_fill(&p->gh, n, f.N[0], f.N[1], f.N[2]);
 }
 
-/* u, w and the height are linear along a ray, so the rate holds for all of it. */
-STAGE static void plane_lipschitz(const surface *base, int part, int n, const rays *x, const closest_points *p,
-                                  real Pu_max, real Pw_max, real *restrict rate, real *restrict reach)
-{
-    const plane f = *(const plane *)base;
-    (void)part;
-    (void)p;
-    for (int i = 0; i < n; i++) {
-        real sx = x->s.x[i], sy = x->s.y[i], sz = x->s.z[i];
-        real u = sx * f.Du[0] + sy * f.Du[1] + sz * f.Du[2], w = sx * f.Dw[0] + sy * f.Dw[1] + sz * f.Dw[2];
-        rate[i] = real_abs(sx * f.N[0] + sy * f.N[1] + sz * f.N[2]) + real_abs(u) * Pu_max + real_abs(w) * Pw_max;
-        reach[i] = REAL_FAR;
-    }
-}
-
 static void plane_extent(const surface *base, int part, double u[2], double w[2])
 {
     (void)base;
@@ -254,7 +239,7 @@ static void disc_box(const surface *base, double lo[3], double hi[3])
     {                                                                                                                  \
         .kind = #name, .hit = name##_hit, .hit_own = name##_hit_own, .locate = plane_locate, .foot = plane_locate,     \
         .eval = plane_eval, .occlude = name##_occlude, .extent = range, .box = name##_box, .flat = true, .parts = 1,   \
-        .bound = name##_bound, .closest = plane_closest, .lipschitz = plane_lipschitz                                  \
+        .bound = name##_bound, .closest = plane_closest, .bend = bend_flat                                             \
     }
 
 static const surface_ops plane_methods = FLAT_METHODS(plane, plane_extent);

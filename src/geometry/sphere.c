@@ -179,19 +179,24 @@ STAGE static void sphere_closest(const surface *base, int part, int n, const ray
     }
 }
 
-/* |grad u| is 1/(distance to the axis), |grad w| 1/(distance to the centre): within half of either they at most double.
+/* |grad u| is 1/(distance to the axis), |grad w| 1/(distance to the centre), which is the longer one. So along a unit
+ * vector |u''| <= |grad u|^2, |h''| <= |grad w|, and |w''| <= (1 + |cot w|) |grad w|^2 <= |grad w|^2 + |grad u||grad
+ * w|.
  */
-STAGE static void sphere_lipschitz(const surface *base, int part, int n, const rays *x, const closest_points *p,
-                                   real Pu_max, real Pw_max, real *restrict rate, real *restrict reach)
+STAGE static void sphere_bend(const surface *base, int part, int n, const rays *x, const closest_points *restrict p,
+                              path_bends *restrict out)
 {
     (void)base;
     (void)part;
     for (int i = 0; i < n; i++) {
         real sx = x->s.x[i], sy = x->s.y[i], sz = x->s.z[i], s = real_sqrt(sx * sx + sy * sy + sz * sz);
-        real gu = real_sqrt(p->gu.x[i] * p->gu.x[i] + p->gu.z[i] * p->gu.z[i]);
-        real gw = real_sqrt(p->gw.x[i] * p->gw.x[i] + p->gw.y[i] * p->gw.y[i] + p->gw.z[i] * p->gw.z[i]);
-        rate[i] = s * (1 + 2 * (gu * Pu_max + gw * Pw_max));
-        reach[i] = R(0.5) / (real_max(gu, gw) * s);
+        real gu = s * real_sqrt(p->gu.x[i] * p->gu.x[i] + p->gu.y[i] * p->gu.y[i] + p->gu.z[i] * p->gu.z[i]);
+        real gw = s * real_sqrt(p->gw.x[i] * p->gw.x[i] + p->gw.y[i] * p->gw.y[i] + p->gw.z[i] * p->gw.z[i]);
+        real u = R(BEND_MORE) * gu, w = R(BEND_MORE) * gw;
+        out->u[i] = u * u;
+        out->w[i] = w * (u + w);
+        out->h[i] = w * s;
+        out->reach[i] = R(BEND_REACH) / real_max(gu, gw);
     }
 }
 
@@ -218,7 +223,8 @@ static const surface_ops sphere_methods = {
     .parts = 1,
     .bound = sphere_bound,
     .closest = sphere_closest,
-    .lipschitz = sphere_lipschitz,
+    .bend = sphere_bend,
+    .around = AROUND_U,
 };
 
 surface *sphere_new(vec3 centre, double radius)

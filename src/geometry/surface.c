@@ -41,3 +41,15 @@ void extent_polar(const surface *f, int part, double u[2], double w[2])
     w[0] = 0;
     w[1] = KM_PI;
 }
+
+void bend_flat(const surface *f, int part, int n, const rays *x, const closest_points *p, path_bends *out)
+{
+    (void)f;
+    (void)part;
+    (void)x;
+    (void)p;
+    for (int i = 0; i < n; i++) {
+        out->u[i] = out->w[i] = out->h[i] = 0;
+        out->reach[i] = REAL_FAR;
+    }
+}

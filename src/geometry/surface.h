@@ -18,6 +18,13 @@
 
 typedef struct surface surface;
 
+/* Bounds of second derivatives by t along rays: of (u,w) and of the height; and how far in t they hold. */
+typedef struct path_bends {
+    real u[LANES], w[LANES], h[LANES], reach[LANES];
+} path_bends;
+
+enum { AROUND_U = 1, AROUND_W = 2 };
+
 /* The methods of one kind of surface. Each is a stage: n lanes, no allocation, reentrant. */
 typedef struct surface_ops {
     const char *kind; /* as in the scene file */
@@ -69,10 +76,11 @@ typedef struct surface_ops {
      * (u,w) may lie outside the extent. */
     void (*closest)(const surface *f, int part, int n, const rays *x, const real *t, closest_points *p);
 
-    /* Lipschitz bounds along each ray from r + s t on, for a P that changes by at most Pu_max and Pw_max per u and w:
-     * how fast height - P can change with t, and how far in t that holds. */
-    void (*lipschitz)(const surface *f, int part, int n, const rays *x, const closest_points *p, real Pu_max,
-                      real Pw_max, real *rate, real *reach);
+    /* How the closest points p, to r + s t, move on along each ray. */
+    void (*bend)(const surface *f, int part, int n, const rays *x, const closest_points *p, path_bends *out);
+
+    /* AROUND_U and AROUND_W: closest points that pass an end of the extent go on at its other end. */
+    int around;
 
     /* Whether `bound` also admits places over (u,w) beyond the part's extent; hits there do not count. */
     bool unclamped;

@@ -114,20 +114,23 @@ STAGE static void torus_closest(const surface *base, int part, int n, const rays
     }
 }
 
-/* The directions of h, u and w are at right angles, so that the ray's way is shared between them (Cauchy and Schwarz).
- * |grad u| is 1/(distance to the axis), |grad w| 1/(distance to the tube's middle): within half of either they at most
- * double. */
-STAGE static void torus_lipschitz(const surface *base, int part, int n, const rays *x, const closest_points *p,
-                                  real Pu_max, real Pw_max, real *restrict rate, real *restrict reach)
+/* |grad u| is 1/(distance d to the axis), |grad w| 1/(distance to the tube's middle). Along a unit vector |d''| <=
+ * |grad u|. Across the tube the path of (d, y) has a speed of at most 1 and bends by |d''|: so |h''| <= |grad w| +
+ * |d''| and |w''| <= |grad w| (|grad w| + |d''|). */
+STAGE static void torus_bend(const surface *base, int part, int n, const rays *x, const closest_points *restrict p,
+                             path_bends *restrict out)
 {
     (void)base;
     (void)part;
     for (int i = 0; i < n; i++) {
         real sx = x->s.x[i], sy = x->s.y[i], sz = x->s.z[i], s = real_sqrt(sx * sx + sy * sy + sz * sz);
-        real u2 = p->gu.x[i] * p->gu.x[i] + p->gu.y[i] * p->gu.y[i] + p->gu.z[i] * p->gu.z[i];
-        real w2 = p->gw.x[i] * p->gw.x[i] + p->gw.y[i] * p->gw.y[i] + p->gw.z[i] * p->gw.z[i];
-        rate[i] = s * real_sqrt(1 + 4 * (u2 * Pu_max * Pu_max + w2 * Pw_max * Pw_max));
-        reach[i] = R(0.5) / (real_sqrt(real_max(u2, w2)) * s);
+        real gu = s * real_sqrt(p->gu.x[i] * p->gu.x[i] + p->gu.y[i] * p->gu.y[i] + p->gu.z[i] * p->gu.z[i]);
+        real gw = s * real_sqrt(p->gw.x[i] * p->gw.x[i] + p->gw.y[i] * p->gw.y[i] + p->gw.z[i] * p->gw.z[i]);
+        real u = R(BEND_MORE) * gu, w = R(BEND_MORE) * gw;
+        out->u[i] = u * u;
+        out->w[i] = w * (u + w);
+        out->h[i] = (u + w) * s;
+        out->reach[i] = R(BEND_REACH) / real_max(gu, gw);
     }
 }
 
@@ -164,7 +167,8 @@ static const surface_ops torus_methods = {
     .parts = 1,
     .bound = torus_bound,
     .closest = torus_closest,
-    .lipschitz = torus_lipschitz,
+    .bend = torus_bend,
+    .around = AROUND_U | AROUND_W,
 };
 
 surface *torus_new(vec3 centre, vec3 axis, double major, double minor)

@@ -10,6 +10,7 @@
  */
 #include "base/affine.h"
 #include "wave/lane.h"
+#include "geometry/closed_form.h"
 #include "geometry/plane.h"
 
 #include <stdlib.h>
@@ -79,19 +80,6 @@ STAGE static void vectors_to(const transformed *f, int n, real k, vec3s *v) { ap
 
 /* Gradients are mapped by the transpose of the inverse. */
 STAGE static void gradients_to(const transformed *f, int n, real k, vec3s *v) { apply(n, f->back, k, nowhere, v); }
-
-/* Gradients are mapped back by the transpose of the map. */
-STAGE static void gradients_back(const transformed *restrict base, int n, real k, const vec3s *restrict v,
-                                 vec3s *restrict to)
-{
-    const transformed f = *base;
-    for (int i = 0; i < n; i++) {
-        real x = k * v->x[i], y = k * v->y[i], z = k * v->z[i];
-        to->x[i] = f.to[0][0] * x + f.to[0][1] * y + f.to[0][2] * z;
-        to->y[i] = f.to[1][0] * x + f.to[1][1] * y + f.to[1][2] * z;
-        to->z[i] = f.to[2][0] * x + f.to[2][1] * y + f.to[2][2] * z;
-    }
-}
 
 /* From one u to the other, in either direction. */
 STAGE static void mirror_u(const transformed *f, int n, const real *u, real *to)
@@ -211,22 +199,11 @@ static void similar_closest(const surface *base, int part, int n, const rays *x,
     gradients_to(f, n, f->scale, &p->gh);
 }
 
-static void similar_lipschitz(const surface *base, int part, int n, const rays *x, const closest_points *p, real Pu_max,
-                              real Pw_max, real *rate, real *reach)
+/* As in `from`: it depends on the ray and the gradients alone. */
+static void similar_bend(const surface *base, int part, int n, const rays *x, const closest_points *p, path_bends *out)
 {
-    const transformed *f = of(base);
-    rays y;
-    closest_points q;
-    rays_back(f, n, x, &y);
-    mirror_u(f, n, p->u, q.u);
-    memcpy(q.w, p->w, (size_t)n * sizeof *q.w);
-    memcpy(q.h, p->h, (size_t)n * sizeof *q.h);
-    stretch(n, f->over, q.h);
-    gradients_back(f, n, f->mirror, &p->gu, &q.gu);
-    gradients_back(f, n, 1, &p->gw, &q.gw);
-    gradients_back(f, n, f->over, &p->gh, &q.gh);
-    f->from->ops->lipschitz(f->from, part, n, &y, &q, Pu_max * f->over, Pw_max * f->over, rate, reach);
-    stretch(n, f->scale, rate);
+    const surface *from = of(base)->from;
+    from->ops->bend(from, part, n, x, p, out);
 }
 
 /* ---- the same on a box, by any map ---- */
@@ -242,13 +219,6 @@ static void faces_closest(const surface *base, int part, int n, const rays *x, c
 {
     const surface *face = &of(base)->face[part].base;
     face->ops->closest(face, 0, n, x, t, p);
-}
-
-static void faces_lipschitz(const surface *base, int part, int n, const rays *x, const closest_points *p, real Pu_max,
-                            real Pw_max, real *rate, real *reach)
-{
-    const surface *face = &of(base)->face[part].base;
-    face->ops->lipschitz(face, 0, n, x, p, Pu_max, Pw_max, rate, reach);
 }
 
 /* The box of the image of the original's box. */
@@ -303,7 +273,7 @@ static bool box_image(transformed *f, const affine *m)
     }
     f->methods.bound = faces_bound;
     f->methods.closest = faces_closest;
-    f->methods.lipschitz = faces_lipschitz;
+    f->methods.bend = bend_flat;
     return good;
 }
 
@@ -323,7 +293,7 @@ static void choose_methods(transformed *f)
     const bool known = f->scale > 0 && f->from->ops->closest;
     f->methods.bound = known ? similar_bound : NULL;
     f->methods.closest = known ? similar_closest : NULL;
-    f->methods.lipschitz = known ? similar_lipschitz : NULL;
+    f->methods.bend = known ? similar_bend : NULL;
 }
 
 surface *surface_transformed(const surface *from, const affine *m)

@@ -7,60 +7,62 @@
 #define SHORT 1e-6 /* scene units */
 
 /* The segment from o to the light. Called with constants, as a choice in the loop would prevent SIMD. */
-static inline void aim_at(hit_group *restrict g, int i, bs_vec3 o, bs_vec3 to)
+static inline void aim_at(int i, bs_vec3 o, bs_vec3 to, rays *restrict y)
 {
-    lane_set(&g->to_light.r, i, o);
-    lane_set(&g->to_light.s, i, (bs_vec3){to.x - o.x, to.y - o.y, to.z - o.z});
+    lane_set(&y->r, i, o);
+    lane_set(&y->s, i, (bs_vec3){to.x - o.x, to.y - o.y, to.z - o.z});
 }
 
 /* To the light's plane. Behind the plane there is light without shadows, as in POV-Ray: there the ray is only SHORT. */
-static inline void aim_along(hit_group *restrict g, int i, bs_vec3 o, bs_vec3 to, bs_vec3 axis)
+static inline void aim_along(int i, bs_vec3 o, bs_vec3 to, bs_vec3 axis, rays *restrict y)
 {
     real depth = (o.x - to.x) * axis.x + (o.y - to.y) * axis.y + (o.z - to.z) * axis.z;
     depth = real_max(depth, R(SHORT));
-    lane_set(&g->to_light.r, i, o);
-    lane_set(&g->to_light.s, i, (bs_vec3){-depth * axis.x, -depth * axis.y, -depth * axis.z});
+    lane_set(&y->r, i, o);
+    lane_set(&y->s, i, (bs_vec3){-depth * axis.x, -depth * axis.y, -depth * axis.z});
 }
 
 static inline bs_vec3 rounded(vec3 x) { return (bs_vec3){(real)x.x, (real)x.y, (real)x.z}; }
 
-STAGE static void aim_rays_at(hit_group *restrict g, const light *l, const real *restrict t)
+STAGE static void rays_at(const light *l, int n, const rays *restrict x, const real *restrict t, rays *restrict y)
 {
     const bs_vec3 at = rounded(l->at);
-    for (int i = 0; i < g->n; i++)
-        aim_at(g, i, lane_at(&g->x, i, t[i]), at);
+    for (int i = 0; i < n; i++)
+        aim_at(i, lane_at(x, i, t[i]), at, y);
 }
 
-STAGE static void aim_rays_along(hit_group *restrict g, const light *l, const real *restrict t)
+STAGE static void rays_along(const light *l, int n, const rays *restrict x, const real *restrict t, rays *restrict y)
 {
     const bs_vec3 at = rounded(l->at), axis = rounded(l->axis);
-    for (int i = 0; i < g->n; i++)
-        aim_along(g, i, lane_at(&g->x, i, t[i]), at, axis);
+    for (int i = 0; i < n; i++)
+        aim_along(i, lane_at(x, i, t[i]), at, axis, y);
 }
 
-STAGE static void aim_places_at(hit_group *restrict g, const light *l, const vec3s *restrict from)
+STAGE static void places_at(const light *l, int n, const vec3s *restrict from, rays *restrict y)
 {
     const bs_vec3 at = rounded(l->at);
-    for (int i = 0; i < g->n; i++)
-        aim_at(g, i, lane_get(from, i), at);
+    for (int i = 0; i < n; i++)
+        aim_at(i, lane_get(from, i), at, y);
 }
 
-STAGE static void aim_places_along(hit_group *restrict g, const light *l, const vec3s *restrict from)
+STAGE static void places_along(const light *l, int n, const vec3s *restrict from, rays *restrict y)
 {
     const bs_vec3 at = rounded(l->at), axis = rounded(l->axis);
-    for (int i = 0; i < g->n; i++)
-        aim_along(g, i, lane_get(from, i), at, axis);
+    for (int i = 0; i < n; i++)
+        aim_along(i, lane_get(from, i), at, axis, y);
 }
 
-void lighting_aim(const light *l, const real *t, hit_group *g)
+void lighting_rays(const light *l, int n, const rays *x, const real *t, rays *to_light)
 {
-    (l->kind == LIGHT_PARALLEL ? aim_rays_along : aim_rays_at)(g, l, t);
+    (l->kind == LIGHT_PARALLEL ? rays_along : rays_at)(l, n, x, t, to_light);
 }
 
 void lighting_aim_from(const light *l, const vec3s *from, hit_group *g)
 {
-    (l->kind == LIGHT_PARALLEL ? aim_places_along : aim_places_at)(g, l, from);
+    (l->kind == LIGHT_PARALLEL ? places_along : places_at)(l, g->n, from, &g->to_light);
 }
+
+void lighting_aim(const light *l, const real *t, hit_group *g) { lighting_rays(l, g->n, &g->x, t, &g->to_light); }
 
 STAGE static void add(const hit_group *restrict g, real share, real *restrict sum)
 {

@@ -5,9 +5,10 @@
 #include "scene/light.h"
 #include "wave/hit_group.h"
 
-/* g->to_light = shadow rays r + s t', 0 < t' < 1, from the point at t on each lane's ray to the light. t is g->t or
- * g->t0.
- */
+/* Shadow rays r + s t', 0 < t' < 1, from the point at t[i] on each of n rays to the light. */
+void lighting_rays(const light *l, int n, const rays *x, const real *t, rays *to_light);
+
+/* The same into g->to_light. t is g->t or g->t0. */
 void lighting_aim(const light *l, const real *t, hit_group *g);
 
 /* The same from any places. */

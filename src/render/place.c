@@ -59,22 +59,21 @@ STAGE static void places(hit_group *restrict g)
         lane_set(&g->q.Q, i, lane_at(&g->x, i, g->t_shade[i]));
 }
 
-/* Qu and Qw at the height of the bump, so that n' has the smooth surface's curvature in it. */
-STAGE static void raise(hit_group *restrict g)
+/* n' of the rough surface itself, with the smooth surface's curvature in it. */
+STAGE static void bend_normals(hit_group *restrict g)
 {
     for (int i = 0; i < g->n; i++) {
-        bs_vec3 Qu = lane_get(&g->q.Qu, i), Qw = lane_get(&g->q.Qw, i), n = bs_normal(Qu, Qw);
+        bs_vec3 Qu = lane_get(&g->q.Qu, i), Qw = lane_get(&g->q.Qw, i), n = bs_normal(Qu, Qw),
+                before = lane_get(&g->n_bump, i);
         bs_offset o = bs_offset_of(n, Qu, Qw, lane_get(&g->q.Quu, i), lane_get(&g->q.Quw, i), lane_get(&g->q.Qww, i),
                                    g->bump.P[i]);
-        int good = bs_regular(n, Qu, Qw) & (bs_dot(n, bs_normal(o.Qu, o.Qw)) > 0);
-        o.Qu.x = good ? o.Qu.x : Qu.x;
-        o.Qu.y = good ? o.Qu.y : Qu.y;
-        o.Qu.z = good ? o.Qu.z : Qu.z;
-        o.Qw.x = good ? o.Qw.x : Qw.x;
-        o.Qw.y = good ? o.Qw.y : Qw.y;
-        o.Qw.z = good ? o.Qw.z : Qw.z;
-        lane_set(&g->q.Qu, i, o.Qu);
-        lane_set(&g->q.Qw, i, o.Qw);
+        bs_vec3 N = bs_normal(o.Qu, o.Qw),
+                np = lane_unit(bs_perturbed_normal(N, o.Qu, o.Qw, g->bump.Pu[i], g->bump.Pw[i]));
+        int good = bs_regular(n, Qu, Qw) & (bs_dot(n, N) > 0); /* not beyond the centre of curvature */
+        np.x = good ? np.x : before.x;
+        np.y = good ? np.y : before.y;
+        np.z = good ? np.z : before.z;
+        lane_set(&g->n_bump, i, np);
     }
 }
 
@@ -88,9 +87,9 @@ void place_shifted(const surface *f, const bump *P, bool own, hit_group *g)
         foot_by_steps(f, g);
     f->ops->eval(f, g->n, g->shade_part, g->u, g->w, own || !f->ops->flat ? 2 : 1, &g->q);
     P->ops->eval(P, g->n, g->u, g->w, 1, &g->bump);
-    if (!f->ops->flat)
-        raise(g);
     shift_normals(g, P);
+    if (!f->ops->flat)
+        bend_normals(g);
     if (own)
         own_places(g, &g->rough);
     places(g);

@@ -108,7 +108,7 @@ static void follow_through(const scene *s, int32_t id, bool own, workspace *v)
 
 /* ---- all objects ---- */
 
-static bool casts(const tracer *tr, int32_t id) { return tr->self_shadow || !tr->scene->object[id].bump; }
+bool shadow_casts(const tracer *tr, int32_t id) { return tr->self_shadow || !tr->scene->object[id].bump; }
 
 static bool is_clear(const tracer *tr, int32_t id)
 {
@@ -168,7 +168,7 @@ static void cast_others(const tracer *tr, int32_t id, workspace *v)
         find_candidates(s->object_bvh, g, v->candidates);
     for (int32_t j = intersect_next(s, v->candidates, -1); j >= 0; j = intersect_next(s, v->candidates, j)) {
         const surface *f = v->surface[j];
-        if (j == id || !casts(tr, j))
+        if (j == id || !shadow_casts(tr, j))
             continue;
         if (is_clear(tr, j))
             follow_through(s, j, false, v);
@@ -297,12 +297,14 @@ static void shadow_place(const tracer *tr, int32_t id, const light *l, bool shar
         vec3s_fill(&g->tint, g->n, 1, 1, 1);
     if (shadow_is_own(tr, id, v))
         cast_bumps(tr, id, l, shared, v);
-    else if (casts(tr, id) && (v->surface[id]->ops->occlude_own || is_clear(tr, id))) {
+    else if (shadow_casts(tr, id) && (v->surface[id]->ops->occlude_own || is_clear(tr, id))) {
         lighting_aim(l, g->t, g); /* from p1 */
         cast_own(tr, id, v);
     }
-    lighting_aim(l, g->t0, g); /* from r + s t0 */
-    cast_others(tr, id, v);
+    if (!v->alone) {
+        lighting_aim(l, g->t0, g); /* from r + s t0 */
+        cast_others(tr, id, v);
+    }
     v->stats->shadow_rays += g->n;
 }
 

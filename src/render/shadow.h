@@ -12,4 +12,7 @@ void shadow_light(const tracer *tr, int32_t id, const light *l, workspace *v);
  * mean that it is dark. */
 bool shadow_is_own(const tracer *tr, int32_t id, const workspace *v);
 
+/* Whether object `id` casts shadows. */
+bool shadow_casts(const tracer *tr, int32_t id);
+
 #endif

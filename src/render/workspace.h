@@ -28,6 +28,7 @@ struct workspace {
     rays x;       /* the wave */
     hits nearest; /* its hits; -1 where a group has been taken out */
     hit_group g;  /* the current group */
+    bool alone;   /* no other object can shadow it (auto.h) */
     samples out;
     real (*visibility)[LANES]; /* for each light of the scene; with layers only */
 

@@ -1,5 +1,6 @@
 /* Bumps: P(u,w), a height along a surface's unit normal in scene units, with its partials and bounds. Bumps know
- * nothing of surfaces, scenes or light. A bump does not change once it is made, and any number of threads may use it.
+ * nothing of surfaces, scenes or light. Once it is made, and prepared where `range` is used, a bump does not change,
+ * and any number of threads may use it.
  */
 #ifndef KAGE_TEXTURE_BUMP_H
 #define KAGE_TEXTURE_BUMP_H
@@ -8,6 +9,7 @@
 
 #include "expr/expr.h"
 #include "image/image.h"
+#include "texture/pyramid.h"
 #include "texture/table.h"
 
 typedef struct bump bump;
@@ -26,6 +28,12 @@ typedef struct bump_ops {
      * where jets is. */
     void (*bound)(const bump *p, const double u[2], const double w[2], expr_bounds *out);
 
+    /* Bounds over the n <= LANES rectangles u0..u1 x w0..w1, which may have infinite ends: of P, and of how fast it
+     * changes. They hold for what eval returns at places in both the rectangle and the range that P is made for. */
+    void (*range)(const bump *p, int n, const real *u0, const real *u1, const real *w0, const real *w1,
+                  bump_ranges *out);
+
+    bool (*prepare)(bump *p); /* bump_prepare */
     void (*free)(bump *p);
 } bump_ops;
 
@@ -37,6 +45,14 @@ struct bump {
      *     |P(u,w) - P(u',w')| <= Pu_max |u - u'| + Pw_max |w - w'|
      * up to rounding. Infinite where none is known, as for a function that jumps. |Pu| and |Pw| are at most these. */
     real Pu_max, Pw_max;
+
+    /* Once prepared: bounds of |Puu|, |Puw| and |Pww|, which are Lipschitz constants of Pu and Pw, so that with du and
+     * dw the way from a place of the range to another
+     *     |P' - P - Pu du - Pw dw| <= (Puu_max du^2 + 2 Puw_max |du dw| + Pww_max dw^2)/2
+     * up to rounding. Infinite where none are known, as for maps. */
+    real Puu_max, Puw_max, Pww_max;
+
+    pyramid *pyramid; /* what `range` looks up; NULL before bump_prepare, when it gives the bounds above */
 };
 
 /* P from samples, by section 4.1 of the paper: partials by central differences at the samples; heights and partials
@@ -49,7 +65,20 @@ bump *bump_map_new(const image *samples, const map_layout *layout);
  * (infinite ends allowed). NULL: out of memory. */
 bump *bump_function_new(expr *f, double scale, const double u[2], const double w[2]);
 
+/* Make ready for `range` and set the second partials' bounds, before threads use p. Again: no effect. False: out of
+ * memory. */
+bool bump_prepare(bump *p);
+
 void bump_free(bump *p);
+
+/* Whether bounds of P are known. */
+static inline bool bump_is_bounded(const bump *p) { return p->Pmax - p->Pmin < REAL_FAR; }
+
+/* For the constructors: nothing is known of second partials. */
+static inline void bump_unknown_bends(bump *p) { p->Puu_max = p->Puw_max = p->Pww_max = (real)HUGE_VAL; }
+
+/* For `range`: the bounds over all places for each of n. */
+void bump_whole_range(const bump *p, int n, bump_ranges *out);
 
 /* For the constructors: slope |scale|, rounded up. */
 static inline real bump_slope(double slope, double scale)

@@ -9,6 +9,7 @@ typedef struct function {
     bump base;
     expr *f;
     double scale;
+    double u[2], w[2]; /* the range that its bounds hold for */
 } function;
 
 static void function_copy(int n, double scale, const double *restrict from, real *restrict to)
@@ -71,14 +72,21 @@ static void function_bound(const bump *base, const double u[2], const double w[2
     scaled(p->scale, out->w);
 }
 
+static void function_range(const bump *base, int n, const real *u0, const real *u1, const real *w0, const real *w1,
+                           bump_ranges *out)
+{
+    if (base->pyramid)
+        pyramid_ranges(base->pyramid, n, u0, u1, w0, w1, out);
+    else
+        bump_whole_range(base, n, out);
+}
+
 static void function_free(bump *base)
 {
+    pyramid_free(base->pyramid);
     expr_free(((function *)base)->f);
     free(base);
 }
-
-static const bump_ops function_methods = {
-    .kind = "function", .eval = function_eval, .jets = function_jets, .bound = function_bound, .free = function_free};
 
 static double widest(const double range[2], double so_far)
 {
@@ -93,10 +101,13 @@ static double part(const double extent[2], int i, int n)
 
 /* Interval arithmetic treats each u in the expression as a variable of its own, so its bounds are wide over a wide
  * extent. Over CELLS x CELLS parts they are close. The parts share their edges, so P cannot jump between them. */
+enum { CELLS = 64 }; /* along u and along w */
+
+static int parts_of(const double extent[2]) { return extent[1] - extent[0] < HUGE_VAL ? CELLS : 1; }
+
 static void function_bounds(const expr *f, const double u[2], const double w[2], double P[2], double slope[2])
 {
-    enum { CELLS = 64 }; /* along u and along w */
-    int nu = u[1] - u[0] < HUGE_VAL ? CELLS : 1, nw = w[1] - w[0] < HUGE_VAL ? CELLS : 1;
+    const int nu = parts_of(u), nw = parts_of(w);
     P[0] = HUGE_VAL;
     P[1] = -HUGE_VAL;
     slope[0] = slope[1] = 0;
@@ -110,6 +121,66 @@ static void function_bounds(const expr *f, const double u[2], const double w[2],
             slope[1] = widest(b.w, slope[1]);
         }
 }
+
+/* ---- for range ---- */
+
+/* One axis of a grid of parts: parts per unit, and the part at 0. */
+static void lay_axis(const double extent[2], int parts, real *k, real *o)
+{
+    const double size = extent[1] - extent[0];
+    *k = parts > 1 && size > 0 ? (real)(parts / size) : 0;
+    *o = parts > 1 && size > 0 ? (real)(-extent[0] * parts / size) : 0;
+}
+
+static cell_range function_part(const void *user, int row, int column)
+{
+    const function *p = user;
+    const int nu = parts_of(p->u), nw = parts_of(p->w);
+    const double u[2] = {part(p->u, column, nu), part(p->u, column + 1, nu)},
+                 w[2] = {part(p->w, row, nw), part(p->w, row + 1, nw)};
+    expr_bounds b;
+    function_bound(&p->base, u, w, &b);
+    return (cell_range){b.v[0], b.v[1], widest(b.u, 0), widest(b.w, 0)};
+}
+
+static void function_bends(function *p)
+{
+    const int nu = parts_of(p->u), nw = parts_of(p->w);
+    double uu = 0, uw = 0, ww = 0;
+    for (int j = 0; j < nw; j++)
+        for (int i = 0; i < nu; i++) {
+            expr_bounds b;
+            expr_hessians h;
+            expr_bound_hessian(p->f, part(p->u, i, nu), part(p->u, i + 1, nu), part(p->w, j, nw), part(p->w, j + 1, nw),
+                               &b, &h);
+            uu = widest(h.uu, uu);
+            uw = widest(h.uw, uw);
+            ww = widest(h.ww, ww);
+        }
+    p->base.Puu_max = bump_slope(uu, p->scale);
+    p->base.Puw_max = bump_slope(uw, p->scale);
+    p->base.Pww_max = bump_slope(ww, p->scale);
+}
+
+static bool function_prepare(bump *base)
+{
+    function *p = (function *)base;
+    table_grid g = {.columns = parts_of(p->u), .rows = parts_of(p->w)};
+    lay_axis(p->u, g.columns, &g.ku, &g.ou);
+    lay_axis(p->w, g.rows, &g.kw, &g.ow);
+    p->base.pyramid = pyramid_new(&g, function_part, p);
+    if (p->base.pyramid)
+        function_bends(p);
+    return p->base.pyramid;
+}
+
+static const bump_ops function_methods = {.kind = "function",
+                                          .eval = function_eval,
+                                          .jets = function_jets,
+                                          .bound = function_bound,
+                                          .range = function_range,
+                                          .prepare = function_prepare,
+                                          .free = function_free};
 
 bump *bump_function_new(expr *f, double scale, const double u[2], const double w[2])
 {
@@ -127,6 +198,11 @@ bump *bump_function_new(expr *f, double scale, const double u[2], const double w
     }
     p->base.Pu_max = bump_slope(slope[0], scale);
     p->base.Pw_max = bump_slope(slope[1], scale);
+    bump_unknown_bends(&p->base);
+    for (int k = 0; k < 2; k++) {
+        p->u[k] = u[k];
+        p->w[k] = w[k];
+    }
     p->f = f;
     p->scale = scale;
     return &p->base;

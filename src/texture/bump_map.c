@@ -156,16 +156,49 @@ static void map_bound(const bump *base, const double u[2], const double w[2], ex
         widen(out->w, 0);
 }
 
+static void map_range(const bump *base, int n, const real *u0, const real *u1, const real *w0, const real *w1,
+                      bump_ranges *out)
+{
+    if (base->pyramid)
+        pyramid_ranges(base->pyramid, n, u0, u1, w0, w1, out);
+    else
+        bump_whole_range(base, n, out);
+}
+
+/* A bilinear P is steepest along the edges of its cell. `none` is 0, or NaN by a sample that is NaN or infinite. */
+static cell_range map_cell(const void *user, int row, int column)
+{
+    const map *m = user;
+    const corners c = corners_of(m, row, column);
+    const double ku = (double)m->grid.ku, kw = (double)m->grid.kw, none = 0 * (c.p0 + c.p1 + c.q0 + c.q1);
+    return (cell_range){fmin(fmin(c.p0, c.p1), fmin(c.q0, c.q1)) + none,
+                        fmax(fmax(c.p0, c.p1), fmax(c.q0, c.q1)) + none,
+                        (double)bump_slope(greater(fabs(c.p1 - c.p0), fabs(c.q1 - c.q0)), ku),
+                        (double)bump_slope(greater(fabs(c.q0 - c.p0), fabs(c.q1 - c.p1)), kw)};
+}
+
+static bool map_prepare(bump *base)
+{
+    base->pyramid = pyramid_new(&((const map *)base)->grid, map_cell, base);
+    return base->pyramid;
+}
+
 static void map_free(bump *base)
 {
     map *m = (map *)base;
+    pyramid_free(base->pyramid);
     for (int k = 0; k < TABLES; k++)
         free(m->table[k]);
     free(m);
 }
 
-static const bump_ops map_methods = {
-    .kind = "map", .eval = map_eval, .jets = map_jets, .bound = map_bound, .free = map_free};
+static const bump_ops map_methods = {.kind = "map",
+                                     .eval = map_eval,
+                                     .jets = map_jets,
+                                     .bound = map_bound,
+                                     .range = map_range,
+                                     .prepare = map_prepare,
+                                     .free = map_free};
 
 /* Fill the tables, and find the range of P. ku, kw: samples per u and per w, for the chain rule. */
 static void map_differences(map *m, const image *s, const map_layout *l, double ku, double kw)
@@ -225,6 +258,7 @@ bump *bump_map_new(const image *samples, const map_layout *l)
     if (!m)
         return NULL;
     m->base.ops = &map_methods;
+    bump_unknown_bends(&m->base);
     m->grid = grid;
     for (int k = 0; k < TABLES; k++) {
         m->table[k] = malloc(sizeof(real) * TABLE_VALUES * (size_t)(m->grid.columns + 1) * (size_t)(m->grid.rows + 1));
@@ -237,6 +271,18 @@ bump *bump_map_new(const image *samples, const map_layout *l)
                     (double)(samples->height - l->corners) / l->size[1]);
     map_slopes(m);
     return &m->base;
+}
+
+bool bump_prepare(bump *p) { return p->pyramid || p->ops->prepare(p); }
+
+void bump_whole_range(const bump *p, int n, bump_ranges *out)
+{
+    for (int i = 0; i < n; i++) {
+        out->lo[i] = p->Pmin;
+        out->hi[i] = p->Pmax;
+        out->Pu[i] = p->Pu_max;
+        out->Pw[i] = p->Pw_max;
+    }
 }
 
 void bump_free(bump *p)

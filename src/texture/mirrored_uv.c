@@ -44,6 +44,42 @@ static void mirrored_bump_eval(const bump *base, int n, const real *u, const rea
         apply_sign(n, sign, h->Puw);
 }
 
+/* Where `reflect` puts the ends of a range: it folds at an end that the range goes beyond. */
+STAGE static void reflect_range(int n, const ends *k, const real *restrict u0, const real *restrict u1,
+                                real *restrict to0, real *restrict to1)
+{
+    const real lo = k->lo, hi = k->hi;
+    for (int i = 0; i < n; i++) {
+        const real a = u0[i], b = u1[i], back = 2 * hi - b;
+        const real least = b > hi ? real_min(a > hi ? back : a, back) : a;
+        const real most = b > hi ? (a > hi ? 2 * hi - a : hi) : b;
+        const real forth = 2 * lo - least;
+        to0[i] = least < lo ? (most < lo ? 2 * lo - most : lo) : least;
+        to1[i] = least < lo ? real_max(most, forth) : most;
+    }
+}
+
+static void mirrored_bump_range(const bump *base, int n, const real *u0, const real *u1, const real *w0, const real *w1,
+                                bump_ranges *out)
+{
+    const mirrored_bump *f = (const mirrored_bump *)base;
+    real from[LANES], to[LANES];
+    reflect_range(n, &f->k, u0, u1, from, to);
+    f->of->ops->range(f->of, n, from, to, w0, w1, out);
+}
+
+/* The original keeps its pyramid. */
+static bool mirrored_bump_prepare(bump *base)
+{
+    const bump *of = ((mirrored_bump *)base)->of;
+    if (!bump_prepare(((mirrored_bump *)base)->of))
+        return false;
+    base->Puu_max = of->Puu_max;
+    base->Puw_max = of->Puw_max;
+    base->Pww_max = of->Pww_max;
+    return true;
+}
+
 static void mirrored_bump_free(bump *base)
 {
     bump_free(((mirrored_bump *)base)->of);
@@ -57,9 +93,16 @@ bump *bump_mirrored_uv(bump *p, double lo, double hi)
         bump_free(p);
         return NULL;
     }
-    *f = (mirrored_bump){
-        *p, {.kind = p->ops->kind, .eval = mirrored_bump_eval, .free = mirrored_bump_free}, p, {(real)lo, (real)hi}};
+    f->base = *p;
+    f->methods = (bump_ops){.kind = p->ops->kind,
+                            .eval = mirrored_bump_eval,
+                            .range = mirrored_bump_range,
+                            .prepare = mirrored_bump_prepare,
+                            .free = mirrored_bump_free};
+    f->of = p;
+    f->k = (ends){(real)lo, (real)hi};
     f->base.ops = &f->methods;
+    f->base.pyramid = NULL;
     return &f->base;
 }
 

@@ -14,7 +14,15 @@ from tests.conftest import PROGRAM as KAGE
 # What is known not to be vectorised, or not to full width, and why.
 SCALAR = {"order_2_bare"}  # gcc 12 finds no vector for its choice between the orders 1 and 2; not the default method
 # Their choices become branches without blends of masks.
-NOT_ON_SSE2 = {"drop_irregular", "cone_caps_eval", "torus_bounds", "torus_bracket", "occlude_by_quartic", "torus_step"}
+NOT_ON_SSE2 = {
+    "drop_irregular",
+    "cone_caps_eval",
+    "torus_bounds",
+    "torus_bracket",
+    "occlude_by_quartic",
+    "torus_step",
+    "level_up",
+}
 HALF = {"map_interpolate"}  # four values of a map are one vector of 128 bits, on purpose
 
 

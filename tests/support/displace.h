@@ -6,7 +6,7 @@
 #include "support/check.h"
 
 /* The displaced surface of f by P, which adds to *c. */
-static inline surface *displace(const surface *f, const bump *P, displaced_counts *c)
+static inline surface *displace(const surface *f, bump *P, displaced_counts *c)
 {
     assert_true(displaced_has_form(f) && displaced_has_bounds(P));
     surface *d = displaced_new(f, P);

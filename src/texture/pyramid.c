@@ -1,0 +1,258 @@
+/* Pyramids of bounds. A node is four numbers of which each is the most of the nodes below: -lo, hi, Pu and Pw.
+ *
+ * Where the grid repeats, a rectangle may begin before its end and go on behind its start. So each level goes on for
+ * some nodes behind the end, over the cells that follow there.
+ */
+#include "texture/pyramid.h"
+
+#include <stdlib.h>
+
+enum {
+    LEVELS = 32,
+    BEHIND = 3, /* nodes that a level has behind the last whole one */
+};
+
+struct pyramid {
+    table_grid grid;
+    int levels;
+    int32_t first[LEVELS], pitch[LEVELS], rows[LEVELS]; /* of each level: its first node, nodes in a row, rows */
+    real *node;                                         /* TABLE_VALUES each */
+};
+
+/* ---- look-up ---- */
+
+/* The grid along an axis. */
+typedef struct axis {
+    real k, o, cells;
+} axis;
+
+/* Where ranges begin and end, in cells from the first one. The end may be up to a period behind the grid's where that
+ * repeats; elsewhere both are on the grid, as P is constant beyond it. `air` is more than the roundings of this and of
+ * table_cells. Called with a constant `repeat`, as a choice in the loop would prevent SIMD. */
+static inline void place(axis g, int repeat, int n, const real *restrict x0, const real *restrict x1,
+                         real *restrict first, real *restrict last)
+{
+    const real cells = g.cells, k = g.k, o = g.o, each = 1 / cells, most = repeat ? 2 * cells : cells;
+    for (int i = 0; i < n; i++) {
+        const real y0 = x0[i] * k + o, y1 = x1[i] * k + o, lo = real_min(y0, y1), hi = real_max(y0, y1);
+        const real air = 2 * R(REAL_ROUNDING) * (real_abs(lo) + real_abs(hi) + real_abs(o) + cells);
+        const real from = lo - air, to = hi + air, start = repeat ? real_floor(from * each) * cells : 0;
+        const int some = to - from < cells; /* not NaN */
+        const real a = real_min(real_max(from - start, 0), cells), b = real_min(real_max(to - start, a), most);
+        first[i] = some ? a : 0;
+        last[i] = some ? b : cells;
+    }
+}
+
+STAGE static void place_repeat(axis g, int n, const real *x0, const real *x1, real *first, real *last)
+{
+    place(g, 1, n, x0, x1, first, last);
+}
+
+STAGE static void place_clamp(axis g, int n, const real *x0, const real *x1, real *first, real *last)
+{
+    place(g, 0, n, x0, x1, first, last);
+}
+
+/* The level of each range: what it goes over fits a node. `share` of a node is a cell there. */
+typedef struct level_of {
+    real size[LANES], share[LANES];
+    int32_t first[LANES], pitch[LANES], rows[LANES];
+} level_of;
+
+STAGE static void level_bottom(const pyramid *y, int n, const real *restrict a0, const real *restrict a1,
+                               const real *restrict b0, const real *restrict b1, level_of *restrict l)
+{
+    const int32_t pitch = y->pitch[0], rows = y->rows[0];
+    for (int i = 0; i < n; i++) {
+        l->size[i] = real_max(a1[i] - a0[i], b1[i] - b0[i]);
+        l->share[i] = 1;
+        l->first[i] = 0;
+        l->pitch[i] = pitch;
+        l->rows[i] = rows;
+    }
+}
+
+/* Up to level k where the range does not fit the one below. */
+STAGE static void level_up(const pyramid *y, int k, int n, real below, level_of *restrict l)
+{
+    const int32_t first = y->first[k], pitch = y->pitch[k], rows = y->rows[k];
+    const real share = R(0.5) / below;
+    for (int i = 0; i < n; i++) {
+        const int up = l->size[i] > below;
+        l->share[i] = up ? share : l->share[i];
+        l->first[i] = up ? first : l->first[i];
+        l->pitch[i] = up ? pitch : l->pitch[i];
+        l->rows[i] = up ? rows : l->rows[i];
+    }
+}
+
+static inline int32_t lesser_of(int32_t a, int32_t b) { return a < b ? a : b; }
+
+/* The 2 x 2 nodes; some or all of them may be the same. */
+STAGE static void nodes_of(int n, const level_of *restrict l, const real *restrict a0, const real *restrict a1,
+                           const real *restrict b0, const real *restrict b1, int32_t *restrict p, int32_t *restrict q,
+                           int32_t *restrict r, int32_t *restrict s)
+{
+    for (int i = 0; i < n; i++) {
+        const real k = l->share[i];
+        const int32_t pitch = l->pitch[i], right = pitch - 1, low = l->rows[i] - 1;
+        const int32_t c0 = lesser_of((int32_t)(a0[i] * k), right), r0 = lesser_of((int32_t)(b0[i] * k), low);
+        const int32_t c1 = lesser_of(lesser_of((int32_t)(a1[i] * k), c0 + 1), right);
+        const int32_t r1 = lesser_of(lesser_of((int32_t)(b1[i] * k), r0 + 1), low);
+        const int32_t upper = l->first[i] + r0 * pitch, lower = l->first[i] + r1 * pitch;
+        p[i] = upper + c0;
+        q[i] = upper + c1;
+        r[i] = lower + c0;
+        s[i] = lower + c1;
+    }
+}
+
+/* A node is one vector, so this takes four loads a lane and no gather. */
+STAGE static void most_of(const real *restrict v, int n, const int32_t *restrict p, const int32_t *restrict q,
+                          const int32_t *restrict r, const int32_t *restrict s, real (*restrict out)[TABLE_VALUES])
+{
+    for (int i = 0; i < n; i++) {
+        const real *a = v + (size_t)p[i] * TABLE_VALUES, *b = v + (size_t)q[i] * TABLE_VALUES;
+        const real *c = v + (size_t)r[i] * TABLE_VALUES, *d = v + (size_t)s[i] * TABLE_VALUES;
+        for (int k = 0; k < TABLE_VALUES; k++)
+            out[i][k] = real_max(real_max(a[k], b[k]), real_max(c[k], d[k]));
+    }
+}
+
+/* Bilinear look-ups are rounded, and may pass the samples by as much. */
+STAGE static void unpack(int n, const real (*restrict from)[TABLE_VALUES], bump_ranges *restrict out)
+{
+    for (int i = 0; i < n; i++) {
+        const real lo = -from[i][0], hi = from[i][1], air = 4 * R(REAL_ROUNDING) * real_max(real_abs(lo), real_abs(hi));
+        out->lo[i] = lo - air;
+        out->hi[i] = hi + air;
+        out->Pu[i] = from[i][2];
+        out->Pw[i] = from[i][3];
+    }
+}
+
+void pyramid_ranges(const pyramid *y, int n, const real *u0, const real *u1, const real *w0, const real *w1,
+                    bump_ranges *out)
+{
+    real a0[LANES], a1[LANES], b0[LANES], b1[LANES], four[LANES][TABLE_VALUES];
+    int32_t p[LANES], q[LANES], r[LANES], s[LANES];
+    level_of l;
+    const table_grid *g = &y->grid;
+    const axis u = {g->ku, g->ou, (real)g->columns}, w = {g->kw, g->ow, (real)g->rows};
+    (g->repeat ? place_repeat : place_clamp)(u, n, u0, u1, a0, a1);
+    (g->repeat ? place_repeat : place_clamp)(w, n, w0, w1, b0, b1);
+    level_bottom(y, n, a0, a1, b0, b1, &l);
+    for (int k = 1; k < y->levels; k++)
+        level_up(y, k, n, (real)(1 << (k - 1)), &l);
+    nodes_of(n, &l, a0, a1, b0, b1, p, q, r, s);
+    most_of(y->node, n, p, q, r, s, four);
+    unpack(n, (const real(*)[TABLE_VALUES])four, out);
+}
+
+/* ---- building ---- */
+
+static real above(double x)
+{
+    const real r = (real)x;
+#ifdef KAGE_DOUBLE
+    return r;
+#else
+    return (double)r < x ? nextafterf(r, HUGE_VALF) : r;
+#endif
+}
+
+/* Of cells first..last of n: those of the nodes of 2^k cells that cover them. */
+typedef struct nodes {
+    int first, last;
+} nodes;
+
+/* The nodes of level k that node i of the next level covers. */
+static nodes below(int i, int k, int cells, int repeat)
+{
+    const int64_t size = (int64_t)2 << k, at = i * size, from = repeat ? at % cells : at < cells ? at : cells - 1;
+    const int64_t to = from + size - 1, last = repeat || to < cells ? to : cells - 1;
+    return (nodes){(int)(from >> k), (int)(last >> k)};
+}
+
+static void join(real *to, const real *from)
+{
+    for (int k = 0; k < TABLE_VALUES; k++)
+        to[k] = real_max(to[k], from[k]);
+}
+
+static real *node_of(const pyramid *y, int level, int row, int column)
+{
+    const size_t at = (size_t)y->first[level] + (size_t)row * (size_t)y->pitch[level] + (size_t)column;
+    return y->node + at * TABLE_VALUES;
+}
+
+static int cell_at(int i, int cells, int repeat) { return i < cells ? i : repeat ? i % cells : cells - 1; }
+
+static void lay_bottom(pyramid *y, cell_range (*cell)(const void *user, int row, int column), const void *user)
+{
+    const table_grid *g = &y->grid;
+    for (int j = 0; j < y->rows[0]; j++)
+        for (int i = 0; i < y->pitch[0]; i++) {
+            real *to = node_of(y, 0, j, i);
+            if (j >= g->rows || i >= g->columns) {
+                const real *same = node_of(y, 0, cell_at(j, g->rows, g->repeat), cell_at(i, g->columns, g->repeat));
+                for (int k = 0; k < TABLE_VALUES; k++)
+                    to[k] = same[k];
+                continue;
+            }
+            const cell_range c = cell(user, j, i);
+            const double four[TABLE_VALUES] = {-c.lo, c.hi, c.Pu, c.Pw};
+            for (int k = 0; k < TABLE_VALUES; k++)
+                to[k] = four[k] == four[k] ? above(four[k]) : (real)HUGE_VAL; /* NaN: from a sample that is */
+        }
+}
+
+static void lay_level(pyramid *y, int level)
+{
+    const table_grid *g = &y->grid;
+    for (int j = 0; j < y->rows[level]; j++)
+        for (int i = 0; i < y->pitch[level]; i++) {
+            const nodes r = below(j, level - 1, g->rows, g->repeat), c = below(i, level - 1, g->columns, g->repeat);
+            real *to = node_of(y, level, j, i);
+            for (int k = 0; k < TABLE_VALUES; k++)
+                to[k] = -(real)HUGE_VAL;
+            for (int b = r.first; b <= r.last; b++)
+                for (int a = c.first; a <= c.last; a++)
+                    join(to, node_of(y, level - 1, b, a));
+        }
+}
+
+pyramid *pyramid_new(const table_grid *grid, cell_range (*cell)(const void *user, int row, int column),
+                     const void *user)
+{
+    const int longest = grid->columns > grid->rows ? grid->columns : grid->rows;
+    pyramid *y = calloc(1, sizeof *y);
+    int64_t nodes_in_all = 0;
+    if (!y)
+        return NULL;
+    y->grid = *grid;
+    for (int k = 0; k == 0 || (int64_t)1 << (k - 1) < longest; k++) {
+        y->first[k] = (int32_t)nodes_in_all;
+        y->pitch[k] = (grid->columns >> k) + BEHIND;
+        y->rows[k] = (grid->rows >> k) + BEHIND;
+        nodes_in_all += (int64_t)y->pitch[k] * y->rows[k];
+        y->levels = k + 1;
+    }
+    y->node = nodes_in_all < INT32_MAX ? malloc(sizeof(real) * TABLE_VALUES * (size_t)nodes_in_all) : NULL;
+    if (!y->node) {
+        free(y);
+        return NULL;
+    }
+    lay_bottom(y, cell, user);
+    for (int k = 1; k < y->levels; k++)
+        lay_level(y, k);
+    return y;
+}
+
+void pyramid_free(pyramid *y)
+{
+    if (y)
+        free(y->node);
+    free(y);
+}
