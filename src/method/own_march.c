@@ -9,35 +9,35 @@
 typedef struct open_ways {
     int n;
     int32_t lane[LANES], below[LANES]; /* of the group; met the rough surface */
-    real side[LANES], sn[LANES], a[LANES], b[LANES], curvature[LANES], end[LANES]; /* as own_ways */
+    real side[LANES], sn[LANES], a[LANES], b[LANES], A[LANES], B[LANES], curvature[LANES], end[LANES]; /* as own_ways */
     real u[LANES], w[LANES], P[LANES];
 } open_ways;
 
-/* Whether P stays below the way: P rises by at most Pu |a| + Pw |b| per t, the way by at least sn, less what the
- * surface's curvature takes. */
+/* How far u, or w, moves on a way until t, over t, at most. */
+static inline real fastest(real a, real A, real end) { return real_abs(a) + real_abs(A) * end; }
+
+/* Whether P stays below the way: P rises by at most Pu a + Pw b per t (a and b are the fastest), the way by at least
+ * sn, less what the surface's curvature takes. */
 static inline int rises_faster(real sn, real a, real b, real curvature, real end, real Pu, real Pw)
 {
-    return sn - real_max(curvature, 0) * end >= Pu * real_abs(a) + Pw * real_abs(b);
+    return sn - real_max(curvature, 0) * end >= Pu * a + Pw * b;
 }
 
-/* The same from the slope of P at the start, and bounds of its second partials: the way and P part by sn - P' per t,
- * and come together again by at most half the curvature of both. Not so where a bound is infinite. */
-static inline int parts_for_good(real apart, real a, real b, real curvature, real end, const real second[3])
-{
-    real together = second[0] * a * a + 2 * second[1] * real_abs(a * b) + second[2] * b * b + curvature;
-    return apart >= R(0.5) * real_max(together, 0) * end;
-}
-
-/* The lanes whose ways bounds of the whole P do not settle. */
+/* The lanes whose ways bounds of the slope of the whole P do not settle, nor the slope of P at the start with bounds of
+ * its second partials: the way and P part by sn - P' per t, and come together again by at most half the curvature of
+ * both. (Not so where a bound is infinite.) */
 STAGE static void find_open(const hit_group *restrict g, const bump *P, const own_ways *restrict y, real seen_from,
                             int32_t *restrict open)
 {
-    const real Pu = P->Pu_max, Pw = P->Pw_max, second[3] = {P->Puu_max, P->Puw_max, P->Pww_max};
+    const real Pu_max = P->Pu_max, Pw_max = P->Pw_max, Puu = P->Puu_max, Puw = P->Puw_max, Pww = P->Pww_max;
     for (int i = 0; i < g->n; i++) {
-        real sn = y->sn[i], a = y->a[i], b = y->b[i], curvature = y->curvature[i], end = y->end[i], side = y->side[i];
-        real apart = sn - side * (g->bump.Pu[i] * a + g->bump.Pw[i] * b), lit = g->lit[i];
-        int settled =
-            rises_faster(sn, a, b, curvature, end, Pu, Pw) | parts_for_good(apart, a, b, curvature, end, second);
+        real sn = y->sn[i], curvature = y->curvature[i], end = y->end[i], side = y->side[i], lit = g->lit[i];
+        real a = fastest(y->a[i], y->A[i], end), b = fastest(y->b[i], y->B[i], end);
+        real Pu = g->bump.Pu[i], Pw = g->bump.Pw[i], apart = sn - side * (Pu * y->a[i] + Pw * y->b[i]);
+        real together = Puu * a * a + 2 * Puw * a * b + Pww * b * b + curvature;
+        together += 2 * real_abs(Pu * y->A[i] + Pw * y->B[i]);
+        int parts = apart >= R(0.5) * real_max(together, 0) * end;
+        int settled = parts | rises_faster(sn, a, b, curvature, end, Pu_max, Pw_max);
         open[i] = (lit > 0) & (end > 0) & (seen_from * side >= 0) & !settled;
     }
 }
@@ -55,6 +55,8 @@ static void gather_open(const hit_group *g, const own_ways *y, const int32_t *op
         o->sn[k] = y->sn[i];
         o->a[k] = y->a[i];
         o->b[k] = y->b[i];
+        o->A[k] = y->A[i];
+        o->B[k] = y->B[i];
         o->curvature[k] = y->curvature[i];
         o->end[k] = y->end[i];
         o->u[k] = g->u[i];
@@ -63,16 +65,17 @@ static void gather_open(const hit_group *g, const own_ways *y, const int32_t *op
     }
 }
 
-/* The rectangle of (u,w) that a way is over. */
+/* A rectangle of (u,w) that a way is over. */
 STAGE static void rectangles(const open_ways *restrict o, real *restrict u0, real *restrict u1, real *restrict w0,
                              real *restrict w1)
 {
     for (int i = 0; i < o->n; i++) {
-        real u = o->u[i] + o->a[i] * o->end[i], w = o->w[i] + o->b[i] * o->end[i];
-        u0[i] = real_min(u, o->u[i]);
-        u1[i] = real_max(u, o->u[i]);
-        w0[i] = real_min(w, o->w[i]);
-        w1[i] = real_max(w, o->w[i]);
+        real e = o->end[i], u = o->a[i] * e, w = o->b[i] * e;
+        real more_u = real_abs(o->A[i]) * e * e, more_w = real_abs(o->B[i]) * e * e;
+        u0[i] = o->u[i] + real_min(u, 0) - more_u;
+        u1[i] = o->u[i] + real_max(u, 0) + more_u;
+        w0[i] = o->w[i] + real_min(w, 0) - more_w;
+        w1[i] = o->w[i] + real_max(w, 0) + more_w;
     }
 }
 
@@ -88,8 +91,10 @@ STAGE static void shorten(open_ways *restrict o, const bump_ranges *restrict k)
 
 STAGE static void still_open(const open_ways *restrict o, const bump_ranges *restrict k, int32_t *restrict open)
 {
-    for (int i = 0; i < o->n; i++)
-        open[i] = !rises_faster(o->sn[i], o->a[i], o->b[i], o->curvature[i], o->end[i], k->Pu[i], k->Pw[i]);
+    for (int i = 0; i < o->n; i++) {
+        real end = o->end[i], a = fastest(o->a[i], o->A[i], end), b = fastest(o->b[i], o->B[i], end);
+        open[i] = !rises_faster(o->sn[i], a, b, o->curvature[i], end, k->Pu[i], k->Pw[i]);
+    }
 }
 
 static void drop_settled(open_ways *o, const int32_t *open)
@@ -103,6 +108,8 @@ static void drop_settled(open_ways *o, const int32_t *open)
         o->sn[n] = o->sn[i];
         o->a[n] = o->a[i];
         o->b[n] = o->b[i];
+        o->A[n] = o->A[i];
+        o->B[n] = o->B[i];
         o->curvature[n] = o->curvature[i];
         o->end[n] = o->end[i];
         o->u[n] = o->u[i];
@@ -133,8 +140,8 @@ STAGE static void step_places(const open_ways *restrict o, int step, int steps, 
 {
     for (int i = 0; i < o->n; i++) {
         real t = bs_way_step(o->end[i], step, steps);
-        u[i] = o->u[i] + o->a[i] * t;
-        w[i] = o->w[i] + o->b[i] * t;
+        u[i] = o->u[i] + (o->a[i] + o->A[i] * t) * t;
+        w[i] = o->w[i] + (o->b[i] + o->B[i] * t) * t;
     }
 }
 
