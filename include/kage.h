@@ -190,7 +190,7 @@ KAGE_API int kage_scene_has_layer(const kage_scene *scene, const char *word);
 typedef enum kage_choice { KAGE_AS_SCENE, KAGE_YES, KAGE_NO } kage_choice;
 
 typedef struct kage_render_options {
-    const char *method;  /* where shadow rays start: none 0 1 2 2+ iter:K march:N exact; NULL: as the scene says */
+    const char *method;  /* where shadow rays start: none 0 1 2 2+ iter:K march:N exact auto[:E]; NULL: as the scene */
     kage_choice shifted; /* yes: shade at r + s t0; no: at the smooth hit */
     const char
         *bump_shadow;      /* the bumps' shadows on their own surface: none march:N horizon exact; NULL: as the scene */

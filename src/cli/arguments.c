@@ -61,7 +61,7 @@ static bool read_output(arguments *a, const char *name, const char *v)
     return true;
 }
 
-/* The methods' names: none, 0, 1 ... or exact. */
+/* The methods' names: none, 0, 1 ... or auto[:E]. */
 static void list_methods(char *text, size_t size)
 {
     const int n = kage_method_count();

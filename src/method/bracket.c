@@ -13,30 +13,14 @@ enum {
 
 static inline bs_view view(const brackets *k, int i) { return (bs_view){k->sn[i], k->a[i], k->b[i]}; }
 
-/* Order 0, or none where the surface is not regular, and the ray relative to the surface. */
-STAGE static void begin(hit_group *restrict g, brackets *restrict k)
+/* Order 0, or none where the surface is not regular. */
+static inline void first_try(hit_group *restrict g, int i, bs_vec3 n, bs_vec3 Qu, bs_vec3 Qw, real sn)
 {
-    for (int i = 0; i < g->n; i++) {
-        bs_vec3 n = lane_get(&g->n_smooth, i), Qu = lane_get(&g->q.Qu, i), Qw = lane_get(&g->q.Qw, i);
-        bs_view v = bs_view_of(lane_get(&g->x.s, i), n, Qu, Qw);
-        int regular = bs_regular(n, Qu, Qw);
-        real tau = bs_tau0(v, g->bump.P[i]);
-        k->sn[i] = v.sn;
-        k->a[i] = v.a;
-        k->b[i] = v.b;
-        k->curvature[i] =
-            bs_curvature(v, n, lane_get(&g->q.Quu, i), lane_get(&g->q.Quw, i), lane_get(&g->q.Qww, i));
-        g->tau[i] = regular ? tau : 0;
-        g->order[i] = regular ? 0 : -1;
-    }
-}
-
-STAGE static int any_curved(int n, const real *restrict curvature)
-{
-    int some = 0;
-    for (int i = 0; i < n; i++)
-        some |= curvature[i] != 0;
-    return some;
+    bs_view v = {sn, 0, 0};
+    int regular = bs_regular(n, Qu, Qw);
+    real tau = bs_tau0(v, g->bump.P[i]);
+    g->tau[i] = regular ? tau : 0;
+    g->order[i] = regular ? 0 : -1;
 }
 
 /* Where the ray is at height P over the smooth surface: the root of 1/2 curvature tau^2 - sn tau + P near P/sn. Where
@@ -58,37 +42,69 @@ static inline void set_ends(const hit_group *restrict g, int i, real x, real y, 
     k->back[i] = good ? back : tau;
 }
 
-STAGE static void ends_flat(const hit_group *restrict g, real Pmin, real Pmax, brackets *restrict k)
-{
-    for (int i = 0; i < g->n; i++)
-        set_ends(g, i, Pmin / k->sn[i], Pmax / k->sn[i], k);
-}
-
-STAGE static void ends_curved(const hit_group *restrict g, real Pmin, real Pmax, brackets *restrict k)
+STAGE static void begin_flat(hit_group *restrict g, real Pmin, real Pmax, brackets *restrict k)
 {
     for (int i = 0; i < g->n; i++) {
-        bs_view v = view(k, i);
-        set_ends(g, i, reaches(v, k->curvature[i], Pmin), reaches(v, k->curvature[i], Pmax), k);
+        bs_vec3 n = lane_get(&g->n_smooth, i), Qu = lane_get(&g->q.Qu, i), Qw = lane_get(&g->q.Qw, i);
+        bs_view v = bs_view_of(lane_get(&g->x.s, i), n, Qu, Qw);
+        first_try(g, i, n, Qu, Qw, v.sn);
+        k->sn[i] = v.sn;
+        set_ends(g, i, Pmin / v.sn, Pmax / v.sn, k);
     }
 }
 
-void bracket_begin(hit_group *g, const bump *P, brackets *k)
+STAGE static void begin_curved(hit_group *restrict g, real Pmin, real Pmax, brackets *restrict k)
+{
+    for (int i = 0; i < g->n; i++) {
+        bs_vec3 n = lane_get(&g->n_smooth, i), Qu = lane_get(&g->q.Qu, i), Qw = lane_get(&g->q.Qw, i);
+        bs_view v = bs_view_of(lane_get(&g->x.s, i), n, Qu, Qw);
+        real curvature = bs_curvature(v, n, lane_get(&g->q.Quu, i), lane_get(&g->q.Quw, i), lane_get(&g->q.Qww, i));
+        first_try(g, i, n, Qu, Qw, v.sn);
+        k->sn[i] = v.sn;
+        k->a[i] = v.a;
+        k->b[i] = v.b;
+        k->curvature[i] = curvature;
+        set_ends(g, i, reaches(v, curvature, Pmin), reaches(v, curvature, Pmax), k);
+    }
+}
+
+void bracket_begin(hit_group *g, const bump *P, bool flat, brackets *k)
 {
     k->n = g->n;
-    begin(g, k);
-    (any_curved(g->n, k->curvature) ? ends_curved : ends_flat)(g, P->Pmin, P->Pmax, k);
+    k->flat = flat;
+    (flat ? begin_flat : begin_curved)(g, P->Pmin, P->Pmax, k);
+}
+
+/* What a flat surface leaves out. */
+static void pick_flat(const hit_group *g, int n, const int32_t *lane, brackets *k)
+{
+    for (int i = 0; i < n; i++) {
+        const int j = lane[i];
+        bs_view v =
+            bs_view_of(lane_get(&g->x.s, j), lane_get(&g->n_smooth, j), lane_get(&g->q.Qu, j), lane_get(&g->q.Qw, j));
+        k->a[i] = v.a;
+        k->b[i] = v.b;
+        k->curvature[i] = 0;
+    }
+}
+
+static void pick_curved(const brackets *from, int n, const int32_t *lane, brackets *k)
+{
+    for (int i = 0; i < n; i++) {
+        k->a[i] = from->a[lane[i]];
+        k->b[i] = from->b[lane[i]];
+        k->curvature[i] = from->curvature[lane[i]];
+    }
 }
 
 void places_pick(const hit_group *g, const brackets *k, int n, const int32_t *lane, places *p)
 {
     p->k.n = n;
+    p->k.flat = k->flat;
     for (int i = 0; i < n; i++) {
         const int j = lane[i];
         p->lane[i] = j;
         p->k.sn[i] = k->sn[j];
-        p->k.a[i] = k->a[j];
-        p->k.b[i] = k->b[j];
-        p->k.curvature[i] = k->curvature[j];
         p->k.front[i] = k->front[j];
         p->k.back[i] = k->back[j];
         p->t[i] = g->t[j];
@@ -98,6 +114,10 @@ void places_pick(const hit_group *g, const brackets *k, int n, const int32_t *la
         p->pixels[i] = 0;
         p->order[i] = g->order[j];
     }
+    if (k->flat)
+        pick_flat(g, n, lane, &p->k);
+    else
+        pick_curved(k, n, lane, &p->k);
     gather_rays(n, lane, &g->x, &p->x);
 }
 
@@ -107,75 +127,6 @@ void places_put(const places *p, hit_group *g)
         g->tau[p->lane[i]] = p->tau[i];
         g->order[p->lane[i]] = p->order[i];
     }
-}
-
-void places_keep(places *p, int n, const int32_t *lane)
-{
-    for (int i = 0; i < n; i++) {
-        const int j = lane[i];
-        p->lane[i] = p->lane[j];
-        p->k.sn[i] = p->k.sn[j];
-        p->k.a[i] = p->k.a[j];
-        p->k.b[i] = p->k.b[j];
-        p->k.curvature[i] = p->k.curvature[j];
-        p->k.front[i] = p->k.front[j];
-        p->k.back[i] = p->k.back[j];
-        p->t[i] = p->t[j];
-        p->u[i] = p->u[j];
-        p->w[i] = p->w[j];
-        p->tau[i] = p->tau[j];
-        p->pixels[i] = p->pixels[j];
-        p->order[i] = p->order[j];
-        lane_set(&p->x.r, i, lane_get(&p->x.r, j));
-        lane_set(&p->x.s, i, lane_get(&p->x.s, j));
-    }
-    p->k.n = n;
-}
-
-/* ---- bounds ---- */
-
-typedef struct rectangles {
-    real u0[LANES], u1[LANES], w0[LANES], w1[LANES];
-} rectangles;
-
-STAGE static void cover(const places *restrict p, rectangles *restrict c)
-{
-    for (int i = 0; i < p->k.n; i++) {
-        real u = p->u[i], w = p->w[i], a = p->k.a[i], b = p->k.b[i], front = p->k.front[i], back = p->k.back[i];
-        real uf = u + a * front, ub = u + a * back, wf = w + b * front, wb = w + b * back;
-        c->u0[i] = real_min(uf, ub);
-        c->u1[i] = real_max(uf, ub);
-        c->w0[i] = real_min(wf, wb);
-        c->w1[i] = real_max(wf, wb);
-    }
-}
-
-STAGE static void narrow(places *restrict p, const bump_ranges *restrict r)
-{
-    brackets *k = &p->k;
-    for (int i = 0; i < k->n; i++) {
-        bs_view v = view(k, i);
-        real x = reaches(v, k->curvature[i], r->lo[i]), y = reaches(v, k->curvature[i], r->hi[i]);
-        real front = real_max(k->front[i], real_min(x, y)), back = real_min(k->back[i], real_max(x, y));
-        front = real_min(front, k->back[i]); /* rounding may have passed the other end */
-        back = real_max(back, front);
-        k->front[i] = front;
-        k->back[i] = back;
-        p->tau[i] = real_min(real_max(p->tau[i], front), back);
-    }
-}
-
-long places_thin(places *p, const bump *P)
-{
-    enum { TIMES = 1 };
-    rectangles c;
-    bump_ranges r;
-    for (int k = 0; k < TIMES; k++) {
-        cover(p, &c);
-        P->ops->range(P, p->k.n, c.u0, c.u1, c.w0, c.w1, &r);
-        narrow(p, &r);
-    }
-    return (long)TIMES * p->k.n;
 }
 
 /* ---- the search ---- */
@@ -219,7 +170,8 @@ STAGE static void search_step(const brackets *restrict k, real step, search *res
         bs_view v = view(k, i);
         real gap = bs_gap(v, k->curvature[i], s->at[i], s->h.P[i]), above = v.sn < 0 ? gap : -gap, at = s->at[i];
         real front = s->front[i], back = s->back[i], high = s->above[i], low = s->below[i];
-        int looking = (s->found[i] == 0) & (step <= s->steps[i]), hit = looking & (above <= 0), pass = looking & (above > 0);
+        int looking = (s->found[i] == 0) & (step <= s->steps[i]), hit = looking & (above <= 0),
+            pass = looking & (above > 0);
         s->front[i] = pass ? at : front;
         s->above[i] = pass ? above : high;
         s->back[i] = hit ? at : back;

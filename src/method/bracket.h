@@ -15,6 +15,7 @@
 /* Each lane's ray relative to the surface (bs_view), and its bracket. */
 typedef struct brackets {
     int n;
+    bool flat; /* curvature is 0 everywhere */
     real sn[LANES], a[LANES], b[LANES], curvature[LANES];
     real front[LANES], back[LANES]; /* as tau; front is the viewer's side. Both are tau where there is no bracket. */
 } brackets;
@@ -32,19 +33,12 @@ typedef struct places {
 } places;
 
 /* g->tau and g->order by order 0, and the brackets. There is no bracket where the surface is not regular, or where P
- * has no bounds. */
-void bracket_begin(hit_group *g, const bump *P, brackets *k);
+ * has no bounds. flat: the surface is, and its second derivatives need not be set; a, b and curvature are not then. */
+void bracket_begin(hit_group *g, const bump *P, bool flat, brackets *k);
 
 /* Pick lanes lane[0..n-1] of a group, with g's places; `pixels` is 0. And put their places back. */
 void places_pick(const hit_group *g, const brackets *k, int n, const int32_t *lane, places *p);
 void places_put(const places *p, hit_group *g);
-
-/* Draw the brackets together: twice by the bounds of P over the (u,w) that they cover. The places stay within. Returns
- * how often P was looked up. */
-long places_thin(places *p, const bump *P);
-
-/* Keep lanes lane[0..n-1] alone. */
-void places_keep(places *p, int n, const int32_t *lane);
 
 /* Find the places to `error` pixels: steps through each bracket to the first crossing, then secant steps. Returns how
  * often P was looked up. */

@@ -23,6 +23,16 @@ STAGE static int any(int n, const int32_t *x)
     return some;
 }
 
+static int listed(int n, const int32_t *is, int32_t *lane)
+{
+    int m = 0;
+    for (int i = 0; i < n; i++) { /* without a branch */
+        lane[m] = i;
+        m += is[i] != 0;
+    }
+    return m;
+}
+
 /* ---- what a light sees ---- */
 
 /* The rays to a light from both ends and from the middle of each lane's bracket. */
@@ -32,11 +42,12 @@ typedef struct sweep {
     const rays *x; /* the viewing rays, and their smooth hits */
     const real *t;
     rays middle, front, back;
-    real half[LANES];              /* half the bracket, in t */
-    bool ends;                     /* front and back are set */
-    bool met;                      /* some caster is near some lane */
-    int32_t near[LANES];           /* the current caster may matter */
-    int32_t some[LANES], dark[LANES]; /* over all casters: one may matter; an opaque one hides both ends */
+    real half[LANES]; /* half the bracket, in t */
+    bool ends;        /* front and back are set */
+
+    /* over all casters so far: one may matter; an opaque one hides both ends. Set with the first that is near. */
+    bool met;
+    int32_t some[LANES], dark[LANES];
 } sweep;
 
 STAGE static void middles(const brackets *restrict k, const real *restrict t, real *restrict middle,
@@ -92,8 +103,8 @@ static inline int any_parts(bs_vec3 v, bs_vec3 c, bs_vec3 e, bs_vec3 h)
  * along its two sides and an axis. With D half the bracket, M its middle and d from there to the light, the sides run
  * along D + d and D - d; those of a parallel light along d (apex 0). */
 STAGE static void near_triangle(int n, const rays *restrict to_light, const vec3s *restrict s,
-                                const real *restrict half, real apex, const real *restrict lo,
-                                const real *restrict hi, int32_t *restrict near)
+                                const real *restrict half, real apex, const real *restrict lo, const real *restrict hi,
+                                int32_t *restrict near)
 {
     const bs_vec3 middle = {R(0.5) * (lo[0] + hi[0]), R(0.5) * (lo[1] + hi[1]), R(0.5) * (lo[2] + hi[2])};
     const bs_vec3 h = {R(0.5) * (hi[0] - lo[0]), R(0.5) * (hi[1] - lo[1]), R(0.5) * (hi[2] - lo[2])};
@@ -122,8 +133,6 @@ static void sweep_begin(const light *l, const brackets *k, const rays *x, const 
     w->ends = w->met = false;
     middles(k, t, middle, w->half);
     lighting_rays(l, k->n, x, middle, &w->middle);
-    memset(w->some, 0, sizeof w->some);
-    memset(w->dark, 0, sizeof w->dark);
 }
 
 static void sweep_ends(sweep *w)
@@ -161,47 +170,67 @@ STAGE static void differ(int n, const real *restrict front, const real *restrict
         near[i] = front[i] != back[i];
 }
 
-STAGE static void add_dark(int n, const real *restrict front, const real *restrict back, int32_t *restrict dark)
+/* Lanes that may be hidden between their ends alone. */
+STAGE static int both_lit(int n, const real *restrict front, const real *restrict back, const int32_t *restrict near)
 {
+    int some = 0;
     for (int i = 0; i < n; i++)
-        dark[i] |= front[i] + back[i] == 0;
+        some |= near[i] & (front[i] + back[i] > 1);
+    return some;
 }
 
-STAGE static void add_near(int n, const int32_t *restrict near, int32_t *restrict some)
+STAGE static void join(int n, const int32_t *restrict near, const real *restrict front, const real *restrict back,
+                       int32_t *restrict some, int32_t *restrict dark)
 {
-    for (int i = 0; i < n; i++)
+    for (int i = 0; i < n; i++) {
         some[i] |= near[i];
+        dark[i] |= front[i] + back[i] == 0;
+    }
 }
 
-/* One caster, for the lanes in only[]; NULL: for all. A caster without an end matters where the ends differ. That both
- * ends are dark says nothing where the caster is clear or the light has an area. */
+/* Whether both ends of each lane are lit. A clear caster's colour may differ between them, so it hides none; nor does
+ * any where the light has an area, as only its middle is tested. */
+static void look_from_ends(const surface *f, bool hides, bool boxed, sweep *w, real *front, real *back)
+{
+    const int n = w->k->n;
+    for (int i = 0; i < n; i++)
+        front[i] = back[i] = 1;
+    if (!hides && boxed)
+        return;
+    sweep_ends(w);
+    f->ops->occlude(f, n, &w->front, front);
+    f->ops->occlude(f, n, &w->back, back);
+}
+
+/* One caster, for the lanes in only[]; NULL: for all. One without an end, as a plane, matters where the ends differ. */
 static void sweep_caster(sweep *w, const surface *f, bool clear, const int32_t *only)
 {
     const int n = w->k->n;
     const bool hides = !clear && w->l->samples[0] * w->l->samples[1] == 1;
     real lo[3], hi[3], front[LANES], back[LANES];
+    int32_t near[LANES];
     const bool boxed = box_of(f, w->l, lo, hi);
-    if (boxed)
-        near_box(n, &w->middle, &w->x->s, w->half, lo, hi, w->near);
-    for (int i = 0; boxed && only && i < n; i++)
-        w->near[i] &= only[i];
-    if (boxed && !any(n, w->near))
-        return;
-    w->met = true;
-    if (boxed)
-        near_triangle(n, &w->middle, &w->x->s, w->half, w->l->kind == LIGHT_PARALLEL ? 0 : 1, lo, hi, w->near);
-    if (hides || !boxed) {
-        sweep_ends(w);
-        for (int i = 0; i < n; i++)
-            front[i] = back[i] = 1;
-        f->ops->occlude(f, n, &w->front, front);
-        f->ops->occlude(f, n, &w->back, back);
-        if (hides)
-            add_dark(n, front, back, w->dark);
-        if (!boxed)
-            differ(n, front, back, w->near);
+    if (boxed) {
+        near_box(n, &w->middle, &w->x->s, w->half, lo, hi, near);
+        for (int i = 0; only && i < n; i++)
+            near[i] &= only[i];
+        if (!any(n, near))
+            return;
     }
-    add_near(n, w->near, w->some);
+    look_from_ends(f, hides, boxed, w, front, back);
+    if (!boxed)
+        differ(n, front, back, near);
+    else if (both_lit(n, front, back, near))
+        near_triangle(n, &w->middle, &w->x->s, w->half, w->l->kind == LIGHT_PARALLEL ? 0 : 1, lo, hi, near);
+    if (!hides)
+        for (int i = 0; i < n; i++)
+            front[i] = 1;
+    if (!w->met) {
+        memset(w->some, 0, sizeof w->some);
+        memset(w->dark, 0, sizeof w->dark);
+        w->met = true;
+    }
+    join(n, near, front, back, w->some, w->dark);
 }
 
 static bool is_clear(const scene *s, int32_t id) { return material_clear(&s->material[s->object[id].material]); }
@@ -234,90 +263,125 @@ static void sweep_candidates(const tracer *tr, int32_t id, workspace *v, const r
     }
 }
 
+STAGE static void add_open(int n, const int32_t *restrict some, const int32_t *restrict dark, int32_t *restrict differs)
+{
+    for (int i = 0; i < n; i++)
+        differs[i] |= some[i] & (dark[i] == 0);
+}
+
 /* differs[i] |= the light may not see lane i's bracket alike. False: no caster is near any lane. */
 static bool see(const tracer *tr, int32_t id, workspace *v, const real *tau, sweep *w, int32_t *differs)
 {
-    if (v->candidates) {
+    const scene *s = tr->scene;
+    if (v->candidates)
         sweep_candidates(tr, id, v, tau, w);
-        w->met = true; /* others than the candidates may be near */
-    } else
-        for (int32_t j = 0; j < tr->scene->objects; j++)
+    else
+        for (int32_t j = 0; j < s->objects; j++)
             if (j != id && shadow_casts(tr, j))
-                sweep_caster(w, v->surface[j], is_clear(tr->scene, j), NULL);
-    for (int i = 0; w->met && i < w->k->n; i++)
-        differs[i] |= w->some[i] & !w->dark[i];
-    return w->met;
+                sweep_caster(w, v->surface[j], is_clear(s, j), NULL);
+    if (w->met)
+        add_open(w->k->n, w->some, w->dark, differs);
+    return w->met || v->candidates; /* others than the candidates may be near */
 }
 
-/* ---- the cascade ---- */
+/* The lanes whose bracket some light may not see alike. */
+static int find_open(const tracer *tr, int32_t id, workspace *v, const brackets *k, int32_t *lane)
+{
+    const hit_group *g = &v->g;
+    int32_t differs[LANES] = {0};
+    sweep w;
+    bool met = false;
+    for (int l = 0; l < tr->scene->lights; l++) {
+        sweep_begin(&tr->scene->light[l], k, &g->x, g->t, &w);
+        met |= see(tr, id, v, g->tau, &w, differs);
+    }
+    v->alone = !met;
+    return met ? listed(g->n, differs, lane) : 0;
+}
 
-/* pixels = the larger of itself and what an error of 1 in tau moves a shadow of this light on the screen: |s| times the
- * sine between view and light, over the size of a pixel there. */
-STAGE static void measure(int n, const rays *restrict x, const real *restrict t, const rays *restrict to_light,
-                          real fixed, real spread, real *restrict pixels)
+/* ---- how large an error is on the screen ---- */
+
+/* The size of a pixel is fixed + spread t, in scene units. Secondary rays have a pixel of their own length, which is
+ * less than that of the whole way, so their places are better than they need be. */
+typedef struct pixel_size {
+    real fixed, spread;
+} pixel_size;
+
+static pixel_size pixel_of(const scene *s)
+{
+    const real size = (real)(2 * vec3_length(s->camera.right) / s->width);
+    return s->camera.orthographic ? (pixel_size){size, 0} : (pixel_size){0, size};
+}
+
+/* pixels = the larger of itself and what an error of 1 in tau moves a shadow of this light: |s| times the sine between
+ * view and light. */
+STAGE static void measure_shadow(int n, const rays *restrict x, const real *restrict t, const rays *restrict to_light,
+                                 pixel_size size, real *restrict pixels)
 {
     for (int i = 0; i < n; i++) {
         bs_vec3 s = lane_get(&x->s, i), d = lane_get(&to_light->s, i), c = bs_cross(s, d);
-        real across = real_sqrt(bs_dot(c, c) / bs_dot(d, d)), pixel = fixed + spread * t[i];
-        pixels[i] = real_max(pixels[i], across / pixel);
+        real across = real_sqrt(bs_dot(c, c) / bs_dot(d, d));
+        pixels[i] = real_max(pixels[i], across / (size.fixed + size.spread * t[i]));
     }
 }
 
-static void measure_all(const scene *s, places *p)
+/* pixels = what an error of 1 in tau moves the place itself: |s|. */
+STAGE static void measure_place(int n, const rays *restrict x, const real *restrict t, pixel_size size,
+                                real *restrict pixels)
 {
-    const real pixel = (real)(2 * vec3_length(s->camera.right) / s->width);
-    const bool fixed = s->camera.orthographic;
+    for (int i = 0; i < n; i++) {
+        bs_vec3 s = lane_get(&x->s, i);
+        pixels[i] = real_sqrt(bs_dot(s, s)) / (size.fixed + size.spread * t[i]);
+    }
+}
+
+static void measure(const scene *s, bool everywhere, places *p)
+{
+    const int n = p->k.n;
     rays to_light;
-    for (int l = 0; l < s->lights; l++) {
-        lighting_rays(&s->light[l], p->k.n, &p->x, p->t, &to_light);
-        measure(p->k.n, &p->x, p->t, &to_light, fixed ? pixel : 0, fixed ? 0 : pixel, p->pixels);
+    if (everywhere)
+        measure_place(n, &p->x, p->t, pixel_of(s), p->pixels);
+    for (int l = 0; !everywhere && l < s->lights; l++) {
+        lighting_rays(&s->light[l], n, &p->x, p->t, &to_light);
+        measure_shadow(n, &p->x, p->t, &to_light, pixel_of(s), p->pixels);
     }
 }
 
-static int listed(int n, const int32_t *is, int32_t *lane)
+/* ---- the method ---- */
+
+/* Whether more than shadows of other objects depends on the place: what is shaded there, or the rays that leave from
+ * it. */
+static bool needs_place(const tracer *tr, int32_t id, const workspace *v)
 {
-    int m = 0;
-    for (int i = 0; i < n; i++) { /* without a branch */
-        lane[m] = i;
-        m += is[i] != 0;
-    }
-    return m;
+    const scene *s = tr->scene;
+    return tr->shifted || (v->left > 0 && material_sends(&s->material[s->object[id].material]));
+}
+
+static int all_lanes(int n, int32_t *lane)
+{
+    for (int i = 0; i < n; i++)
+        lane[i] = i;
+    return n;
 }
 
 void auto_shift(const tracer *tr, int32_t id, workspace *v)
 {
-    const scene *s = tr->scene;
-    const bump *P = s->object[id].bump;
-    const real error = (real)tr->shadow.n / METHOD_PIXEL;
+    const bump *P = tr->scene->object[id].bump;
+    const bool everywhere = needs_place(tr, id, v);
     hit_group *g = &v->g;
     brackets k;
-    sweep w;
     places p;
-    int32_t differs[LANES] = {0}, lane[LANES];
-    bool met = false;
-    bracket_begin(g, P, &k);
-    for (int l = 0; l < s->lights; l++) {
-        sweep_begin(&s->light[l], &k, &g->x, g->t, &w);
-        met |= see(tr, id, v, g->tau, &w, differs);
+    int32_t lane[LANES];
+    bracket_begin(g, P, v->surface[id]->ops->flat, &k);
+    if (!bump_is_bounded(P)) {
+        v->stats->fell_back += g->n;
+        return;
     }
-    v->alone = !met;
-    const int n = met ? listed(g->n, differs, lane) : 0;
+    const int n = everywhere ? all_lanes(g->n, lane) : find_open(tr, id, v, &k, lane);
     if (n == 0)
         return;
     places_pick(g, &k, n, lane, &p);
-    measure_all(s, &p);
-    if (0) v->stats->evaluations += places_thin(&p, P);
-    for (int round = 0; round < 0; round++) {
-        memset(differs, 0, sizeof differs);
-        for (int l = 0; l < s->lights; l++) {
-            sweep_begin(&s->light[l], &p.k, &p.x, p.t, &w);
-            see(tr, id, v, p.tau, &w, differs);
-        }
-        int m = listed(p.k.n, differs, lane);
-        places_put(&p, g);
-        places_keep(&p, m, lane);
-    }
-    if (p.k.n == 0) return;
-    v->stats->evaluations += places_search(&p, P, error);
+    measure(tr->scene, everywhere, &p);
+    v->stats->evaluations += places_search(&p, P, (real)tr->shadow.n / METHOD_PIXEL);
     places_put(&p, g);
 }

@@ -20,7 +20,7 @@ void stats_orders(stats *s, int n, const int32_t *order, int asked)
     for (int i = 0; i < n; i++)
         same += order[i] == asked;
     s->bumped += n;
-    s->fell_back += n - same;
+    s->fell_back += asked == ORDER_ANY ? 0 : n - same;
     if (same == n)
         s->orders[asked + 1] += n;
     else

@@ -21,7 +21,8 @@
 /* The partials of Q at the smooth hit: for its curvature the second ones, too. */
 static int partials_needed(const tracer *tr, int32_t id, const workspace *v)
 {
-    const bool bends = method_bends(tr->shadow) || (shadow_is_own(tr, id, v) && !tr->shifted);
+    const bool flat = tr->shadow.kind == METHOD_AUTO && v->surface[id]->ops->flat; /* auto leaves zeros out */
+    const bool bends = (method_bends(tr->shadow) && !flat) || (shadow_is_own(tr, id, v) && !tr->shifted);
     return tr->scene->object[id].bump && bends ? 2 : 1;
 }
 
@@ -53,7 +54,7 @@ static void shape_and_shift(const tracer *tr, int32_t id, workspace *v)
         st->evaluations += shift_group(g, P, tr->shadow, tr->guard);
     stats_stage(st, STAGE_SHIFT);
     if (P)
-        stats_orders(st, g->n, g->order, method_code(tr->shadow));
+        stats_orders(st, g->n, g->order, tr->shadow.kind == METHOD_AUTO ? ORDER_ANY : method_code(tr->shadow));
 }
 
 static void shape_displaced(int32_t id, workspace *v)
