@@ -118,10 +118,10 @@ STAGE static void look(search *restrict s, int32_t *restrict state)
         const real tolerance = s->tolerance[i], side = s->side[i], gap = side * s->at.gap[i];
         const real slope = side * s->at.slope[i], least = s->own[i] ? tolerance : 0;
         const int turns = (s->left[i] == 0) & (gap <= -tolerance) & (slope > 0);
-        const real above = turns ? -gap : gap, falls = turns ? -slope : slope;
+        const real sign = turns ? R(-1) : R(1), above = sign * gap, falls = sign * slope;
         const int left = (s->left[i] != 0) | (above > tolerance), last = s->at.t[i] >= s->end[i];
         const int touches = last & left & (above <= tolerance) & (falls < 0);
-        s->side[i] = turns ? -side : side;
+        s->side[i] = sign * side;
         s->left[i] = left;
         state[i] = (((above <= -least) | touches) ? CROSSES : 0) | (last ? ENDS : 0);
     }
