@@ -22,6 +22,7 @@ typedef struct search {
 static void keep(search *s, int from, int to)
 {
     paths_copy(&s->at, from, &s->at, to);
+    s->at.slope[to] = s->at.slope[from];
     s->ahead.size[to] = s->ahead.size[from];
     s->end[to] = s->end[from];
     s->shortest[to] = s->shortest[from];
@@ -118,7 +119,7 @@ STAGE static void look(search *restrict s, int32_t *restrict state)
         const real tolerance = s->tolerance[i], side = s->side[i], gap = side * s->at.gap[i];
         const real slope = side * s->at.slope[i], least = s->own[i] ? tolerance : 0;
         const int turns = (s->left[i] == 0) & (gap <= -tolerance) & (slope > 0);
-        const real sign = turns ? R(-1) : R(1), above = sign * gap, falls = sign * slope;
+        const real sign = turns ? R(-1) : R(1), above = sign * gap, falls = sign * side * s->at.dh[i];
         const int left = (s->left[i] != 0) | (above > tolerance), last = s->at.t[i] >= s->end[i];
         const int touches = last & left & (above <= tolerance) & (falls < 0);
         s->side[i] = sign * side;
@@ -234,7 +235,9 @@ long displaced_search(const domain *f, const bump *P, int n, const rays *x, cons
     all_missed(n, found);
     begin(f, P, n, x, end, own, &s);
     for (int step = 0; step < f->steps && s.at.n; step++) {
-        paths_evaluate(f, P, 1, &s.at);
+        const int order = step == 0 || P->Puu_max < REAL_FAR;
+        paths_evaluate(f, P, order, &s.at);
+        paths_differentiate(order, &s.at);
         if (step == 0)
             take_sides(&s);
         look(&s, state);
