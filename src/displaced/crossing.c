@@ -4,7 +4,7 @@
 
 enum { MOST = 64 }; /* steps: more halvings than a real has digits */
 
-#define ENOUGH R(0.125) /* of the tolerance: further steps would move the hit by less than rounding */
+#define ENOUGH R(0.0625) /* of the tolerance: further steps would move the hit by less than rounding */
 
 /* What goes on beside the brackets. */
 typedef struct refinement {
