@@ -297,6 +297,25 @@ static inline bs_march bs_march_step(bs_march m, bs_real tau, bs_real gap, bs_vi
     return m;
 }
 
+/* ---- how good a shift is ----
+ *
+ * After any method one look-up at its place tells what is left (ours): P, Pu and Pw at (u0 + a tau, w0 + b tau) give
+ * the gap there, and how fast it changes with tau. */
+
+/* The error of tau to first order, positive where tau is too large for a ray from the front: gap over its slope. */
+static inline bs_real bs_residual(bs_view v, bs_real curvature, bs_real tau, bs_bump there)
+{
+    return bs_gap(v, curvature, tau, there.P) / (v.sn - curvature * tau - there.Pu * v.a - there.Pw * v.b);
+}
+
+/* How far an error in tau moves the shadow on the screen, in pixels: its length along the ray times the sine between
+ * view s and light, over the size of a pixel there in scene units. `to_light` need not be a unit vector. */
+static inline bs_real bs_error_pixels(bs_real error, bs_vec3 s, bs_vec3 to_light, bs_real pixel)
+{
+    bs_vec3 c = bs_cross(s, to_light);
+    return BS_ABS(error) * BS_SQRT(bs_dot(c, c) / bs_dot(to_light, to_light)) / pixel;
+}
+
 /* ---- the bumps' own shadows ----
  *
  * N. Max, "Shadows for bump-mapped surfaces", 1986 (the paper's case 1); the march is ours. Is a

@@ -40,9 +40,13 @@ void bracket_begin(hit_group *g, const bump *P, bool flat, brackets *k);
 void places_pick(const hit_group *g, const brackets *k, int n, const int32_t *lane, places *p);
 void places_put(const places *p, hit_group *g);
 
-/* Find the places to `error` pixels: steps of `per_step` pixels at most, but not more than 16, through each bracket to
- * the first crossing, then secant steps. A bump that is narrower than a step may be missed. Returns how often P was
- * looked up. */
-long places_search(places *p, const bump *P, real error, real per_step);
+/* The steps through a bracket: as many as there are stretches of so many pixels, from `least` to `most`. */
+typedef struct search_steps {
+    real pixels, least, most;
+} search_steps;
+
+/* Find the places to `error` pixels, by an estimate of the first order: steps through each bracket to the first
+ * crossing, then secants. A bump that is narrower than a step may be missed. Returns how often P was looked up. */
+long places_search(places *p, const bump *P, real error, search_steps steps);
 
 #endif

@@ -15,9 +15,6 @@
 #include "render/shadow.h"
 #include "wave/lane.h"
 
-/* The steps of the search, in errors. Where only a shadow depends on the place, few lanes are searched. */
-enum { STEP_SHADOW = 16, STEP_PLACE = 48 };
-
 STAGE static int any(int n, const int32_t *x)
 {
     int some = 0;
@@ -316,15 +313,14 @@ static pixel_size pixel_of(const scene *s)
     return s->camera.orthographic ? (pixel_size){size, 0} : (pixel_size){0, size};
 }
 
-/* pixels = the larger of itself and what an error of 1 in tau moves a shadow of this light: |s| times the sine between
- * view and light. */
+/* pixels = the larger of itself and what an error of 1 in tau moves a shadow of this light. */
 STAGE static void measure_shadow(int n, const rays *restrict x, const real *restrict t, const rays *restrict to_light,
                                  pixel_size size, real *restrict pixels)
 {
     for (int i = 0; i < n; i++) {
-        bs_vec3 s = lane_get(&x->s, i), d = lane_get(&to_light->s, i), c = bs_cross(s, d);
-        real across = real_sqrt(bs_dot(c, c) / bs_dot(d, d));
-        pixels[i] = real_max(pixels[i], across / (size.fixed + size.spread * t[i]));
+        real pixel = size.fixed + size.spread * t[i];
+        real moves = bs_error_pixels(1, lane_get(&x->s, i), lane_get(&to_light->s, i), pixel);
+        pixels[i] = real_max(pixels[i], moves);
     }
 }
 
@@ -360,6 +356,12 @@ static bool needs_place(const tracer *tr, int32_t id, const workspace *v)
     return tr->shifted || (v->left > 0 && material_sends(&s->material[s->object[id].material]));
 }
 
+/* Where only a shadow depends on the place, few lanes are searched, and all the better. The lengths are in errors. */
+static search_steps steps_of(bool everywhere, real error)
+{
+    return everywhere ? (search_steps){48 * error, 1, 16} : (search_steps){16 * error, 8, 16};
+}
+
 static int all_lanes(int n, int32_t *lane)
 {
     for (int i = 0; i < n; i++)
@@ -386,6 +388,6 @@ void auto_shift(const tracer *tr, int32_t id, workspace *v)
         return;
     places_pick(g, &k, n, lane, &p);
     measure(tr->scene, everywhere, &p);
-    v->stats->evaluations += places_search(&p, P, error, error * (everywhere ? R(STEP_PLACE) : R(STEP_SHADOW)));
+    v->stats->evaluations += places_search(&p, P, error, steps_of(everywhere, error));
     places_put(&p, g);
 }
