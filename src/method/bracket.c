@@ -33,8 +33,9 @@ static inline real reaches(bs_view v, real curvature, real P)
 }
 
 /* Both ends, not before the ray's start; tau where there is no bracket. Where the smooth hit is below the rough surface
- * the ray has met it before. */
-static inline void set_ends(const hit_group *restrict g, int i, real sn, real x, real y, brackets *restrict k)
+ * the ray has met it before. Order 0's tau is kept within, as it may be far off where the ray grazes a curved surface.
+ */
+static inline void set_ends(hit_group *restrict g, int i, real sn, real x, real y, brackets *restrict k)
 {
     real tau = g->tau[i], start = -g->t[i], P = g->bump.P[i], front = real_max(real_min(x, y), start);
     real back = real_max(x, y), above = sn < 0 ? -P : P;
@@ -43,6 +44,7 @@ static inline void set_ends(const hit_group *restrict g, int i, real sn, real x,
     back = real_max(back, front);
     k->front[i] = good ? front : tau;
     k->back[i] = good ? back : tau;
+    g->tau[i] = good ? real_min(real_max(tau, front), back) : tau;
 }
 
 STAGE static void begin_flat(hit_group *restrict g, real Pmin, real Pmax, brackets *restrict k)

@@ -32,8 +32,8 @@ typedef struct places {
     int32_t order[LANES]; /* the method that found it, as method_code has it */
 } places;
 
-/* g->tau and g->order by order 0, and the brackets. There is no bracket where the surface is not regular, or where P
- * has no bounds. flat: the surface is, and its second derivatives need not be set. */
+/* g->tau and g->order by order 0, kept within the bracket, and the brackets. There is no bracket where the surface is
+ * not regular, or where P has no bounds. flat: the surface is, and its second derivatives need not be set. */
 void bracket_begin(hit_group *g, const bump *P, bool flat, brackets *k);
 
 /* Pick lanes lane[0..n-1] of a group, with g's places; `pixels` is 0. And put their places back. */

