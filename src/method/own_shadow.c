@@ -81,47 +81,6 @@ void own_begin(const hit_group *g, const bump *P, const double u[2], const doubl
 
 void own_turned_away(hit_group *g, const own_ways *y) { turned_away(g, y->side); }
 
-/* The ends of the ways of the lanes on one side; of others 0, so that they stay where they are. */
-STAGE static void ends_on_side(int n, real seen_from, const real *restrict side, const real *restrict end,
-                               real *restrict to)
-{
-    for (int i = 0; i < n; i++)
-        to[i] = seen_from * side[i] >= 0 ? end[i] : 0;
-}
-
-STAGE static void march_place(const hit_group *restrict g, const own_ways *restrict y, const real *restrict end,
-                              int step, int steps, real *restrict u, real *restrict w)
-{
-    for (int i = 0; i < g->n; i++) {
-        real t = bs_way_step(end[i], step, steps);
-        u[i] = g->u[i] + (y->a[i] + y->A[i] * t) * t;
-        w[i] = g->w[i] + (y->b[i] + y->B[i] * t) * t;
-    }
-}
-
-STAGE static void march_step(hit_group *restrict g, const own_ways *restrict y, const real *restrict end, int step,
-                             int steps, const real *restrict P)
-{
-    for (int i = 0; i < g->n; i++) {
-        real t = bs_way_step(end[i], step, steps), lit = g->lit[i];
-        bs_way w = {y->side[i], {y->sn[i], y->a[i], y->b[i]}, y->curvature[i], g->bump.P[i], end[i]};
-        g->lit[i] = bs_way_below(w, t, P[i]) ? 0 : lit;
-    }
-}
-
-long own_march(hit_group *g, const bump *P, const own_ways *y, int steps, int seen_from)
-{
-    real u[LANES], w[LANES], end[LANES];
-    bump_values h;
-    ends_on_side(g->n, (real)seen_from, y->side, y->end, end);
-    for (int step = 1; step <= steps; step++) {
-        march_place(g, y, end, step, steps, u, w);
-        P->ops->eval(P, g->n, u, w, 0, &h);
-        march_step(g, y, end, step, steps, h.P);
-    }
-    return (long)steps * g->n;
-}
-
 STAGE static void bearings(int n, const own_ways *restrict y, real ku, real kw, real *restrict bearing,
                            real *restrict rise)
 {

@@ -22,12 +22,13 @@ void own_places(const hit_group *g, vec3s *X);
  * no bumps. */
 void own_begin(const hit_group *g, const bump *P, const double u[2], const double w[2], own_ways *y);
 
-/* Each sets g->lit = 0: where n' is turned away from the light; where one of `steps` places on the way is below the
- * rough surface (returns how often P was evaluated); where the light is not above the horizon. seen_from: only lanes
- * seen from this side, 1 or -1; 0: all. */
+/* Each sets g->lit = 0: where n' is turned away from the light; where the light is not above the horizon. */
 void own_turned_away(hit_group *g, const own_ways *y);
-long own_march(hit_group *g, const bump *P, const own_ways *y, int steps, int seen_from);
 void own_sink(hit_group *g, const own_ways *y, const real *above);
+
+/* In own_march.c: g->lit = 0 where one of `steps` places on the way is below the rough surface. seen_from: only lanes
+ * seen from this side, 1 or -1; 0: all. Returns how often P was evaluated. */
+long own_march(hit_group *g, const bump *P, const own_ways *y, int steps, int seen_from);
 
 /* How far the light's rise is above the horizon, for lanes seen from the front. */
 void own_above(const hit_group *g, const own_ways *y, const horizon *h, real *above);
