@@ -27,6 +27,8 @@ from bench.tables import (
     variants,
 )
 
+LEAST_WRONG = 0.1  # % of the shadow's pixels: what is as good as exact
+
 WHOLE_ABOUT = (
     "off: pixels of the receiver that differ from true displacement with all shadows by more than 8/255 in red, green "
     "or blue (linear light), in %, without its silhouette. cost: times none, with its 95 % interval below. "
@@ -46,9 +48,8 @@ OWN_ABOUT = (
 )
 PARETO_ABOUT = (
     f"The cheapest first. {FRONT} no other method beats it in both. Wrong: % of the shadow's pixels, against kage's "
-    "exact. Bold: at most {bound:g} % wrong at the least cost."
+    f"exact. {BEST} at most {LEAST_WRONG:g} % wrong at the least cost."
 )
-LEAST_WRONG = 0.1  # % of the shadow's pixels: what is as good as exact
 
 
 def own_name(how: str) -> str:
@@ -164,10 +165,10 @@ def pareto_table(report: Report, scene: str) -> Table:
     front, good = ahead(costs, wrong), good_enough(report, scene)
     names.sort(key=lambda name: math.inf if costs[name] is None else costs[name] or 0.0)
     rows = [[head(name), cost_cell(report, scene, name),
-             Cell(short(wrong[name]), marks=(FRONT if name in front else "") + (BEST if name in good[:1] else ""))]
+             Cell(short(wrong[name]), marks=(BEST if name in good[:1] else "") + (FRONT if name in front else ""))]
             for name in names]
     return Table(scene_title(report, scene), [Column("method", words=True), Column("cost, times none"),
-                                              Column("wrong, %")], rows, PARETO_ABOUT.format(bound=LEAST_WRONG))
+                                              Column("wrong, %")], rows, PARETO_ABOUT)
 
 
 def order_table(report: Report) -> Table | None:

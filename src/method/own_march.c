@@ -9,109 +9,73 @@
 typedef struct open_ways {
     int n;
     int32_t lane[LANES], below[LANES]; /* of the group; met the rough surface */
-    real side[LANES], sn[LANES], a[LANES], b[LANES], curvature[LANES], end[LANES]; /* as own_ways */
-    real u[LANES], w[LANES], P[LANES], Pu[LANES], Pw[LANES];
+    real side[LANES], sn[LANES], a[LANES], b[LANES], A[LANES], B[LANES], curvature[LANES], end[LANES]; /* as own_ways */
+    real u[LANES], w[LANES], P[LANES];
 } open_ways;
 
-static void move(const open_ways *from, int i, open_ways *to, int k)
+/* How far u, or w, moves on a way until t, over t, at most. */
+static inline real fastest(real a, real A, real end) { return real_abs(a) + real_abs(A) * end; }
+
+/* Whether P stays below the way: P rises by at most Pu a + Pw b per t (a and b are the fastest), the way by at least
+ * sn, less what the surface's curvature takes. */
+static inline int rises_faster(real sn, real a, real b, real curvature, real end, real Pu, real Pw)
 {
-    to->lane[k] = from->lane[i];
-    to->side[k] = from->side[i];
-    to->sn[k] = from->sn[i];
-    to->a[k] = from->a[i];
-    to->b[k] = from->b[i];
-    to->curvature[k] = from->curvature[i];
-    to->end[k] = from->end[i];
-    to->u[k] = from->u[i];
-    to->w[k] = from->w[i];
-    to->P[k] = from->P[i];
-    to->Pu[k] = from->Pu[i];
-    to->Pw[k] = from->Pw[i];
+    return sn - real_max(curvature, 0) * end >= Pu * a + Pw * b;
 }
 
-/* Keep those that are open. */
-static void drop_settled(open_ways *o, const int32_t *open)
+/* The lanes whose ways bounds of the slope of the whole P do not settle, nor the slope of P at the start with bounds of
+ * its second partials: the way and P part by sn - P' per t, and come together again by at most half the curvature of
+ * both. (Not so where a bound is infinite.) */
+STAGE static void find_open(const hit_group *restrict g, const bump *P, const own_ways *restrict y, real seen_from,
+                            int32_t *restrict open)
 {
-    int n = 0;
-    for (int i = 0; i < o->n; i++) {
-        if (n < i)
-            move(o, i, o, n);
-        n += open[i];
-    }
-    o->n = n;
-}
-
-static void begin(const hit_group *g, const own_ways *y, int seen_from, open_ways *o)
-{
-    int n = 0;
-    for (int i = 0; i < g->n; i++) { /* without a branch */
-        o->lane[n] = i;
-        o->side[n] = y->side[i];
-        o->sn[n] = y->sn[i];
-        o->a[n] = y->a[i];
-        o->b[n] = y->b[i];
-        o->curvature[n] = y->curvature[i];
-        o->end[n] = y->end[i];
-        o->u[n] = g->u[i];
-        o->w[n] = g->w[i];
-        o->P[n] = g->bump.P[i];
-        o->Pu[n] = g->bump.Pu[i];
-        o->Pw[n] = g->bump.Pw[i];
-        n += (g->lit[i] > 0) & (y->end[i] > 0) & ((real)seen_from * y->side[i] >= 0);
-    }
-    o->n = n;
-}
-
-/* open[i] = 0 where P stays below the way: P rises by at most Pu |a| + Pw |b| per t, the way by at least sn, less what
- * the surface's curvature takes. */
-STAGE static void rises_faster(const open_ways *restrict o, const real *restrict Pu, const real *restrict Pw,
-                               int32_t *restrict open)
-{
-    for (int i = 0; i < o->n; i++) {
-        real rise = o->sn[i] - real_max(o->curvature[i], 0) * o->end[i];
-        real most = Pu[i] * real_abs(o->a[i]) + Pw[i] * real_abs(o->b[i]);
-        open[i] = !(rise >= most);
+    const real Pu_max = P->Pu_max, Pw_max = P->Pw_max, Puu = P->Puu_max, Puw = P->Puw_max, Pww = P->Pww_max;
+    for (int i = 0; i < g->n; i++) {
+        real sn = y->sn[i], curvature = y->curvature[i], end = y->end[i], side = y->side[i], lit = g->lit[i];
+        real a = fastest(y->a[i], y->A[i], end), b = fastest(y->b[i], y->B[i], end);
+        real Pu = g->bump.Pu[i], Pw = g->bump.Pw[i], apart = sn - side * (Pu * y->a[i] + Pw * y->b[i]);
+        real together = Puu * a * a + 2 * Puw * a * b + Pww * b * b + curvature;
+        together += 2 * real_abs(Pu * y->A[i] + Pw * y->B[i]);
+        int parts = apart >= R(0.5) * real_max(together, 0) * end;
+        int settled = parts | rises_faster(sn, a, b, curvature, end, Pu_max, Pw_max);
+        open[i] = (lit > 0) & (end > 0) & (seen_from * side >= 0) & !settled;
     }
 }
 
-/* The same from the slope of P at the start, and bounds of its second partials: the way and P part by sn - P' per t,
- * and come together again by at most half the curvature of both. */
-STAGE static void parts_for_good(const open_ways *restrict o, real Puu, real Puw, real Pww, int32_t *restrict open)
+static void gather_open(const hit_group *g, const own_ways *y, const int32_t *open, open_ways *o)
 {
-    for (int i = 0; i < o->n; i++) {
-        real a = real_abs(o->a[i]), b = real_abs(o->b[i]);
-        real apart = o->sn[i] - o->side[i] * (o->Pu[i] * o->a[i] + o->Pw[i] * o->b[i]);
-        real together = Puu * a * a + 2 * Puw * a * b + Pww * b * b + o->curvature[i];
-        open[i] = !(apart >= R(0.5) * real_max(together, 0) * o->end[i]);
+    o->n = 0;
+    for (int i = 0; i < g->n; i++) {
+        if (!open[i])
+            continue;
+        const int k = o->n++;
+        o->lane[k] = i;
+        o->below[k] = 0;
+        o->side[k] = y->side[i];
+        o->sn[k] = y->sn[i];
+        o->a[k] = y->a[i];
+        o->b[k] = y->b[i];
+        o->A[k] = y->A[i];
+        o->B[k] = y->B[i];
+        o->curvature[k] = y->curvature[i];
+        o->end[k] = y->end[i];
+        o->u[k] = g->u[i];
+        o->w[k] = g->w[i];
+        o->P[k] = g->bump.P[i];
     }
 }
 
-static void settle_by_slopes(const bump *P, open_ways *o)
-{
-    real Pu[LANES], Pw[LANES];
-    int32_t open[LANES];
-    if (P->Puu_max < REAL_FAR && P->Puw_max < REAL_FAR && P->Pww_max < REAL_FAR)
-        parts_for_good(o, P->Puu_max, P->Puw_max, P->Pww_max, open);
-    else {
-        for (int i = 0; i < o->n; i++) {
-            Pu[i] = P->Pu_max;
-            Pw[i] = P->Pw_max;
-        }
-        rises_faster(o, Pu, Pw, open);
-    }
-    drop_settled(o, open);
-}
-
-/* The rectangle of (u,w) that a way is over. */
+/* A rectangle of (u,w) that a way is over. */
 STAGE static void rectangles(const open_ways *restrict o, real *restrict u0, real *restrict u1, real *restrict w0,
                              real *restrict w1)
 {
     for (int i = 0; i < o->n; i++) {
-        real u = o->u[i] + o->a[i] * o->end[i], w = o->w[i] + o->b[i] * o->end[i];
-        u0[i] = real_min(u, o->u[i]);
-        u1[i] = real_max(u, o->u[i]);
-        w0[i] = real_min(w, o->w[i]);
-        w1[i] = real_max(w, o->w[i]);
+        real e = o->end[i], u = o->a[i] * e, w = o->b[i] * e;
+        real more_u = real_abs(o->A[i]) * e * e, more_w = real_abs(o->B[i]) * e * e;
+        u0[i] = o->u[i] + real_min(u, 0) - more_u;
+        u1[i] = o->u[i] + real_max(u, 0) + more_u;
+        w0[i] = o->w[i] + real_min(w, 0) - more_w;
+        w1[i] = o->w[i] + real_max(w, 0) + more_w;
     }
 }
 
@@ -125,6 +89,38 @@ STAGE static void shorten(open_ways *restrict o, const bump_ranges *restrict k)
     }
 }
 
+STAGE static void still_open(const open_ways *restrict o, const bump_ranges *restrict k, int32_t *restrict open)
+{
+    for (int i = 0; i < o->n; i++) {
+        real end = o->end[i], a = fastest(o->a[i], o->A[i], end), b = fastest(o->b[i], o->B[i], end);
+        open[i] = !rises_faster(o->sn[i], a, b, o->curvature[i], end, k->Pu[i], k->Pw[i]);
+    }
+}
+
+static void drop_settled(open_ways *o, const int32_t *open)
+{
+    int n = 0;
+    for (int i = 0; i < o->n; i++) {
+        if (!open[i])
+            continue;
+        o->lane[n] = o->lane[i];
+        o->side[n] = o->side[i];
+        o->sn[n] = o->sn[i];
+        o->a[n] = o->a[i];
+        o->b[n] = o->b[i];
+        o->A[n] = o->A[i];
+        o->B[n] = o->B[i];
+        o->curvature[n] = o->curvature[i];
+        o->end[n] = o->end[i];
+        o->u[n] = o->u[i];
+        o->w[n] = o->w[i];
+        o->P[n] = o->P[i];
+        n++;
+    }
+    o->n = n;
+}
+
+/* By bounds of P over the rectangles of the ways. */
 static void settle_by_ranges(const bump *P, open_ways *o)
 {
     enum { TIMES = 2 };
@@ -135,7 +131,7 @@ static void settle_by_ranges(const bump *P, open_ways *o)
         rectangles(o, u0, u1, w0, w1);
         P->ops->range(P, o->n, u0, u1, w0, w1, &k);
         shorten(o, &k);
-        rises_faster(o, k.Pu, k.Pw, open);
+        still_open(o, &k, open);
         drop_settled(o, open);
     }
 }
@@ -144,8 +140,8 @@ STAGE static void step_places(const open_ways *restrict o, int step, int steps, 
 {
     for (int i = 0; i < o->n; i++) {
         real t = bs_way_step(o->end[i], step, steps);
-        u[i] = o->u[i] + o->a[i] * t;
-        w[i] = o->w[i] + o->b[i] * t;
+        u[i] = o->u[i] + (o->a[i] + o->A[i] * t) * t;
+        w[i] = o->w[i] + (o->b[i] + o->B[i] * t) * t;
     }
 }
 
@@ -162,14 +158,13 @@ STAGE static void step_below(open_ways *restrict o, int step, int steps, const r
 long own_march(hit_group *g, const bump *P, const own_ways *y, int steps, int seen_from)
 {
     real u[LANES], w[LANES];
+    int32_t open[LANES];
     open_ways o;
     bump_values h;
-    begin(g, y, seen_from, &o);
-    settle_by_slopes(P, &o);
+    find_open(g, P, y, (real)seen_from, open);
+    gather_open(g, y, open, &o);
     if (P->pyramid)
         settle_by_ranges(P, &o);
-    for (int i = 0; i < o.n; i++)
-        o.below[i] = 0;
     for (int step = 1; step <= steps && o.n; step++) {
         step_places(&o, step, steps, u, w);
         P->ops->eval(P, o.n, u, w, 0, &h);

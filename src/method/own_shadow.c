@@ -22,9 +22,12 @@ STAGE static void ways(const hit_group *restrict g, real Pmin, real Pmax, own_wa
     const real top = real_max(Pmax, 0) + (Pmax - Pmin), bottom = real_max(-Pmin, 0) + (Pmax - Pmin);
     for (int i = 0; i < g->n; i++) {
         bs_vec3 n = lane_get(&g->n_smooth, i), Qu = lane_get(&g->q.Qu, i), Qw = lane_get(&g->q.Qw, i);
-        bs_view d = bs_view_of(lane_get(&g->to_light.s, i), n, Qu, Qw);
+        bs_vec3 Quu = lane_get(&g->q.Quu, i), Quw = lane_get(&g->q.Quw, i), Qww = lane_get(&g->q.Qww, i);
+        bs_offset o = bs_offset_of(n, Qu, Qw, Quu, Quw, Qww, g->bump.P[i]);
+        bs_view d = bs_view_of(lane_get(&g->to_light.s, i), bs_normal(o.Qu, o.Qw), o.Qu, o.Qw);
+        bs_turn turn = bs_turn_of(d, n, Qu, Qw, Quu, Quw, Qww);
         real P = g->bump.P[i], side = bs_dot(n, lane_get(&g->x.s, i)) < 0 ? R(1) : R(-1);
-        real curvature = bs_curvature(d, n, lane_get(&g->q.Quu, i), lane_get(&g->q.Quw, i), lane_get(&g->q.Qww, i));
+        real curvature = bs_curvature(d, n, Quu, Quw, Qww);
         bs_way w = bs_way_of(side, d, curvature, P, Pmin, Pmax);
         real leave = bs_way_to(w.d, w.curvature, side > 0 ? top - P : bottom + P);
         int regular = bs_regular(n, Qu, Qw);
@@ -32,6 +35,8 @@ STAGE static void ways(const hit_group *restrict g, real Pmin, real Pmax, own_wa
         y->sn[i] = regular ? w.d.sn : 0;
         y->a[i] = regular ? d.a : 0;
         y->b[i] = regular ? d.b : 0;
+        y->A[i] = regular ? turn.A : 0;
+        y->B[i] = regular ? turn.B : 0;
         y->curvature[i] = regular ? w.curvature : 0;
         y->end[i] = regular ? w.end : 0;
         y->leave[i] = regular ? leave : 0;

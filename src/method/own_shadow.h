@@ -11,7 +11,8 @@
 /* The ways from a group's places on the rough surface to a light, as bs_way. */
 typedef struct own_ways {
     real side[LANES], sn[LANES], a[LANES], b[LANES], curvature[LANES], end[LANES];
-    real leave[LANES]; /* t from which on the way is above the smooth surface and the slab */
+    real A[LANES], B[LANES]; /* bs_turn */
+    real leave[LANES];       /* t from which on the way is above the smooth surface and the slab */
 } own_ways;
 
 /* The places on the rough surface, X = Q + P n/|n|, over the (u,w) that are shaded. */
