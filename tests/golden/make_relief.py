@@ -7,8 +7,8 @@ of the smooth surface, the height over it, and shadows and horizons by brute for
 
     python3 -m venv venv && venv/bin/pip install mpmath && venv/bin/python tests/golden/make_relief.py
 
-`places`: viewing rays Q + s tau at a smooth hit, tau that of order 0, for bumps A, A/2, A/4, ... high; `across`: how far
-apart the ways to a light are that start 1 apart in tau.
+`places`: viewing rays Q + s tau at a smooth hit, tau that of order 0, for bumps A, A/2, A/4, ... high; `across`: how
+far apart the ways to a light are that start 1 apart in tau.
 `ways`: ways to a light from a place X of the rough surface; `dark` by 400 heights of the way, until it is above all
 bumps, or, where a hollow surface rises more than the way and it never gets there, until it is highest.
 `horizons`: how much P rises from a place in the directions of a horizon map, and towards lights between these.
