@@ -319,9 +319,8 @@ STAGE static void measure_shadow(int n, const rays *restrict x, const real *rest
                                  pixel_size size, real *restrict pixels)
 {
     for (int i = 0; i < n; i++) {
-        bs_vec3 s = lane_get(&x->s, i), d = lane_get(&to_light->s, i), c = bs_cross(s, d);
-        real across = real_sqrt(bs_dot(c, c) / bs_dot(d, d));
-        pixels[i] = real_max(pixels[i], across / (size.fixed + size.spread * t[i]));
+        bs_vec3 s = lane_get(&x->s, i), d = lane_get(&to_light->s, i);
+        pixels[i] = real_max(pixels[i], bs_pixels(s, d, size.fixed + size.spread * t[i], 1));
     }
 }
 
