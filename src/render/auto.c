@@ -15,6 +15,9 @@
 #include "render/shadow.h"
 #include "wave/lane.h"
 
+/* The steps of the search, in errors. Where only a shadow depends on the place, few lanes are searched. */
+enum { STEP_SHADOW = 16, STEP_PLACE = 48 };
+
 STAGE static int any(int n, const int32_t *x)
 {
     int some = 0;
@@ -366,6 +369,7 @@ static int all_lanes(int n, int32_t *lane)
 void auto_shift(const tracer *tr, int32_t id, workspace *v)
 {
     const bump *P = tr->scene->object[id].bump;
+    const real error = (real)tr->shadow.n / METHOD_PIXEL;
     const bool everywhere = needs_place(tr, id, v);
     hit_group *g = &v->g;
     brackets k;
@@ -381,6 +385,6 @@ void auto_shift(const tracer *tr, int32_t id, workspace *v)
         return;
     places_pick(g, &k, n, lane, &p);
     measure(tr->scene, everywhere, &p);
-    v->stats->evaluations += places_search(&p, P, (real)tr->shadow.n / METHOD_PIXEL);
+    v->stats->evaluations += places_search(&p, P, error, error * (everywhere ? R(STEP_PLACE) : R(STEP_SHADOW)));
     places_put(&p, g);
 }
