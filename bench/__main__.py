@@ -18,15 +18,16 @@ from collections.abc import Sequence
 from pathlib import Path
 
 try:
-    from bench import claims, cost, plan, programs, quality, report, summary, sweep
+    from bench import bounds, claims, cost, plan, programs, quality, report, summary, sweep, whole
 except ModuleNotFoundError as error:
     sys.exit(f"bench: the Python package {error.name} is missing, and the bench needs it (`scripts/venv` installs it)")
+from bench.data import Claim, Report
 from bench.plan import LEVELS, TITLES, Bench
 from bench.programs import KAGE, TOP, MeasureError
 from bench.runner import Job, Runner
 from bench.store import Store, StoreError
 
-PARTS = ("quality", "cost", "sweeps")
+PARTS = ("quality", "whole", "cost", "sweeps")
 
 
 def parse_arguments(arguments: Sequence[str] | None) -> argparse.Namespace:
@@ -53,6 +54,8 @@ def plan_jobs(bench: Bench, parts: Sequence[str]) -> tuple[list[Job], list[str]]
     faults: list[str] = []
     if "quality" in parts:
         jobs += quality.jobs(bench)
+    if "whole" in parts:
+        jobs += whole.jobs(bench)
     if "sweeps" in parts:
         jobs += sweep.jobs(bench)
     if "cost" in parts:
@@ -87,6 +90,10 @@ def make_references(bench: Bench) -> list[str]:
     return []
 
 
+def judge(found: Report) -> list[Claim]:
+    return claims.claims(found) + bounds.bounds(found)
+
+
 def bench(options: argparse.Namespace) -> int:
     """Measure, write the report, and name all that is missing. The exit status."""
     names = options.scene or TITLES
@@ -97,13 +104,15 @@ def bench(options: argparse.Namespace) -> int:
         jobs, more = plan_jobs(about, options.only or PARTS)
         runner = Runner(store)
         runner.run(jobs)
-        data = summary.summarise(about, store, jobs, runner.failed, claims.claims)
+        data = summary.summarise(about, store, jobs, runner.failed, judge)
     data["incomplete"] += faults + more
     data["incomplete"] += report.write(data, options.out)
     data["complete"] = not data["incomplete"]
     report.write_all(options.out, {"report.json": json.dumps(data, indent=1) + "\n"})
     for line in data["incomplete"] + data["notes"]:
         print(f"bench: {line}", file=sys.stderr)
+    for line in bounds.lines(data["claims"]):
+        print(line)
     print(f"{options.out / 'index.html'}")
     return 0 if data["complete"] else 3
 

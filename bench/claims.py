@@ -172,12 +172,6 @@ def difference(a: Interval, b: Interval) -> Interval:
             "n": min(a["n"], b["n"])}
 
 
-def over_none(added: Interval) -> Interval:
-    """% over none as times none."""
-    return {"median": 1 + added["median"] / 100, "low": 1 + added["low"] / 100, "high": 1 + added["high"] / 100,
-            "n": added["n"]}
-
-
 def interval_text(value: Interval, form: str, unit: str) -> str:
     few = f"; of {value['n']} run{'s' * (value['n'] > 1)}, too few" if value["n"] < LEAST_RUNS else ""
     return f"{value['median']:{form}} {unit} ({value['low']:{form}} to {value['high']:{form}}{few})"
@@ -377,10 +371,10 @@ def amplitude(report: Report) -> Claim:
 
 
 def intersection_case(name: str, scene: Costs, method: str) -> Case:
-    name, times = f"{name}, {method}", added_times(scene, "0", method)
-    if times is None:
+    name = f"{name}, {method}"
+    zero, other = (data.times_none(scene.get(m)) for m in ("0", method))
+    if zero is None or other is None:
         return unmeasured(name, "the time")
-    zero, other = map(over_none, times)
     found = ratio(other, zero)
     return {"case": name, "verdict": at_least(found, EXPENSIVE), "detail": interval_text(found, ".1f", "times order 0")}
 
@@ -485,5 +479,5 @@ ALL = (detached, follows, cheap, cheapest, second_order, enough, amplitude, inte
 
 
 def claims(report: Report) -> list[Claim]:
-    """All claims, the paper's first, judged by the data of a report. Any part of it may be missing."""
+    """The paper's claims, then kage's, judged by the data of a report. Any part of it may be missing."""
     return [judge(report) for judge in ALL]

@@ -110,7 +110,7 @@ def kage_inputs(bench: Bench, scene: Facts, size: Size, **more: object) -> Input
 
 
 def kage_round(bench: Bench, number: int) -> list[Job]:
-    methods = bench.level.methods if number % 2 == 0 else bench.level.methods[::-1]
+    methods = bench.level.timed if number % 2 == 0 else bench.level.timed[::-1]
     return [
         Job(f"time {scene.name} {method} {number}",
             machine_inputs(**kage_inputs(bench, scene, bench.level.cost_size, method=method)),
@@ -127,11 +127,11 @@ def kage_once(bench: Bench) -> list[Job]:
     return [
         Job(f"count {scene.name} {method}", kage_inputs(bench, scene, level.count_size, method=method),
             functools.partial(count_kage, bench, scene, method), Stage.MEASURES, 4)
-        for scene in counted for method in level.methods
+        for scene in counted for method in level.timed
     ] + [
         Job(f"memory {scene.name} {method}", kage_inputs(bench, scene, level.cost_size, method=method),
             functools.partial(weigh_kage, bench, scene, method), Stage.MEASURES, 0.4)
-        for scene in bench.scenes.values() for method in level.methods
+        for scene in bench.scenes.values() for method in level.timed
     ]
 
 

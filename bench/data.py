@@ -68,6 +68,53 @@ class QualityPart(TypedDict, total=False):
     parity: dict[str, Parity]  # by scene
 
 
+class Errors(TypedDict):
+    """How far a whole picture is from true displacement (bench/whole.py). `off_8` and so on: % of the ground's pixels
+    that are off by more than 8/255; median and 95th percentile are in 255ths."""
+
+    median: float
+    p95: float
+    off_1: float | None
+    off_8: float | None
+    off_32: float | None
+    silhouette: float | None  # % of the receiver
+    silhouette_off: float | None  # % of the silhouette, off by more than 8/255
+    of_rest: float | None  # % of all pixels that are off by more than 8/255: those at the silhouette
+
+
+class Whole(Errors, total=False):
+    """Of a variant, against kage's displacement, and against POV-Ray's."""
+
+    flip: float | None
+    povray: Errors | None
+    command: str
+
+
+class Series(TypedDict):
+    """% of the ground that is off by more than 8/255, by variant, for each value."""
+
+    values: list[float]
+    off: dict[str, list[float | None]]
+
+
+class OwnShadows(TypedDict):
+    """Wrong pixels of the bumps' own shadows in % of these, by how they are found, for each height of the lamp."""
+
+    values: list[float]
+    shadow: list[int | None]  # pixels of POV-Ray's
+    wrong: dict[str, list[float | None]]
+
+
+class WholePart(TypedDict, total=False):
+    """All that is measured of whole pictures, by scene."""
+
+    scenes: dict[str, dict[str, Whole]]  # and variant
+    lamps: dict[str, Series]  # over the height of the lamp
+    slopes: dict[str, Series]  # over the slope of the bumps
+    own: dict[str, OwnShadows]
+    orders: dict[str, dict[str, float]]  # % of the receiver by what auto needed
+
+
 class Cost(TypedDict):
     """What a method costs on one scene (bench/cost.py). Times, counts and look-ups are those of a pixel."""
 
@@ -130,6 +177,8 @@ class ScenePictures(TypedDict):
 
     methods: dict[str, MethodPicture]
     references: list[ReferencePicture]
+    variants: dict[str, MethodPicture]  # with all shadows; the displaced one among them
+    orders: str | None  # levels: one above the layer `order` of auto
 
 
 class Pictures(TypedDict):
@@ -187,7 +236,7 @@ class Claim(TypedDict):
     """A claim and what the numbers say of it (bench/claims.py)."""
 
     id: str
-    who: str  # paper or kage
+    who: str  # paper, kage, or bound: what kage demands of its version 7
     sentence: str
     source: str
     test: str
@@ -222,8 +271,10 @@ class Report(TypedDict, total=False):
     notes: list[str]
     circumstances: Circumstances
     methods: list[str]
+    variants: list[str]
     scenes: dict[str, Scene]
     cost: CostPart
+    whole: WholePart
     quality: QualityPart
     pictures: Pictures
     sweeps: list[Sweep]
@@ -288,6 +339,19 @@ def truth_version(report: Report) -> str | None:
     return part.get("truth")
 
 
+def whole_part(report: Report) -> WholePart:
+    return report.get("whole") or {}
+
+
+def wholes(report: Report) -> dict[str, dict[str, Whole]]:
+    """By scene and variant, of the scenes that have any."""
+    return {scene: found for scene, found in (whole_part(report).get("scenes") or {}).items() if found}
+
+
+def whole(report: Report, scene: str, variant: str) -> Whole | None:
+    return wholes(report).get(scene, {}).get(variant)
+
+
 def mask_metric(quality: Quality | None, truth: Truth, metric: MaskMetric) -> float | None:
     mask = quality and quality[truth]
     return mask and mask[metric]
@@ -295,6 +359,15 @@ def mask_metric(quality: Quality | None, truth: Truth, metric: MaskMetric) -> fl
 
 def added_cost(cost: Cost | None) -> Interval | None:
     return cost and cost["added"]
+
+
+def times_none(cost: Cost | None) -> Interval | None:
+    """The added cost as a multiple of none's."""
+    added = added_cost(cost)
+    if added is None:
+        return None
+    return {"median": 1 + added["median"] / 100, "low": 1 + added["low"] / 100, "high": 1 + added["high"] / 100,
+            "n": added["n"]}
 
 
 def median(interval: Interval | None) -> float | None:

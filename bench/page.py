@@ -9,13 +9,13 @@ from __future__ import annotations
 import base64
 import io
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
-from bench import data, plots, tables
-from bench.data import Report, Sweep, dig
+from bench import data, plots, tables, whole_tables
+from bench.data import MethodPicture, Report, Sweep, dig
 from bench.tables import method_name
 
 if TYPE_CHECKING:
@@ -32,6 +32,13 @@ OVERLAY = (
     (230, 159, 0, 255),  # wrongly lit: Okabe and Ito's orange
     (0, 114, 178, 255),  # wrongly in shadow: their blue
 )
+
+# The colour of each method that auto may need, by the level of its picture: one above the layer `order`.
+ORDER_COLOURS: dict[int, tuple[str, tuple[int, int, int]]] = {
+    0: ("not the receiver", (232, 232, 232)), 1: ("order 0", (0, 114, 178)), 2: ("order 1", (86, 180, 233)),
+    3: ("order 2", (86, 180, 233)), 4: ("2+", (204, 121, 167)), 5: ("iter", (0, 158, 115)),
+    6: ("march", (240, 228, 66)), 7: ("exact", (213, 94, 0)),
+}
 
 VERDICTS = {  # symbol, class in the style
     "holds": ("✓", "holds"), "holds in part": ("◐", "part"), "does not hold": ("✗", "fails"),
@@ -59,6 +66,8 @@ class Sheet:
     title: str
     references: list[Picture] = field(default_factory=list)
     methods: list[Picture] = field(default_factory=list)
+    variants: list[Picture] = field(default_factory=list)  # with all shadows
+    orders: Picture | None = None  # what auto needed
 
 
 # Pictures -----------------------------------------------------------------------------------------------------
@@ -78,15 +87,24 @@ def embed_picture(path: Path) -> tuple[str, tuple[int, int]]:
         return data_uri(picture.convert("RGB"), quality=QUALITY, method=4, use_sharp_yuv=True), picture.size
 
 
-def embed_wrong(path: Path) -> str:
-    """The levels as colours. Lossless, as each pixel counts."""
+def embed_levels(path: Path, colours: Mapping[int, tuple[int, ...]]) -> tuple[str, tuple[int, int]]:
+    """The levels as colours, with opacity or without. Lossless, as each pixel counts."""
     import numpy as np
     from PIL import Image
 
-    colours = np.zeros((256, 4), np.uint8)
-    colours[:len(OVERLAY)] = OVERLAY
+    table = np.zeros((256, len(next(iter(colours.values())))), np.uint8)
+    for level, colour in colours.items():
+        table[level] = colour
     with Image.open(path) as levels:
-        return data_uri(Image.fromarray(colours[np.asarray(levels.convert("L"))]), lossless=True, exact=True)
+        return data_uri(Image.fromarray(table[np.asarray(levels.convert("L"))]), lossless=True, exact=True), levels.size
+
+
+def embed_wrong(path: Path) -> str:
+    return embed_levels(path, dict(enumerate(OVERLAY)))[0]
+
+
+def embed_orders(path: Path) -> tuple[str, tuple[int, int]]:
+    return embed_levels(path, {level: colour for level, (_, colour) in ORDER_COLOURS.items()})
 
 
 def method_caption(report: Report, scene: str, method: str) -> str:
@@ -96,6 +114,18 @@ def method_caption(report: Report, scene: str, method: str) -> str:
     parts = [f"{tables.share(wrong)} % wrong"] if wrong is not None else []
     parts += [f"{tables.added(added)} % time"] if added is not None else []
     return ", ".join(parts).replace(" %", "\N{NO-BREAK SPACE}%")
+
+
+def variant_caption(report: Report, scene: str, variant: str) -> str:
+    """What is off, and the cost, where they are known."""
+    off, cost = whole_tables.off(report, scene, variant), whole_tables.cost_times(report, scene, variant)
+    parts = [f"{tables.share(off)} % off"] if off is not None else []
+    parts += [f"{tables.short(cost)} × none"] if cost is not None else []
+    return ", ".join(parts).replace(" %", "\N{NO-BREAK SPACE}%").replace(" ×", "\N{NO-BREAK SPACE}×")
+
+
+def all_shadows(variant: str) -> str:
+    return f"{method_name(variant)}, all shadows"
 
 
 Embedded = TypeVar("Embedded")
@@ -113,6 +143,12 @@ def make_sheets(report: Report, folder: Path, missing: Callable[[str], None]) ->
             missing(f"a picture is left out: {name}: {error.strerror or error}")
             return None
 
+    def shown(sheet: Sheet, name: str, files: MethodPicture, caption: str) -> list[Picture]:
+        found = read(embed_picture, files["file"])
+        if found is None:
+            return []
+        return [Picture(name, f"{sheet.title}: {name}", *found, read(embed_wrong, files["wrong"]), caption)]
+
     sheets = []
     for scene, entry in report["pictures"]["scenes"].items():
         sheet = Sheet(scene, tables.scene_title(report, scene))
@@ -121,10 +157,11 @@ def make_sheets(report: Report, folder: Path, missing: Callable[[str], None]) ->
                 name = reference["name"]
                 sheet.references.append(Picture(name, f"{sheet.title}: {name}", *found, None, "reference"))
         for method, files in tables.in_order(report, entry["methods"]).items():
-            if found := read(embed_picture, files["file"]):
-                name, over = method_name(method), read(embed_wrong, files["wrong"])
-                sheet.methods.append(Picture(name, f"{sheet.title}: {name}", *found, over,
-                                             method_caption(report, scene, method)))
+            sheet.methods += shown(sheet, method_name(method), files, method_caption(report, scene, method))
+        for variant, files in (entry.get("variants") or {}).items():
+            sheet.variants += shown(sheet, all_shadows(variant), files, variant_caption(report, scene, variant))
+        if found := read(embed_orders, entry.get("orders")):
+            sheet.orders = Picture("what auto needed", f"{sheet.title}: what auto needed", *found, None, "")
         if sheet.references or sheet.methods:
             sheets.append(sheet)
     return sheets
@@ -168,6 +205,13 @@ def map_legend(sweep: Sweep) -> list[tuple[str, str, str]]:
     return legend
 
 
+def order_legend(report: Report) -> list[tuple[str, str]]:
+    """The colour and name of what auto needed anywhere, and of what it does not see."""
+    needed = {name for found in (data.whole_part(report).get("orders") or {}).values() for name in found}
+    return [(f"rgb{colour}", text) for level, (text, colour) in ORDER_COLOURS.items()
+            if level == 0 or text.removeprefix("order ") in needed]
+
+
 # The page -----------------------------------------------------------------------------------------------------
 
 
@@ -175,8 +219,12 @@ def sections(report: Report, sheets: list[Sheet]) -> list[tuple[str, str]]:
     """Ids and titles of the parts that have something to show."""
     parts: tuple[tuple[str, str, object], ...] = (
         ("answer", "The answer", report.get("answer")),
+        ("bounds", "What it had to show", [c for c in report.get("claims") or [] if c["who"] == "bound"]),
+        ("whole", "The whole picture", data.wholes(report)),
+        ("own", "The bumps' own shadows", whole_tables.own_table(report)),
         ("table", "All methods", True),
         ("cost-error", "Cost against error", True),
+        ("auto", "What auto costs and needs", "auto" in report["methods"]),
         ("compare", "Compare two pictures", sheets),
         ("sheets", "Contact sheets", sheets),
         ("sweeps", "Where which method is enough", report.get("sweeps")),
@@ -214,7 +262,8 @@ def render(report: Report, folder: Path) -> tuple[str, list[str]]:
     environment = jinja2.Environment(loader=jinja2.FileSystemLoader(TEMPLATES), autoescape=True,
                                      undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True)
     environment.filters["code"] = code
-    environment.globals.update(tables=tables, dig=dig, verdicts=VERDICTS, map_legend=map_legend)
+    environment.globals.update(tables=tables, whole_tables=whole_tables, dig=dig, verdicts=VERDICTS,
+                               map_legend=map_legend, order_legend=order_legend)
     page = environment.get_template("index.html").render(
         report=report, sheets=sheets, plots=drawn, sections=sections(report, sheets),
         incomplete=[*(report.get("incomplete") or []), *messages])

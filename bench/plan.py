@@ -9,9 +9,19 @@ from bench import programs
 from bench.programs import TOP, Size
 from reference.references import scene_digest
 
-METHODS = ("none", "0", "1", "1 bare", "2", "2 bare", "2+", "iter:2", "iter:4", "march:2", "march:4", "march:8",
-           "exact", "displaced")
-FEWER = ("none", "0", "1", "2", "2+", "march:4", "exact", "displaced")
+# Where the shadow ray starts: judged by the shadow of other objects.
+METHODS = ("none", "0", "1", "1 bare", "2", "2 bare", "2+", "iter:2", "iter:4", "march:2", "march:4", "march:8", "auto",
+           "auto:1", "exact", "displaced")
+FEWER = ("none", "0", "1", "2", "2+", "march:4", "march:8", "auto", "exact", "displaced")
+
+# A method, and perhaps where it shades and how bumps shadow each other: judged by the whole picture.
+VARIANTS = ("none", "0", "march:8", "0 shifted", "march:8 shifted", "0 shifted, own 8", "march:8 shifted, own 8",
+            "march:8 shifted, own 24", "march:8 shifted, own horizon", "auto shifted", "auto shifted, own 8",
+            "exact shifted, own exact", "relief")
+FEWER_VARIANTS = ("none", "0", "march:8 shifted", "march:8 shifted, own 8", "relief")
+
+# How bumps shadow each other, each at the true place, so that nothing else is wrong.
+OWN = ("own 4", "own 8", "own 16", "own 24", "own horizon", "own exact", "displaced")
 
 TITLES = {
     "cube": "A cube over a bumpy plane (figures 4 to 7)",
@@ -28,6 +38,7 @@ class Level:
 
     name: str
     methods: tuple[str, ...]
+    variants: tuple[str, ...]
     rounds: int  # of everything that is timed
     cost_size: Size
     povray_size: Size  # per pixel it is the same at any
@@ -42,16 +53,21 @@ class Level:
     widths: tuple[int, ...]
     sweep_scenes: tuple[str, ...]
 
+    @property
+    def timed(self) -> tuple[str, ...]:
+        """The methods, then the variants that are no methods."""
+        return tuple(dict.fromkeys((*self.methods, *self.variants)))
+
 
 LEVELS = {
     level.name: level
     for level in (
-        Level("quick", FEWER, 7, (400, 225), (320, 180), None, False, (64, 48), ("waves", "cube"), 1,
+        Level("quick", FEWER, FEWER_VARIANTS, 7, (400, 225), (320, 180), None, False, (64, 48), ("waves", "cube"), 1,
               (0.1, 0.2, 0.35, 0.6, 1.0), (15, 30, 45, 60, 80), (), (), ("waves",)),
-        Level("normal", METHODS, 7, (960, 540), (480, 270), (160, 120), True, (160, 120), tuple(TITLES), 1,
+        Level("normal", METHODS, VARIANTS, 7, (960, 540), (480, 270), (160, 120), True, (160, 120), tuple(TITLES), 1,
               (0.05, 0.1, 0.15, 0.2, 0.3, 0.45, 0.7, 1.0), (10, 15, 20, 30, 40, 50, 65, 80), (0.5, 1, 2, 4, 8),
               (80, 160, 320, 640), ("waves", "cube")),
-        Level("full", METHODS, 15, (1920, 1080), (1280, 720), (320, 240), True, (320, 240), tuple(TITLES), 2,
+        Level("full", METHODS, VARIANTS, 15, (1920, 1080), (1280, 720), (320, 240), True, (320, 240), tuple(TITLES), 2,
               (0.03, 0.05, 0.08, 0.1, 0.15, 0.2, 0.25, 0.3, 0.4, 0.5, 0.7, 1.0, 1.4),
               (6, 10, 15, 20, 25, 30, 35, 40, 50, 60, 70, 80), (0.25, 0.5, 1, 2, 4, 8, 16), (80, 160, 320, 640, 1280),
               ("waves", "cube")),
@@ -67,6 +83,7 @@ class Facts:
     light: str
     at: tuple[float, float, float]
     receiver: str
+    casters: tuple[str, ...]
     slope_median: float
     slope_95: float
     digest: str
@@ -98,6 +115,10 @@ class Bench:
         """A render that others are compared with. All that it depends on is in the path."""
         return self.out / "truths" / f"{scene}-{name}-{self.kage_digest}-{self.scenes[scene].digest[:16]}" \
                                      f"-{self.level.reference_scale}x.exr"
+
+    def whole_truth(self, scene: str, name: str) -> Path:
+        """The same for whole pictures (bench/whole.py)."""
+        return self.truth(scene, f"whole-{name}").with_suffix(".npz")
 
 
 def facts(kage: Path, name: str) -> Facts:

@@ -37,18 +37,20 @@ if TYPE_CHECKING:
 INK, PAGE = "#0a0b0c", "#fdfeff"
 NAMED = {INK: "currentColor", PAGE: "var(--page)"}
 BLUE, GREEN, VERMILLION, PURPLE, GREY = "#0072b2", "#009e73", "#d55e00", "#cc79a7", "#999999"
+GOLD = "#8f7200"
 FAMILIES = {  # colour, marker, the colour's name in CSS
     "none": (INK, "o", ""), "orders": (BLUE, "s", "--orders"), "2+": (PURPLE, "D", "--full"),
-    "iter": (GREEN, "^", "--iter"), "march": (VERMILLION, "v", "--march"), "true": (INK, "*", ""),
+    "iter": (GREEN, "^", "--iter"), "march": (VERMILLION, "v", "--march"), "auto": (GOLD, "P", "--auto"),
+    "true": (INK, "*", ""),
 }
 NAMED |= {colour: f"var({name})" for colour, _, name in FAMILIES.values() if name}
 
 CELLS = {  # of the sweeps' maps, the same on the dark page and the light one: the text in them says the same
     "none": "#e4e4e4", "0": "#b9dff5", "1": "#6fbdea", "1 bare": "#a3bccb", "2": "#2b86bd", "2 bare": "#7596ab",
     "2+": "#dba3c3", "iter:2": "#9fdcc8", "iter:4": "#2fae8a", "march:2": "#fbdc94", "march:4": "#eeac2b",
-    "march:8": "#de7a2a", "exact": "#f0e442", "displaced": "#c2b280",
+    "march:8": "#de7a2a", "auto": "#cfe07a", "auto:1": "#e3edb0", "exact": "#f0e442", "displaced": "#c2b280",
 }
-CELL_FAMILY = {"iter": "#2fae8a", "march": "#de7a2a"}
+CELL_FAMILY = {"iter": "#2fae8a", "march": "#de7a2a", "auto": "#cfe07a"}
 CELL_NONE_GOOD = "#4a4a4a"
 CELL_DARK, CELL_LIGHT = "#010203", "#fafbfc"  # text in a cell
 
@@ -382,7 +384,7 @@ def stage_bars(report: Report, scene: str) -> str | None:
     """What each stage takes, one bar for a method; the interval of the whole at its end."""
     costs = data.costs(report).get(scene, {})
     times = {method: (ns, stages) for method, stages in tables.stage_times(report, scene).items()
-             if (ns := costs[method]["ns"])}
+             if method in report["methods"] and (ns := costs[method]["ns"])}
     if not times:
         return None
     totals = {m: ns["median"] for m, (ns, _) in times.items()}

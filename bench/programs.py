@@ -108,12 +108,24 @@ def processor() -> str:
 # kage ---------------------------------------------------------------------------------------------
 
 
+VARIANT = re.compile(r"(?P<shadow>\S+?)(?P<bare> bare)?(?P<shifted> shifted)?(, own (?P<own>\S+))?")
+
+
 def method_options(method: str) -> Options:
-    """kage's options for a method by its name in the bench: `2 bare` is order 2 without the guard."""
-    if method == "displaced":
-        return ("--surface", "displaced")
-    name, _, bare = method.partition(" ")
-    return ("--shadow", name, *(["--no-guard"] if bare else []))
+    """kage's options for a method or a variant by its name in the bench.
+
+    `2 bare` is order 2 without the guard. `march:8 shifted, own 24` is the method march:8, shaded at the shifted place,
+    with 24 steps for the bumps' own shadows. `relief` is kage's preset, and `displaced` the displaced surface.
+    """
+    if method in ("displaced", "relief"):
+        return ("--surface", "displaced") if method == "displaced" else ("--relief",)
+    found = VARIANT.fullmatch(method)
+    if not found:
+        raise ValueError(f"'{method}' is no method, expected METHOD[ bare][ shifted][, own STEPS|horizon|exact]")
+    own = found["own"]
+    return ("--shadow", found["shadow"], *(["--no-guard"] if found["bare"] else []),
+            *(["--shade", "shifted"] if found["shifted"] else []),
+            *(["--bump-shadow", f"march:{own}" if own.isdecimal() else own] if own else []))
 
 
 def size_options(size: Size) -> Options:
@@ -149,6 +161,7 @@ class Checked(TypedDict):
     light: str
     at: tuple[float, float, float]
     receiver: str
+    casters: tuple[str, ...]  # all other objects
     slope_median: float
     slope_95: float
 
@@ -163,7 +176,9 @@ def parse_check(text: str) -> Checked:
                            "of each")
     (light, at), (median, most) = lights[0], slopes[0]
     x, y, z = (float(word) for word in at.split(","))
-    return {"light": light, "at": (x, y, z), "receiver": bumped[0], "slope_median": float(median),
+    objects = re.findall(r"^object (\S+): ", text, re.MULTILINE)
+    return {"light": light, "at": (x, y, z), "receiver": bumped[0],
+            "casters": tuple(name for name in objects if name != bumped[0]), "slope_median": float(median),
             "slope_95": float(most)}
 
 

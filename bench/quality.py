@@ -34,8 +34,8 @@ CODE = programs.file_digest(*(Path(module.__file__ or "") for module in (images,
 
 
 def slug(method: str) -> str:
-    """A method's name for a file name."""
-    return method.replace(":", "").replace(" ", "-").replace("+", "plus")
+    """A method's or a variant's name for a file name."""
+    return method.replace(":", "").replace(",", "").replace(" ", "-").replace("+", "plus")
 
 
 def command(bench: Bench, scene: Facts, options: Options, *outputs: Path) -> list[str | Path]:
@@ -57,13 +57,18 @@ def render(bench: Bench, scene: Facts, size: Size, options: Options, layers: str
 # Truths -------------------------------------------------------------------------------------------
 
 
+def check_reference(folder: Path, scene: str, entry: str) -> None:
+    """That an entry of the manifest is of the scene as it is now."""
+    made = references.read_manifest(folder).get(entry, {})
+    if made.get("scene") != references.scene_digest(TOP / "scenes" / f"{scene}.yaml"):
+        raise MeasureError(f"POV-Ray's reference {entry} is of another version of the scene: `make reference` makes it "
+                           "again")
+
+
 @functools.lru_cache(maxsize=4)
 def reference(folder: Path, scene: str) -> references.Reference:
-    """POV-Ray's. The scene must not have changed since."""
-    entry = references.read_manifest(folder).get(scene, {})
-    if entry.get("scene") != references.scene_digest(TOP / "scenes" / f"{scene}.yaml"):
-        raise MeasureError(f"POV-Ray's reference of {scene} is of another version of the scene: `make reference` makes "
-                           "it again")
+    """POV-Ray's."""
+    check_reference(folder, scene, scene)
     try:
         return references.load(scene, folder)
     except references.ReferenceError as error:
@@ -125,9 +130,10 @@ def measure_tau(method: str, got: Layers, exact: Layers) -> Value:
     """The error of tau where the ray meets the rough surface, and the share that fell back of all that has bumps."""
     found, bumped = exact["order"] == ORDER_CODES["exact"], exact["order"] >= 0
     error = np.abs(got["tau"] - exact["tau"])[found]
-    code = ORDER_CODES[re.split("[ :]", method)[0]]
+    code = ORDER_CODES.get(re.split("[ :]", method)[0])  # auto has none: it chooses
     tau = {"median": float(np.median(error)), "p95": float(np.percentile(error, 95))}
-    return {"tau": rounded(tau), "fell_back": 100 * float((got["order"] != code)[bumped].mean())}
+    fell_back = None if code is None else 100 * float((got["order"] != code)[bumped].mean())
+    return {"tau": rounded(tau), "fell_back": fell_back}
 
 
 def measure_mask(got: np.ndarray, truth: np.ndarray, counted: np.ndarray) -> dict[str, float | None]:

@@ -21,6 +21,7 @@ from typing import Any, cast
 
 import numpy as np
 
+from bench import bounds
 from bench import data as reading
 from bench.data import Kept, Report
 from bench.plan import METHODS
@@ -28,10 +29,13 @@ from bench.programs import TOP
 from bench.stats import Interval
 
 RESULT = TOP / "bench" / "result.json"
-SHEETS = ("figures.png", "gallery.png")  # in docs/, from `make render`, which makes them in out/
+SHEETS = ("figures.png", "gallery.png", "relief.png")  # in docs/, from `make render`, which makes them in out/
 PLOT = "docs/cost-error.svg"
 PLOTTED = "cube"
-README_METHODS = ("none", "0", "1", "2", "2+", "march:4", "exact")
+README_METHODS = ("none", "0", "1", "2", "2+", "march:4", "auto", "exact")
+WHOLE_VARIANTS = ("none", "0", "march:8 shifted", "march:8 shifted, own 8", "auto shifted, own 8", "relief")
+AUTO_BESIDE = ("none", "0", "2", "march:8", "auto", "auto:1", "exact")
+NOT_YET = "Not measured yet: `make readme` measures it."
 DETAILS = tuple(method for method in METHODS if method != "displaced")
 
 
@@ -53,10 +57,15 @@ def kept(report: Report, sheets: dict[str, str]) -> Kept:
     quality = {scene: {m: picked(q, "mask", "exact") for m, q in methods.items()}
                for scene, methods in reading.qualities(report).items()}
     peers = [picked(peer, "name", "scene", "ns", "build_s", "memory") for peer in reading.peers(report)]
-    return cast(Kept, picked(report, "level", "circumstances", "methods", "scenes") | {
+    whole = reading.whole_part(report)
+    scenes = {scene: {v: picked(w, "off_8", "flip", "silhouette", "of_rest") for v, w in variants.items()}
+              for scene, variants in reading.wholes(report).items()}
+    return cast(Kept, picked(report, "level", "circumstances", "methods", "variants", "scenes") | {
+        "whole": picked(whole, "own", "lamps", "orders") | {"scenes": scenes},
         "cost": {"size": report["cost"]["size"], "scenes": costs, "peers": peers},
         "quality": picked(report["quality"], "truth", "parity") | {"scenes": quality},
-        "claims": [picked(claim, "id", "who", "sentence", "source", "verdict") for claim in report["claims"]],
+        "claims": [picked(claim, "id", "who", "sentence", "source", "verdict")
+                   | (picked(claim, "cases") if claim["who"] == bounds.WHO else {}) for claim in report["claims"]],
         "sheets": sheets,
     })
 
@@ -89,6 +98,51 @@ def wrong_table(data: Kept, methods: Sequence[str]) -> str:
         name = f"{about['title']}; slopes {about['slope_median']:.2f}, {about['slope_95']:.2f}"
         rows.append([name, *(percent(reading.mask_metric(found[m], "mask", "wrong")) for m in methods if m in found)])
     return table(["scene; slope: median, 95 % below", *(m for m in methods if m in data["methods"])], rows)
+
+
+def whole_table(data: Kept, variants: Sequence[str]) -> str:
+    """What is off, and below it the cost in times none."""
+    scenes = list(reading.wholes(data))
+    if not scenes:
+        return NOT_YET
+    rows = []
+    for variant in variants:
+        cells = []
+        for scene in scenes:
+            found = reading.whole(data, scene, variant)
+            cost = 1.0 if variant == "none" else reading.median(reading.times_none(reading.cost(data, scene, variant)))
+            times = "–" if cost is None else f"{cost:.1f}×"
+            cells.append(f"{percent(found['off_8'])}, {times}" if found else "–")
+        rows.append([f"`{variant}`", *cells])
+    return table(["off by more than 8/255, cost over `none`", *scenes], rows)
+
+
+def own_table(data: Kept) -> str:
+    """Wrong pixels of the bumps' own shadows."""
+    part = reading.whole_part(data).get("own") or {}
+    ways = list(dict.fromkeys(how for found in part.values() for how in found["wrong"]))
+    if not ways:
+        return NOT_YET
+    rows = [[f"{scene}, {height:g}°", str(found["shadow"][i] or "–"),
+             *(percent(found["wrong"][how][i]) for how in ways)]
+            for scene, found in part.items() for i, height in enumerate(found["values"])]
+    return table(["scene, height of the lamp", "shadow pixels", *(how.removeprefix("own ") for how in ways)], rows)
+
+
+def auto_table(data: Kept) -> str:
+    """Cost and wrong pixels of auto beside the methods that compete with it, and what it needed."""
+    orders = reading.whole_part(data).get("orders") or {}
+    if not orders:
+        return NOT_YET
+    rows = []
+    for scene, needed in orders.items():
+        cells = []
+        for method in AUTO_BESIDE:
+            wrong = reading.mask_metric(reading.quality(data, scene, method), "exact", "wrong")
+            cost = 1.0 if method == "none" else reading.median(reading.times_none(reading.cost(data, scene, method)))
+            cells.append("–" if wrong is None or cost is None else f"{wrong:.3g} %, {cost:.2f}×")
+        rows.append([scene, *cells, ", ".join(f"{name} {part:.1f} %" for name, part in needed.items())])
+    return table(["wrong pixels, cost over `none`", *(f"`{m}`" for m in AUTO_BESIDE), "what `auto` needed"], rows)
 
 
 def parity_text(data: Kept) -> str:
@@ -131,20 +185,34 @@ def cost_table(data: Kept, methods: Sequence[str]) -> str:
 
 
 def claims_table(data: Kept) -> str:
-    rows = [[f"{claim['sentence']} ({claim['source']})", claim["verdict"]] for claim in data["claims"]]
+    rows = [[f"{claim['sentence']} ({claim['source']})", claim["verdict"]] for claim in data["claims"]
+            if claim["who"] != bounds.WHO]
     return table(["claim", "verdict"], rows)
+
+
+def bounds_table(data: Kept) -> str:
+    """What kage demands of itself, case by case."""
+    rows = [[f"{claim['sentence']} {case['case']}", case["detail"], case["verdict"]]
+            for claim in data["claims"] if claim["who"] == bounds.WHO for case in claim["cases"]]
+    return table(["bound", "figure", "verdict"], rows) if rows else NOT_YET
 
 
 # Where they are -----------------------------------------------------------------------------------
 
 REGIONS: dict[str, dict[str, Callable[[Kept], str]]] = {
     "README.md": {
+        "whole": lambda data: whole_table(data, WHOLE_VARIANTS),
+        "bounds": bounds_table,
         "quality": lambda data: wrong_table(data, README_METHODS),
         "parity": parity_text,
         "cost": lambda data: cost_table(data, README_METHODS),
         "claims": claims_table,
     },
-    "docs/method.md": {"quality": lambda data: wrong_table(data, DETAILS)},
+    "docs/method.md": {
+        "quality": lambda data: wrong_table(data, DETAILS),
+        "auto": auto_table,
+        "own": own_table,
+    },
     "docs/design.md": {"cost": lambda data: cost_table(data, METHODS)},
 }
 
@@ -194,7 +262,8 @@ def disagreements(data: Kept) -> list[str]:
     """The generated files that are not what the result says."""
     found = [name for name, text in files(data).items()
              if not (TOP / name).exists() or (TOP / name).read_text(encoding="utf-8") != text]
-    return found + [f"docs/{sheet}" for sheet in SHEETS if pixels_digest(TOP / "docs" / sheet) != data["sheets"][sheet]]
+    return found + [f"docs/{sheet}" for sheet, digest in data["sheets"].items()
+                    if pixels_digest(TOP / "docs" / sheet) != digest]
 
 
 def write(path: Path, content: bytes) -> None:

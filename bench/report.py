@@ -4,6 +4,9 @@
     report.md       answer, tables and claims
     cost.csv        a line for each scene and method, and for each other program
     quality.csv     a line for each scene and method
+    whole.csv       a line for each scene and variant
+    series.csv      a line for each scene, variant, and height of the lamp or slope of the bumps
+    own.csv         a line for each scene, height of the lamp, and way to find the own shadow
     sweeps.csv      a line for each sweep, cell and method
     slopes.csv      a line for each scene, method and amplitude
 
@@ -19,7 +22,7 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
-from bench import data, tables
+from bench import data, tables, whole_tables
 from bench.data import Report
 from bench.tables import Cell, Table
 
@@ -50,6 +53,28 @@ def quality_rows(report: Report) -> Iterator[Row]:
     for scene, methods in data.qualities(report).items():
         for method, values in methods.items():
             yield {"scene": scene, "method": method} | flat(values)
+
+
+def whole_rows(report: Report) -> Iterator[Row]:
+    for scene, variants in data.wholes(report).items():
+        for variant, values in variants.items():
+            yield {"scene": scene, "variant": variant} | flat(values)
+
+
+def series_rows(report: Report) -> Iterator[Row]:
+    part = data.whole_part(report)
+    for over, found in (("light", part.get("lamps") or {}), ("slope", part.get("slopes") or {})):
+        for scene, series in found.items():
+            for variant, shares in series["off"].items():
+                for value, share in zip(series["values"], shares, strict=True):
+                    yield {"scene": scene, "over": over, "value": value, "variant": variant, "off": share}
+
+
+def own_rows(report: Report) -> Iterator[Row]:
+    for scene, found in (data.whole_part(report).get("own") or {}).items():
+        for how, shares in found["wrong"].items():
+            for height, pixels, share in zip(found["values"], found["shadow"], shares, strict=True):
+                yield {"scene": scene, "light": height, "shadow_pixels": pixels, "how": how, "wrong": share}
 
 
 def sweep_rows(report: Report) -> Iterator[Row]:
@@ -116,6 +141,32 @@ def md_claims(report: Report) -> Iterator[str]:
                         for case in claim["cases"])
 
 
+def md_whole(report: Report) -> Iterator[str]:
+    """Whole pictures, own shadows, and auto."""
+    if data.wholes(report):
+        yield "## The whole picture"
+        yield md_table(whole_tables.whole_table(report))
+    for scene in data.wholes(report):
+        table = whole_tables.whole_scene_table(report, scene)
+        yield f"### {md_escape(table.title)}"
+        yield md_table(table)
+        for table in whole_tables.series_tables(report, scene):
+            yield f"### {md_escape(table.title)}: {scene}"
+            yield md_table(table)
+    if own := whole_tables.own_table(report):
+        yield f"## {md_escape(own.title)}"
+        yield md_table(own)
+    if "auto" in report["methods"]:
+        yield "## What auto costs and needs"
+        for scene in report["scenes"]:
+            table = whole_tables.pareto_table(report, scene)
+            yield f"### {md_escape(table.title)}"
+            yield md_table(table)
+    if orders := whole_tables.order_table(report):
+        yield f"### {md_escape(orders.title)}"
+        yield md_table(orders)
+
+
 def md_parts(report: Report) -> Iterator[str]:
     yield "# Shadows on bump-mapped surfaces: what each method costs, and how wrong it is"
     if report.get("incomplete"):
@@ -127,6 +178,7 @@ def md_parts(report: Report) -> Iterator[str]:
     yield md_list([f"{scene}: {tables.scene_title(report, scene)}, against {tables.truth_name(report, scene)}"
                    for scene in report["scenes"]])
     yield md_table(tables.main_table(report))
+    yield from md_whole(report)
     for sweep in report.get("sweeps") or []:
         yield f"## {md_escape(sweep['title'])}: {sweep['scene']}"
         yield md_escape(sweep["about"])
@@ -180,6 +232,9 @@ def write(report: Report, folder: Path) -> list[str]:
     texts = {
         "cost.csv": csv_text(cost_rows(report)),
         "quality.csv": csv_text(quality_rows(report)),
+        "whole.csv": csv_text(whole_rows(report)),
+        "series.csv": csv_text(series_rows(report)),
+        "own.csv": csv_text(own_rows(report)),
         "sweeps.csv": csv_text(sweep_rows(report)),
         "slopes.csv": csv_text(slope_rows(report)),
         "report.md": "\n\n".join(part for part in md_parts(report) if part) + "\n",

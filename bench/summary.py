@@ -9,17 +9,18 @@ import importlib.metadata
 import os
 import platform
 import shutil
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from datetime import UTC, datetime
-from typing import Any
+from typing import Any, cast
 
-from bench import cost, images, programs, quality, stats, sweep, tables
+from bench import cost, images, programs, quality, stats, sweep, tables, whole, whole_tables
 from bench.data import (
     Circumstances,
     Claim,
     Cost,
     CostPart,
     MethodPicture,
+    OwnShadows,
     Parity,
     Peer,
     Pictures,
@@ -29,13 +30,16 @@ from bench.data import (
     Report,
     SceneCosts,
     ScenePictures,
+    Series,
     Shares,
     Slopes,
     Sweep,
+    Whole,
+    WholePart,
     added_cost,
 )
 from bench.data import cost as cost_of
-from bench.plan import TITLES, Bench
+from bench.plan import OWN, TITLES, Bench
 from bench.runner import Job
 from bench.stats import Interval
 from bench.store import Store
@@ -188,8 +192,11 @@ def limit_peers(bench: Bench, results: Results) -> list[Peer]:
                           [t["orders"][order] for t in fused], [], None))
     for name in cost.EMBREE:
         times = results.rounds("time cube", name, count=bench.level.rounds)
-        found.append(peer(name, "cube", "bench/limits/embree_loop.c", note, [t["ns"] for t in times],
-                          [t["build_s"] for t in times], results.get("memory cube", name)))
+        one = peer(name, "cube", "bench/limits/embree_loop.c", note, [t["ns"] for t in times],
+                   [t["build_s"] for t in times], results.get("memory cube", name))
+        own = [t["ns"]["render"] for t in results.rounds("time cube displaced", count=bench.level.rounds)]
+        one["times"] = ratios([t["ns"] for t in times], {"displaced": own})
+        found.append(one)
     return [p for p in found if p["ns"]]
 
 
@@ -198,7 +205,7 @@ def costs(bench: Bench, results: Results) -> CostPart:
     noise: dict[str, float | None] = {}
     for scene in bench.scenes:
         base = results.rounds("time", scene, "none", count=bench.level.rounds)
-        scenes[scene] = {"methods": {m: kage_cost(bench, results, scene, m, base) for m in bench.level.methods}}
+        scenes[scene] = {"methods": {m: kage_cost(bench, results, scene, m, base) for m in bench.level.timed}}
         noise[scene] = stats.noise([t["ns"]["render"] for t in base]) if base else None
     return {"size": list(bench.level.cost_size), "scenes": scenes, "noise": noise,
             "peers": povray_peers(bench, results) + limit_peers(bench, results)}
@@ -243,6 +250,8 @@ def why_left_out(bench: Bench, results: Results) -> dict[str, str]:
     """By the name of a job that was done in part."""
     found = {f"quality {scene} {method}": results.get("quality", scene, method) or {}
              for scene in bench.scenes for method in bench.level.methods}
+    found |= {f"whole {scene} {variant}": results.get("whole", scene, variant) or {}
+              for scene in bench.scenes for variant in bench.level.variants}
     return {name: str(value["why"]) for name, value in found.items() if "why" in value}
 
 
@@ -254,18 +263,61 @@ def scene_pictures(bench: Bench, scene: str) -> ScenePictures:
         path = bench.picture(scene, name)
         return str(path.relative_to(bench.out)) if path.exists() else None
 
-    methods: dict[str, MethodPicture] = {}
-    for method in bench.level.methods:
-        if (file := relative(quality.slug(method))) is not None:
-            methods[method] = {"file": file, "wrong": relative(f"{quality.slug(method)}.wrong")}
+    def both(name: str, wrong: str) -> MethodPicture | None:
+        file = relative(name)
+        return None if file is None else {"file": file, "wrong": relative(wrong)}
+
+    methods = {m: both(quality.slug(m), f"{quality.slug(m)}.wrong") for m in bench.level.methods}
+    variants = {v: both(*whole.file_names(v)) for v in ("displaced", *bench.level.variants)}
     shown: list[ReferencePicture] = [{"name": name, "file": file} for kind, name in REFERENCES.items()
                                      if (file := relative(f"povray-{kind}")) is not None]
-    return {"methods": methods, "references": shown}
+    return {"methods": {m: picture for m, picture in methods.items() if picture},
+            "variants": {v: picture for v, picture in variants.items() if picture}, "references": shown,
+            "orders": relative(whole.ORDERS)}
 
 
 def pictures(bench: Bench) -> Pictures:
     scenes = {scene: scene_pictures(bench, scene) for scene in bench.scenes}
     return {"size": list(quality.mask_size(bench)), "scenes": scenes}
+
+
+# Whole pictures -----------------------------------------------------------------------------------
+
+
+def series(bench: Bench, values: Sequence[float], found: Sequence[Data | None]) -> Series:
+    """`found` has a value of whole.measure_setting for each of the values."""
+    return {"values": list(values),
+            "off": {v: [one["off"].get(v) if one else None for one in found] for v in bench.level.variants}}
+
+
+def over_settings(bench: Bench, results: Results, scene: str, settings: Mapping[Any, whole.Setting]) -> Series:
+    return series(bench, list(settings), [results.get("whole", scene, one.name) for one in settings.values()])
+
+
+def own_shadows(results: Results, scene: str) -> OwnShadows:
+    found = [results.get("own", scene, height) for height in whole.HEIGHTS]
+    wrong: dict[str, list[float | None]] = {
+        how: [100 * one["wrong"][how] / one["shadow"] if one and one["shadow"] >= sweep.LEAST_SHADOW else None
+              for one in found] for how in OWN}
+    return {"values": list(whole.HEIGHTS), "shadow": [one["shadow"] if one else None for one in found], "wrong": wrong}
+
+
+def whole_entry(value: Data) -> Whole:
+    found = {key: value[key] for key in value if key != "why"}
+    return cast(Whole, found)
+
+
+def whole_of(bench: Bench, results: Results) -> WholePart:
+    scenes = bench.scenes
+    values = {name: {v: results.get("whole", name, v) for v in bench.level.variants} for name in scenes}
+    orders = {name: value["orders"] for name in scenes if (value := results.get("orders", name))}
+    return {
+        "scenes": {name: {v: whole_entry(value) for v, value in found.items() if value}
+                   for name, found in values.items()},
+        "lamps": {name: over_settings(bench, results, name, whole.lamps(bench, s)) for name, s in scenes.items()},
+        "slopes": {name: over_settings(bench, results, name, whole.slopes(bench, s)) for name, s in scenes.items()},
+        "own": {name: own_shadows(results, name) for name in scenes}, "orders": orders,
+    }
 
 
 # Sweeps and slopes --------------------------------------------------------------------------------
@@ -337,12 +389,38 @@ def answer(data: Report) -> list[str]:
         lines.append("Orders: of 0, 1, 2 and 2+ these have the fewest wrong pixels: "
                      + ", ".join(f"{m} on {scene}" for scene, m in best.items())
                      + ". On steep samples a higher order is no better, but a few steps of march are.")
-    lines.append(rule(data["sweeps"]))
+    lines += [*auto_line(data), *relief_line(data), rule(data["sweeps"])]
     times = displaced_times(data)
     lines.append("Direct intersection: to render the displaced surface takes "
                  + ", ".join(f"{many:.0f} times as long as none on {scene}" for scene, many in times.items()) + "."
                  if times else "Direct intersection: not measured.")
     return lines
+
+
+def span(values: Iterable[float | None], form: str = ".2g") -> str | None:
+    """From the least to the largest of those that are known."""
+    known = [value for value in values if value is not None]
+    if not known:
+        return None
+    low, high = (f"{value:{form}}" for value in (min(known), max(known)))
+    return low if low == high else f"{low} to {high}"
+
+
+def auto_line(data: Report) -> list[str]:
+    wrong = span(whole_tables.exact_wrong(data, scene, "auto") for scene in data["scenes"])
+    times = span((whole_tables.cost_times(data, scene, "auto") for scene in data["scenes"]), ".2f")
+    if wrong is None or times is None:
+        return []
+    return [f"Good enough: auto leaves {wrong} % of the shadow's pixels wrong, at {times} times none's time."]
+
+
+def relief_line(data: Report) -> list[str]:
+    before, after = (span(whole_tables.off(data, scene, v) for scene in data["scenes"]) for v in ("none", "relief"))
+    times = span((whole_tables.cost_times(data, scene, "relief") for scene in data["scenes"]), ".1f")
+    if before is None or after is None or times is None:
+        return []
+    return [f"Whole picture: by bump mapping alone {before} % of the receiver's pixels differ from true displacement "
+            f"by more than 8/255, by `--relief` {after} %, at {times} times none's time; silhouettes apart."]
 
 
 def cost_line(data: Report) -> str:
@@ -392,11 +470,13 @@ def summarise(bench: Bench, store: Store, jobs: Sequence[Job], failed: dict[str,
         "schema": SCHEMA, "level": bench.level.name, "complete": not lines, "incomplete": lines,
         "notes": notes(cost_part["noise"]),
         "circumstances": circumstances(bench), "methods": list(bench.level.methods),
+        "variants": list(bench.level.variants),
         "scenes": {name: {"title": TITLES.get(name, name), "slope_median": f.slope_median, "slope_95": f.slope_95,
                           "receiver": f.receiver, "size": list(quality.mask_size(bench)),
                           "shadow_pixels": (results.get("quality", name, "none") or {}).get("mask_shadow")}
                    for name, f in bench.scenes.items()},
-        "cost": cost_part, "quality": quality_of(bench, results), "pictures": pictures(bench),
+        "cost": cost_part, "quality": quality_of(bench, results), "whole": whole_of(bench, results),
+        "pictures": pictures(bench),
         "sweeps": sweeps(bench, results, cost_part["scenes"]), "slopes": slopes(bench, results),
     }
     data["claims"] = judge(data)

@@ -29,11 +29,13 @@ ABOUT = {
     "2": "the paper's order 2: with the pure second derivatives",
     "2 bare": "order 2 without the guard that falls back to order 1",
     "2+": "order 2 with the cross term and the smooth surface's curvature (ours)",
+    "auto": "order 0, and a better one where its error is seen: more than a quarter of a pixel (ours)",
     "exact": "the true hit of the rough surface, for the shadow's origin alone (ours)",
     "displaced": "the true hit is also what is seen and shaded (ours)",
 }
 ABOUT_FAMILY = {
     "iter": "order 0 {n} times, the height looked up again each time (ours)",
+    "auto": "order 0, and a better one where its error is seen: more than {n} pixels (ours)",
     "march": "{n} steps through the slab between lowest and highest bump (ours)",
 }
 
@@ -360,9 +362,20 @@ def parity_table(report: Report) -> Table | None:
                  "The two programs share no code: where they agree, the reference can be trusted.")
 
 
+def variants(report: Report) -> list[str]:
+    return report.get("variants") or []
+
+
+def timed(report: Report, scene: str) -> dict[str, data.Cost]:
+    """The costs of the methods, then of the variants that are no methods."""
+    found = data.costs(report).get(scene, {})
+    return {name: found[name] for name in (*report["methods"], *variants(report)) if name in found}
+
+
 def cost_table(report: Report, scene: str) -> Table:
+    """Of all that was timed: the methods, then the variants."""
     rows = []
-    for method, entry in in_order(report, data.costs(report).get(scene, {})).items():
+    for method, entry in timed(report, scene).items():
         rows.append([
             head(method), interval(entry["ns"], fixed(1)), interval(entry["added"], added),
             Cell(fixed(0)(entry["instructions"])), Cell(added(entry["instructions_added"])),
@@ -378,8 +391,7 @@ def cost_table(report: Report, scene: str) -> Table:
 
 def stage_times(report: Report, scene: str) -> dict[str, dict[str, float]]:
     """By method and stage, of the methods whose stages were timed, in the report's order."""
-    methods = in_order(report, data.costs(report).get(scene, {}))
-    return {method: entry["stages"] for method, entry in methods.items() if entry["stages"]}
+    return {method: entry["stages"] for method, entry in timed(report, scene).items() if entry["stages"]}
 
 
 def stages(report: Report, scene: str) -> list[str]:
@@ -426,6 +438,10 @@ def command_table(report: Report, scene: str) -> Table:
         for what, command in (("picture", picture and picture["command"]), ("time", time and time["command"])):
             if command:
                 rows.append([head(method), Cell(what), Cell(command)])
+    for variant in variants(report):
+        whole = data.whole(report, scene, variant)
+        if whole and (command := whole.get("command")):
+            rows.append([head(variant), Cell("whole picture"), Cell(command)])
     columns = [Column("method", words=True), Column("for", words=True), Column("command", words=True)]
     return Table(f"{scene}: commands", columns, rows)
 

@@ -95,6 +95,46 @@ static inline bs_view bs_view_of(bs_vec3 s, bs_vec3 n, bs_vec3 Qu, bs_vec3 Qw)
     return v;
 }
 
+/* A place (u,w) of the surface. */
+typedef struct bs_place {
+    bs_real u, w;
+} bs_place;
+
+/* The place to shade (ours), instead of the smooth hit (u0,w0): below r + s (t_hit + tau), where the shadow ray starts.
+ *     (u,w) = (u0,w0) + (a,b) tau
+ * Evaluate Q, P and n' there. Exact on a plane. On a curved surface take a step more: evaluate Q, Qu and Qw there, and
+ * add the a and b of bs_view_of(r + s (t_hit + tau) - Q, ...). */
+static inline bs_place bs_place_of(bs_view v, bs_real u0, bs_real w0, bs_real tau)
+{
+    bs_place p;
+    p.u = u0 + v.a * tau;
+    p.w = w0 + v.b * tau;
+    return p;
+}
+
+/* The partials of the offset surface Q + h n/|n|, h constant (ours). With these in place of Qu and Qw, and P for h,
+ * bs_perturbed_normal is the normal of the rough surface itself; with Qu and Qw it leaves out the smooth surface's
+ * curvature. Nothing to do on a plane. */
+typedef struct bs_offset {
+    bs_vec3 Qu, Qw;
+} bs_offset;
+
+static inline bs_offset bs_offset_of(bs_vec3 n, bs_vec3 Qu, bs_vec3 Qw, bs_vec3 Quu, bs_vec3 Quw, bs_vec3 Qww,
+                                     bs_real h)
+{
+    bs_vec3 a = bs_cross(Quu, Qw), b = bs_cross(Qu, Quw), c = bs_cross(Quw, Qw), d = bs_cross(Qu, Qww);
+    bs_vec3 nu = {a.x + b.x, a.y + b.y, a.z + b.z}, nw = {c.x + d.x, c.y + d.y, c.z + d.z}; /* the partials of n */
+    bs_real i2 = 1 / bs_dot(n, n), k = h * BS_SQRT(i2), pu = bs_dot(nu, n) * i2, pw = bs_dot(nw, n) * i2;
+    bs_offset o;
+    o.Qu.x = Qu.x + k * (nu.x - pu * n.x);
+    o.Qu.y = Qu.y + k * (nu.y - pu * n.y);
+    o.Qu.z = Qu.z + k * (nu.z - pu * n.z);
+    o.Qw.x = Qw.x + k * (nw.x - pw * n.x);
+    o.Qw.y = Qw.y + k * (nw.y - pw * n.y);
+    o.Qw.z = Qw.z + k * (nw.z - pw * n.z);
+    return o;
+}
+
 /* The smooth surface's curvature along the ray, L a^2 + 2 M a b + N b^2 with the second fundamental form
  * L = Quu.n/|n|, M = Quw.n/|n|, N = Qww.n/|n|. (Ours: the paper leaves it out, section 6.) */
 static inline bs_real bs_curvature(bs_view v, bs_vec3 n, bs_vec3 Quu, bs_vec3 Quw, bs_vec3 Qww)
@@ -255,6 +295,138 @@ static inline bs_march bs_march_step(bs_march m, bs_real tau, bs_real gap, bs_vi
     m.gap = m.found ? m.gap : above;
     m.found = m.found | hit;
     return m;
+}
+
+/* ---- the bumps' own shadows ----
+ *
+ * N. Max, "Shadows for bump-mapped surfaces", 1986 (the paper's case 1); the march is ours. Is a
+ * place of the rough surface, X = Q + P n/|n| over the (u,w) that is shaded, in the shadow of the bumps around it?
+ * With d = light - X, so that the light is at t = 1, the height of X + d t over the smooth surface is
+ *     P + t (d.n/|n|) - 1/2 (L a^2 + 2 M a b + N b^2) t^2,
+ * and P's own there is P(u + a t, w + b t), with (a,b) of bs_view_of(d, n, Qu, Qw). The march looks P up on the way,
+ * until it leaves the slab:
+ *
+ *     bs_view d = bs_view_of(light - X, n, Qu, Qw);
+ *     bs_way y = bs_way_of(s.n < 0 ? 1 : -1, d, bs_curvature(d, n, Quu, Quw, Qww), P, Pmin, Pmax);
+ *     int dark = y.side * bs_dot(np, light - X) <= 0;
+ *     for (int i = 1; i <= N; i++) {
+ *         bs_real t = bs_way_step(y.end, i, N);
+ *         dark |= bs_way_below(y, t, height(u + y.d.a * t, w + y.d.b * t));
+ *     }
+ *
+ * It starts on the rough surface itself, and needs no epsilon: it compares the way's rise since X with P's, and both
+ * are 0 at t = 0. Which side the way leaves to is known from n'.
+ */
+typedef struct bs_way {
+    bs_real side;      /* of the viewer, 1: the front, -1: the back. What follows is as seen from that side: */
+    bs_view d;         /* to the light; d.sn > 0: the light is above the tangent plane */
+    bs_real curvature; /* along d */
+    bs_real P;         /* at X, from the front */
+    bs_real end;       /* t at which the way leaves the slab, at most 1 */
+} bs_way;
+
+/* The t at which a way has risen by D >= 0, or is highest, where the surface rises more and it never gets there. At
+ * most 1, the light. */
+static inline bs_real bs_way_to(bs_view d, bs_real curvature, bs_real D)
+{
+    bs_real k = (bs_real)-0.5 * curvature, q = d.sn * d.sn + 4 * k * D, root = BS_SQRT(q > 0 ? q : 0);
+    bs_real rising = q >= 0 ? 2 * D / (d.sn + root) : d.sn / curvature; /* the first root of k t^2 + sn t = D */
+    bs_real dipping = k > 0 ? (root - d.sn) / (2 * k) : 1;
+    bs_real t = d.sn > 0 ? rising : dipping;
+    return t < 1 ? t : 1;
+}
+
+static inline bs_way bs_way_of(bs_real side, bs_view d, bs_real curvature, bs_real P, bs_real Pmin, bs_real Pmax)
+{
+    bs_way y;
+    y.side = side;
+    y.d = d;
+    y.d.sn = side * d.sn;
+    y.curvature = side * curvature;
+    y.P = P;
+    y.end = bs_way_to(y.d, y.curvature, side > 0 ? Pmax - P : P - Pmin);
+    return y;
+}
+
+/* On a curved surface a straight way is a curve in (u,w), to second order (u + a t + A t^2, w + b t + B t^2): Q + h
+ * n/|n| does not accelerate, so what the partials of Q and of n/|n| add along (a,b) is made up for. a and b are best
+ * those of bs_view_of at X's own height, with bs_offset_of's Qu and Qw. On a plane A = B = 0. */
+typedef struct bs_turn {
+    bs_real A, B;
+} bs_turn;
+
+static inline bs_turn bs_turn_of(bs_view d, bs_vec3 n, bs_vec3 Qu, bs_vec3 Qw, bs_vec3 Quu, bs_vec3 Quw, bs_vec3 Qww)
+{
+    bs_offset o = bs_offset_of(n, Qu, Qw, Quu, Quw, Qww, 1); /* less Qu and Qw: the partials of n/|n| */
+    bs_real aa = d.a * d.a, ab = 2 * d.a * d.b, bb = d.b * d.b, ua = 2 * d.sn * d.a, wb = 2 * d.sn * d.b;
+    bs_vec3 x;
+    x.x = Quu.x * aa + Quw.x * ab + Qww.x * bb + (o.Qu.x - Qu.x) * ua + (o.Qw.x - Qw.x) * wb;
+    x.y = Quu.y * aa + Quw.y * ab + Qww.y * bb + (o.Qu.y - Qu.y) * ua + (o.Qw.y - Qw.y) * wb;
+    x.z = Quu.z * aa + Quw.z * ab + Qww.z * bb + (o.Qu.z - Qu.z) * ua + (o.Qw.z - Qw.z) * wb;
+    bs_view v = bs_view_of(x, n, Qu, Qw);
+    bs_turn r;
+    r.A = (bs_real)-0.5 * v.a;
+    r.B = (bs_real)-0.5 * v.b;
+    return r;
+}
+
+/* The place of step i of 1..N: near X they are denser, as there P is nearest to the way. */
+static inline bs_real bs_way_step(bs_real end, int i, int N)
+{
+    bs_real x = (bs_real)i / (bs_real)N;
+    return end * x * x;
+}
+
+/* Whether the way is below P at t. */
+static inline int bs_way_below(bs_way y, bs_real t, bs_real P)
+{
+    return bs_gap(y.d, y.curvature, t, y.side * (P - y.P)) < 0;
+}
+
+/* Max's horizon map. For K directions in (u,w), bearing k of which is 4 k/K, a table holds for each place the horizon:
+ * the most that P rises from there, per unit of the way. Directions and ways are measured in samples, by their sum:
+ * with ku and kw samples per u and per w,
+ *     x = ku a, y = kw b, per unit of |x| + |y|,
+ * so that a bearing needs no angle, a map on a sphere needs no scene units, and between two directions next to each
+ * other a slope that is the same all around is interpolated exactly. bearing: 0 along +u, 1 along +w, 2 and 3 against
+ * them, less than 4. rise: of the way to the light. The light is seen where its rise is above the horizon. */
+typedef struct bs_bearing {
+    bs_real bearing, rise;
+} bs_bearing;
+
+static inline bs_bearing bs_bearing_of(bs_view d, bs_real ku, bs_real kw)
+{
+    bs_real x = d.a * ku, y = d.b * kw, way = BS_ABS(x) + BS_ABS(y) + (bs_real)1e-20; /* straight up: any bearing */
+    bs_real q = y / way, right = y < 0 ? 4 + q : q;
+    bs_bearing r;
+    r.bearing = x < 0 ? 2 - q : right;
+    r.bearing = r.bearing < 4 ? r.bearing : 0; /* rounding */
+    r.rise = d.sn / way;
+    return r;
+}
+
+/* Between the horizons of directions k and k + 1, where K bearing/4 = k + fraction; bilinear over (u,w) before. */
+static inline bs_real bs_horizon(bs_real at_k, bs_real at_next, bs_real fraction)
+{
+    return at_k + (at_next - at_k) * fraction;
+}
+
+/* The share of an area light above the horizon, 0..1 (ours): `above` is the rise minus the horizon in the light's
+ * middle, and `u` and `w` what it changes by from there to the edge, along the light's two sides. It is the part of the
+ * square -1..1 where above + u x + w y > 0; the larger of |u| and |w| counts as at least `least` > 0. */
+static inline bs_real bs_mean_above(bs_real y, bs_real e) /* the mean of max(y + e q, 0) over q in -1..1 */
+{
+    bs_real rest = y > e ? y - e : 0, part = (y < e ? y : e) + e, in = part > 0 ? part : 0;
+    return rest + in * in / (4 * e);
+}
+
+static inline bs_real bs_horizon_share(bs_real above, bs_real u, bs_real w, bs_real least)
+{
+    bs_real U = BS_ABS(u), W = BS_ABS(w), large = U > W ? U : W, small = U > W ? W : U;
+    bs_real by = large > least ? large : least, x = above / by, e = small / by; /* where x + p + e q > 0 */
+    bs_real X = x < 3 ? x : 3, E = e > (bs_real)1e-3 ? e : (bs_real)1e-3;
+    bs_real share = (bs_mean_above(X + 1, E) - bs_mean_above(X - 1, E)) / 2;
+    return share < 1 ? share : 1;
 }
 
 #endif

@@ -165,6 +165,8 @@ typedef struct kage_scene_info {
     int aa;              /* aa x aa samples a pixel */
     double aa_threshold; /* only where neighbours differ by more than this; below 0: everywhere */
     const char *method;
+    const char *bump_shadow;
+    int shifted;                       /* render.shade: shifted */
     int guard, displaced, self_shadow; /* render.guard, render.surface: displaced, render.self_shadow */
     int depth;                         /* rays in a row, with the camera's; 0: no secondary rays */
     int light_count, object_count;
@@ -188,9 +190,12 @@ KAGE_API int kage_scene_has_layer(const kage_scene *scene, const char *word);
 typedef enum kage_choice { KAGE_AS_SCENE, KAGE_YES, KAGE_NO } kage_choice;
 
 typedef struct kage_render_options {
-    const char *method;      /* where shadow rays start: none 0 1 2 2+ iter:K march:N exact; NULL: as the scene says */
-    kage_choice guard;       /* keep to the slab between the lowest and highest P */
-    kage_choice displaced;   /* yes: bumped objects are truly displaced surfaces; no: bump mapping */
+    const char *method;  /* where shadow rays start: none 0 1 2 2+ iter:K march:N exact auto[:E]; NULL: as the scene */
+    kage_choice shifted; /* yes: shade at r + s t0; no: at the smooth hit */
+    const char
+        *bump_shadow;      /* the bumps' shadows on their own surface: none march:N horizon exact; NULL: as the scene */
+    kage_choice guard;     /* keep to the slab between the lowest and highest P */
+    kage_choice displaced; /* yes: bumped objects are truly displaced surfaces; no: bump mapping */
     kage_choice self_shadow; /* bumped objects cast shadows */
     int width, height;       /* in pixels, 1 to KAGE_MAX_SIDE; both 0: as the scene says */
     int crop[4];             /* x0 y0 x1 y1: only pixels x0 <= x < x1, y0 <= y < y1; all 0: the whole picture */
@@ -203,6 +208,10 @@ typedef struct kage_render_options {
     void *user;              /* for progress */
     void *reserved[8];
 } kage_render_options;
+
+/* The best picture for its cost: options.method, options.bump_shadow, and options.shifted = KAGE_YES. */
+#define KAGE_RELIEF_METHOD "march:8"
+#define KAGE_RELIEF_BUMP_SHADOW "march:8"
 
 typedef struct kage_film kage_film;
 
@@ -371,6 +380,9 @@ KAGE_API kage_method kage_method_get(int index); /* NULL fields: no such method 
 
 /* Whether `name` is a method for kage_render_options.method, such as "2+" or "iter:4". */
 KAGE_API int kage_method_is_known(const char *name);
+
+/* The same for the shadows of bumps on their own surface: none march:N horizon exact. */
+KAGE_API int kage_bump_shadow_is_known(const char *name);
 
 #ifdef __cplusplus
 }

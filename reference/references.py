@@ -5,6 +5,8 @@ For a scene NAME this folder holds
     NAME.exr        two pictures in linear light, half floats: `self.R` and so on, where rough surfaces also cast
                     shadows, and `cast.R` and so on, where only the other objects do (the method's case)
     NAME.mask.png   what each pixel shows: one of the levels below
+    NAME.own.png    the same of the bumps' own shadows, without other objects: one picture below the other for each
+                    elevation of the lamp (reference/own.py)
     manifest.json   what these were made from, by which commands, and digests of their pixels
 
 The rest of the project reads them only through this file; reference/render.py makes them.
@@ -27,11 +29,12 @@ SCENES = ("cube", "sphere", "terrain", "torus", "waves")
 PICTURES = ("self", "cast")
 PICTURE_SIZE = (320, 240)
 MASK_SIZE = (640, 480)  # the scenes' own
+ELEVATIONS = (10, 20, 30, 45, 60)  # of the lamp in the masks of own shadows, degrees
 
 # The levels of a mask, chosen so that the PNG can be looked at.
 ELSEWHERE = 0  # another object, or the background
 AWAY = 85  # the receiver, where its rough surface is turned away from the light: no shadow can be seen there
-SHADOW = 170  # the receiver in the shadow of another object
+SHADOW = 170  # the receiver in the shadow of another object; in the masks of own shadows, of its own bumps
 LIT = 255  # the receiver in the light
 
 Manifest = dict[str, dict[str, object]]
@@ -56,6 +59,20 @@ class Reference:
         return sha.hexdigest()
 
 
+@dataclass(frozen=True)
+class OwnShadows:
+    """POV-Ray's masks of the bumps' own shadows, by the lamp's elevation in degrees, the lowest first."""
+
+    masks: dict[int, np.ndarray]
+
+    def stacked(self) -> np.ndarray:
+        return np.concatenate(list(self.masks.values()))
+
+    def digest(self) -> str:
+        stacked = self.stacked()
+        return hashlib.sha256(repr(stacked.shape).encode() + stacked.tobytes()).hexdigest()
+
+
 def read_exr(path: Path) -> dict[str, np.ndarray]:
     import OpenEXR  # here, as without it the bench still runs, and measures less
 
@@ -76,30 +93,66 @@ def stack(layers: dict[str, np.ndarray], prefix: str = "") -> np.ndarray:
     return np.stack([layers[prefix + c].astype(np.float32) for c in "RGB"], axis=-1)
 
 
-def files(name: str) -> tuple[str, str]:
-    return f"{name}.exr", f"{name}.mask.png"
+# Entries ------------------------------------------------------------------------------------------
+
+OWN = ".own"  # NAME.own is the entry of NAME's own shadows in the manifest, NAME that of all else
+
+
+def own_entry(name: str) -> str:
+    return name + OWN
+
+
+def files(entry: str) -> tuple[str, ...]:
+    return (f"{entry}.png",) if entry.endswith(OWN) else (f"{entry}.exr", f"{entry}.mask.png")
+
+
+def read_png(path: Path) -> np.ndarray:
+    from PIL import Image
+
+    with Image.open(path) as image:
+        return np.array(image)
 
 
 def load(name: str, folder: Path = FOLDER) -> Reference:
-    from PIL import Image
-
     exr, png = (folder / file for file in files(name))
     try:
         layers = read_exr(exr)
-        with Image.open(png) as image:
-            mask = np.array(image)
+        mask = read_png(png)
         pictures = {kind: stack(layers, f"{kind}.") for kind in PICTURES}
     except (OSError, RuntimeError, SyntaxError, KeyError) as error:
         raise ReferenceError(f"{exr} or {png.name} can't be read ({error}): `make reference` makes them") from error
     return Reference(pictures, mask)
 
 
-def save(name: str, reference: Reference, folder: Path) -> None:
+def load_own(name: str, folder: Path = FOLDER) -> OwnShadows:
+    (file,) = files(own_entry(name))
+    try:
+        stacked = read_png(folder / file)
+        masks = np.split(stacked, len(ELEVATIONS))
+    except (OSError, SyntaxError, ValueError) as error:
+        raise ReferenceError(f"{folder / file} can't be read ({error}): `make reference` makes it") from error
+    return OwnShadows(dict(zip(ELEVATIONS, masks, strict=True)))
+
+
+def digest(entry: str, folder: Path) -> str:
+    """Of the pixels in an entry's files."""
+    if entry.endswith(OWN):
+        return load_own(entry.removesuffix(OWN), folder).digest()
+    return load(entry, folder).digest()
+
+
+def save(name: str, reference: Reference | OwnShadows, folder: Path) -> None:
     from PIL import Image
 
+    if isinstance(reference, OwnShadows):
+        Image.fromarray(reference.stacked()).save(folder / files(own_entry(name))[0], optimize=True)
+        return
     exr, png = (folder / file for file in files(name))
     write_exr(exr, {f"{kind}.{c}": reference.pictures[kind][..., i] for kind in PICTURES for i, c in enumerate("RGB")})
     Image.fromarray(reference.mask).save(png, optimize=True)
+
+
+# The manifest -------------------------------------------------------------------------------------
 
 
 def scene_digest(scene: Path) -> str:
@@ -112,7 +165,7 @@ def scene_digest(scene: Path) -> str:
 
 
 def read_manifest(folder: Path = FOLDER) -> Manifest:
-    """By scene; empty where there is no manifest, or a broken one."""
+    """By entry; empty where there is no manifest, or a broken one."""
     try:
         content = json.loads((folder / "manifest.json").read_text())
     except (OSError, ValueError):
@@ -126,16 +179,16 @@ def write_manifest(manifest: Manifest, folder: Path) -> None:
     aside.replace(folder / "manifest.json")
 
 
-def why_stale(name: str, wanted: dict[str, object], folder: Path = FOLDER) -> str:
-    """Why a reference must be made again; empty where it is good. Its entry in the manifest must have all `wanted`."""
-    entry = read_manifest(folder).get(name)
-    if entry is None:
+def why_stale(entry: str, wanted: dict[str, object], folder: Path = FOLDER) -> str:
+    """Why an entry must be made again; empty where it is good. In the manifest it must have all `wanted`."""
+    found = read_manifest(folder).get(entry)
+    if found is None:
         return "not in the manifest"
     for key, value in wanted.items():
-        if entry.get(key) != value:
+        if found.get(key) != value:
             return f"another {key}"
     try:
-        digest = load(name, folder).digest()
+        pixels = digest(entry, folder)
     except ReferenceError:
         return "files missing or broken"
-    return "" if digest == entry.get("pixels") else "other pixels than the manifest's"
+    return "" if pixels == found.get("pixels") else "other pixels than the manifest's"

@@ -1,12 +1,18 @@
 """Make the references: each scene with its bumps truly displaced, as POV-Ray renders it.
 
-`kage pov` writes the scene for POV-Ray; POV-Ray renders it five times, without antialiasing, into out/reference/:
+`kage pov` writes the scene for POV-Ray; POV-Ray renders it, without antialiasing, into out/reference/. For the pictures
+and the mask of the shadow:
 
     self     every object casts shadows, rough surfaces too
     cast     rough surfaces cast none: the shadows of other objects, which the method is about
     cast, nocast, dark (larger), for the mask
              where `cast` and `nocast` (no object casts a shadow) differ is the shadow; where `nocast` and `dark` (no
              light) do not, the surface is turned away from the light; and in `dark` each object has its own flat colour
+
+For the masks of the bumps' own shadows, without other objects, by lamps of three colours (own.py):
+
+    own-1, own-2     low lamps and high ones, with the bumps' shadows
+    own-1-none, own-2-none, own-dark     without these, and without light: masks come of them as above
 
 A reference is good while its scene, its maps, what `kage pov` writes for it, the commands, the version of POV-Ray and
 its pixels are those of reference/manifest.json (pixels, not bytes: POV-Ray's files carry their date). The others are
@@ -28,7 +34,7 @@ import signal
 import subprocess
 import sys
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -36,9 +42,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from reference import references
+    from reference import own, references
 else:
-    import references  # this file is run by its path, so its folder is searched
+    import own  # this file is run by its path, so its folder is searched
+    import references
 
 FOLDER, TOP, ReferenceError = references.FOLDER, references.TOP, references.ReferenceError
 WORK = Path("out") / "reference"  # relative to TOP, where all commands run, so that they are the same everywhere
@@ -55,11 +62,26 @@ class Shot:
     options: tuple[str, ...]
 
 
-def shots(lights: Sequence[str], scale: int = 1) -> tuple[Shot, ...]:
+@dataclass(frozen=True)
+class Checked:
+    """What `kage check` says of a scene: its lights and where they are, and the objects without bumps."""
+
+    lights: dict[str, own.Point]
+    casters: list[str]
+
+
+def scaled(size: tuple[int, int], scale: int) -> tuple[int, int]:
+    return size[0] * scale, size[1] * scale
+
+
+def dark_sets(lights: Iterable[str]) -> dict[str, str]:
+    return {f"lights.{light}.color": "[0, 0, 0]" for light in lights}
+
+
+def shots(lights: Iterable[str], scale: int = 1) -> tuple[Shot, ...]:
     """`scale`: width and height, in those of the references in reference/."""
-    (width, height), (mask_width, mask_height) = references.PICTURE_SIZE, references.MASK_SIZE
-    picture, mask = (width * scale, height * scale), (mask_width * scale, mask_height * scale)
-    dark = tuple(word for light in lights for word in ("--set", f"lights.{light}.color=[0, 0, 0]"))
+    picture, mask = scaled(references.PICTURE_SIZE, scale), scaled(references.MASK_SIZE, scale)
+    dark = own.options(dark_sets(lights))
     return (
         Shot("self", picture, ()),
         Shot("cast", picture, ("--no-self-shadow",)),
@@ -67,6 +89,22 @@ def shots(lights: Sequence[str], scale: int = 1) -> tuple[Shot, ...]:
         Shot("mask-nocast", mask, ("--no-self-shadow", "--no-cast")),
         Shot("mask-dark", mask, ("--no-self-shadow", *dark)),
     )
+
+
+GROUPS = (references.ELEVATIONS[:3], references.ELEVATIONS[3:])  # what POV-Ray sees at once
+
+
+def own_shots(scene: Checked, scale: int = 1) -> tuple[Shot, ...]:
+    """For the masks of own shadows. They need a scene with one light."""
+    ((light, at),) = scene.lights.items()
+    size, alone = scaled(references.MASK_SIZE, scale), own.without_casters(scene.casters)
+    found = []
+    for number, group in enumerate(GROUPS, 1):
+        options = own.options(alone | own.coloured_lamps(light, at, group))
+        found.append(Shot(f"own-{number}", size, options))
+        found.append(Shot(f"own-{number}-none", size, ("--no-self-shadow", *options)))
+    dark = own.options(alone | dark_sets(scene.lights))
+    return (*found, Shot("own-dark", size, ("--no-self-shadow", *dark)))
 
 
 # The commands of kage and POV-Ray -------------------------------------------------------------------
@@ -86,8 +124,12 @@ def run(command: Sequence[str | Path]) -> str:
     return text
 
 
-def lights_of(kage: Path, scene: str) -> list[str]:
-    return re.findall(r"^light (\S+) at ", run([kage, "check", scene]), re.MULTILINE)
+def check(kage: Path, scene: str) -> Checked:
+    text = run([kage, "check", scene])
+    lights = re.findall(r"^light (\S+) at (\S+), (\S+), (\S+)$", text, re.MULTILINE)
+    objects = re.findall(r"^object (\S+): (.*)$", text, re.MULTILINE)
+    return Checked({name: (float(x), float(y), float(z)) for name, x, y, z in lights},
+                   [name for name, about in objects if ", bump by" not in about])
 
 
 def scene_path(name: str) -> str:
@@ -183,9 +225,23 @@ def make_mask(cast: np.ndarray, nocast: np.ndarray, dark: np.ndarray, colors: Se
     return mask
 
 
-def receiver_colors(kage: Path, name: str, lights: Sequence[str]) -> list[np.ndarray]:
+def make_own_masks(shown: np.ndarray, none: np.ndarray, dark: np.ndarray, colors: Sequence[np.ndarray],
+                   elevations: Sequence[int]) -> dict[int, np.ndarray]:
+    """As make_mask, from one channel of each picture for each lamp."""
+    seen = receiver(dark, colors)
+    masks = {}
+    for channel, elevation in enumerate(elevations):
+        here, without, unlit = (picture[..., channel] for picture in (shown, none, dark))
+        mask = np.where(here != without, references.SHADOW, references.LIT).astype(np.uint8)
+        mask[without == unlit] = references.AWAY
+        mask[~seen] = references.ELSEWHERE
+        masks[elevation] = mask
+    return masks
+
+
+def receiver_colors(kage: Path, name: str, lights: Iterable[str]) -> list[np.ndarray]:
     """The colours of bumped objects without light, from kage's own picture: one of its layers shows where they are."""
-    dark = [word for light in lights for word in ("--set", f"lights.{light}.color=[0, 0, 0]")]
+    dark = own.options(dark_sets(lights))
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "dark.exr"
         run([kage, "render", scene_path(name), "--shadow", "0", "--size", "64x48", *dark, "--quiet", "-o", path])
@@ -201,7 +257,7 @@ def receiver_colors(kage: Path, name: str, lights: Sequence[str]) -> list[np.nda
 # References -----------------------------------------------------------------------------------------
 
 
-def make(kage: Path, name: str, plan: Sequence[Shot], lights: Sequence[str]) -> references.Reference:
+def make(kage: Path, name: str, plan: Sequence[Shot], lights: Iterable[str]) -> references.Reference:
     pictures = {shot.name: shoot(kage, name, shot) for shot in plan}
     mask = make_mask(pictures["mask-cast"], pictures["mask-nocast"], pictures["mask-dark"],
                      receiver_colors(kage, name, lights))
@@ -210,23 +266,39 @@ def make(kage: Path, name: str, plan: Sequence[Shot], lights: Sequence[str]) -> 
     return references.Reference({kind: pictures[kind] for kind in references.PICTURES}, mask)
 
 
-def keep(name: str, reference: references.Reference, entry: dict[str, object], folder: Path) -> None:
-    """Put a reference and its entry in their place. Until the last rename its pixels are not the manifest's, so it is
-    stale."""
+def make_own(kage: Path, name: str, plan: Sequence[Shot], lights: Iterable[str]) -> references.OwnShadows:
+    pictures = {shot.name: shoot(kage, name, shot) for shot in plan}
+    colors = receiver_colors(kage, name, lights)
+    masks: dict[int, np.ndarray] = {}
+    for number, group in enumerate(GROUPS, 1):
+        masks |= make_own_masks(pictures[f"own-{number}"], pictures[f"own-{number}-none"], pictures["own-dark"], colors,
+                                group)
+    lowest = masks[min(masks)]
+    if not ((lowest == references.SHADOW).any() and (lowest == references.LIT).any()):
+        raise ReferenceError(f"{scene_path(name)}: POV-Ray's pictures show no shadow of the bumps by the lowest lamp, "
+                             "or nothing else")
+    return references.OwnShadows(masks)
+
+
+def keep(entry: str, reference: references.Reference | references.OwnShadows, made: dict[str, object],
+         folder: Path) -> None:
+    """Put an entry's files, and what they were made from, in their place. Until the last rename its pixels are not the
+    manifest's, so it is stale."""
     with tempfile.TemporaryDirectory(dir=folder, prefix=".new-") as aside:
-        references.save(name, reference, Path(aside))
-        for file in references.files(name):
+        references.save(entry.removesuffix(references.OWN), reference, Path(aside))
+        for file in references.files(entry):
             (Path(aside) / file).replace(folder / file)
-    digest = references.load(name, folder).digest()
+    digest = references.digest(entry, folder)
     manifest = references.read_manifest(folder)
-    manifest[name] = entry | {"pixels": digest}
+    manifest[entry] = made | {"pixels": digest}
     references.write_manifest(manifest, folder)
 
 
-def update(options: argparse.Namespace, name: str, version: str) -> bool:
-    """Make one reference if it is stale and --check is not given. Whether it is good now."""
-    lights = lights_of(options.kage, scene_path(name))
-    plan = shots(lights, options.scale)
+def update(options: argparse.Namespace, entry: str, version: str) -> bool:
+    """Make one entry if it is stale and --check is not given. Whether it is good now."""
+    name = entry.removesuffix(references.OWN)
+    scene = check(options.kage, scene_path(name))
+    plan = (shots(scene.lights, options.scale) if entry == name else own_shots(scene, options.scale))
     wanted: dict[str, object] = {
         "scene": references.scene_digest(TOP / scene_path(name)),
         "commands": commands(name, plan),
@@ -234,15 +306,15 @@ def update(options: argparse.Namespace, name: str, version: str) -> bool:
     }
     if version:
         wanted["povray"] = version
-    reason = "--all" if options.all else references.why_stale(name, wanted, options.folder)
+    reason = "--all" if options.all else references.why_stale(entry, wanted, options.folder)
     if not reason:
-        print(f"{name}: good")
+        print(f"{entry}: good")
         return True
-    print(f"{name}: stale ({reason})", flush=True)
+    print(f"{entry}: stale ({reason})", flush=True)
     if options.check:
         return False
-    keep(name, make(options.kage, name, plan, lights), wanted, options.folder)
-    print(f"{name}: made")
+    keep(entry, (make if entry == name else make_own)(options.kage, name, plan, scene.lights), wanted, options.folder)
+    print(f"{entry}: made")
     return True
 
 
@@ -256,11 +328,12 @@ def update_all(options: argparse.Namespace) -> int:
         print(f"{error}\nits version is not compared")
         version = ""
     bad = 0
-    for name in options.scenes or references.SCENES:
+    names = options.scenes or references.SCENES
+    for entry in (entry for name in names for entry in (name, references.own_entry(name))):
         try:
-            bad += not update(options, name, version)
+            bad += not update(options, entry, version)
         except ReferenceError as error:
-            print(f"render.py: {name}: {error}", file=sys.stderr)
+            print(f"render.py: {entry}: {error}", file=sys.stderr)
             bad += 1
     return 1 if bad else 0
 

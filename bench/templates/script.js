@@ -1,10 +1,10 @@
 "use strict";
 (() => {
   document.documentElement.classList.add("has-script");
-  const all = [...document.querySelectorAll("#sheets figure")];
+  const all = [...document.querySelectorAll("#sheets figure, #whole figure")];
 
   // Below each wrong picture a grey copy of its own picture.
-  for (const wrong of document.querySelectorAll("#sheets .wrong")) {
+  for (const wrong of document.querySelectorAll("#sheets .wrong, #whole .wrong")) {
     const base = wrong.parentElement.querySelector(".picture").cloneNode();
     base.className = "base";
     base.alt = "";

@@ -32,8 +32,9 @@ kage_status errors_give(errors *e, kage_status status, const watch *w, kage_erro
 /* End a call with one message. */
 kage_status error_give(kage_status status, kage_errors **to, const char *fmt, ...) KAGE_PRINTF(3, 4);
 
-/* A scene is read once for each pair of: smooth or displaced surface, method `exact` or not. */
-enum { READINGS = 4 };
+/* A scene is read once for each set of what it must build: true displacement for one use or another, horizon maps,
+ * bounds of P for the method auto. */
+enum { READINGS = 32 };
 
 struct kage_scene {
     scene *first;             /* as the caller asked for it */
@@ -45,8 +46,15 @@ struct kage_scene {
     int sets, threads;
 };
 
-/* The reading for a surface and a method, read now if needed; locks. It lives as long as k. NULL: errors in *e. */
-const scene *scene_reading(kage_scene *k, bool displaced, method m, errors *e);
+/* What decides which reading of a scene a render needs. */
+typedef struct reading {
+    bool displaced;
+    method shadow;
+    bump_shadow bump_shadow;
+} reading;
+
+/* The reading for these, read now if needed; locks. It lives as long as k. NULL: errors in *e. */
+const scene *scene_reading(kage_scene *k, reading r, errors *e);
 
 /* Fill in, and free, k->info. False: out of memory. */
 bool scene_note(kage_scene *k);

@@ -83,8 +83,11 @@ bool scene_note(kage_scene *k)
 {
     const scene *s = k->first;
     char *name = malloc(METHOD_NAME_SIZE);
+    char *own = malloc(BUMP_SHADOW_NAME_SIZE);
     if (name)
         method_name(s->shadow, name);
+    if (own)
+        bump_shadow_name(s->bump_shadow, own);
     k->info = (kage_scene_info){
         .path = s->path,
         .width = s->width,
@@ -92,6 +95,8 @@ bool scene_note(kage_scene *k)
         .aa = s->aa,
         .aa_threshold = s->aa_threshold,
         .method = name,
+        .bump_shadow = own,
+        .shifted = s->shifted,
         .guard = s->guard,
         .displaced = s->displaced,
         .self_shadow = s->self_shadow,
@@ -99,12 +104,13 @@ bool scene_note(kage_scene *k)
         .light_count = s->lights,
         .object_count = s->objects,
     };
-    return note_all(s, &k->info) && name;
+    return note_all(s, &k->info) && name && own;
 }
 
 void scene_forget(kage_scene *k)
 {
     free((void *)k->info.method);
+    free((void *)k->info.bump_shadow);
     free((void *)k->info.lights);
     free((void *)k->info.objects);
 }
@@ -114,6 +120,12 @@ const kage_scene_info *kage_scene_get_info(const kage_scene *k) { return &k->inf
 const char *kage_version(void) { return KAGE_VERSION; }
 
 const char *kage_precision(void) { return REAL_NAME; }
+
+int kage_bump_shadow_is_known(const char *name)
+{
+    bump_shadow b;
+    return bump_shadow_parse(name, &b);
+}
 
 int kage_method_count(void) { return method_help_count; }
 

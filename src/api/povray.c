@@ -12,7 +12,7 @@ kage_status kage_scene_write_povray(kage_scene *k, const char *path, const kage_
     pov_report r = {0};
     kage_status status = KAGE_BAD_INPUT;
     c_locale l = c_locale_begin();
-    const scene *s = scene_reading(k, displaced, k->first->shadow, &e);
+    const scene *s = scene_reading(k, (reading){displaced, k->first->shadow, k->first->bump_shadow}, &e);
     bool good = s && pov_possible(s, &e);
     if (good) {
         const pov_options how = {o.command ? o.command : "libkage", o.no_cast != 0};

@@ -72,7 +72,8 @@ static kage_probe_row row_of(const tracer *k, int id, workspace *v, const char *
 {
     trace_group(k, id, v);
     const hit_group *g = &v->g;
-    const int asked = k->scene->object[id].bump ? method_code(k->shadow) : -1;
+    const int code = k->shadow.kind == METHOD_AUTO ? g->order[0] : method_code(k->shadow); /* auto never falls back */
+    const int asked = k->scene->object[id].bump ? code : -1;
     kage_probe_row x = {.method = name,
                         .guard = k->guard,
                         .tau = (double)g->tau[0],

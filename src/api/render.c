@@ -24,10 +24,13 @@ static bool is_choice(kage_choice c) { return c == KAGE_AS_SCENE || c == KAGE_YE
 static bool options_are_good(const kage_render_options *o, errors *e)
 {
     method m;
+    bump_shadow b;
     bool good = true;
     if (o->method && !method_parse(o->method, &m))
         good = errors_add(e, "'%.60s' is no method, expected %s", o->method, method_expected);
-    if (!is_choice(o->guard) || !is_choice(o->displaced) || !is_choice(o->self_shadow))
+    if (o->bump_shadow && !bump_shadow_parse(o->bump_shadow, &b))
+        good = errors_add(e, "'%.60s' is no shadow of bumps, expected %s", o->bump_shadow, bump_shadow_expected);
+    if (!is_choice(o->guard) || !is_choice(o->displaced) || !is_choice(o->self_shadow) || !is_choice(o->shifted))
         good = errors_add(e, "no choice, expected KAGE_AS_SCENE, KAGE_YES or KAGE_NO");
     if ((o->width != 0 || o->height != 0) &&
         (o->width < 1 || o->height < 1 || o->width > KAGE_MAX_SIDE || o->height > KAGE_MAX_SIDE ||
@@ -73,16 +76,20 @@ static bool set_crop(const int crop[4], job *j, errors *e)
 static kage_status settle(kage_scene *k, const kage_render_options *o, job *j, errors *e)
 {
     const scene *first = k->first;
-    method m = first->shadow;
+    reading r = {chosen(o->displaced, first->displaced), first->shadow, first->bump_shadow};
     if (!options_are_good(o, e))
         return KAGE_BAD_OPTION;
     if (o->method)
-        method_parse(o->method, &m);
-    const scene *s = scene_reading(k, chosen(o->displaced, first->displaced), m, e);
+        method_parse(o->method, &r.shadow);
+    if (o->bump_shadow)
+        bump_shadow_parse(o->bump_shadow, &r.bump_shadow);
+    const scene *s = scene_reading(k, r, e);
     if (!s)
         return KAGE_BAD_INPUT;
     j->view = *s;
-    j->view.shadow = m;
+    j->view.shadow = r.shadow;
+    j->view.bump_shadow = r.bump_shadow;
+    j->view.shifted = chosen(o->shifted, s->shifted);
     j->view.guard = chosen(o->guard, s->guard);
     j->view.self_shadow = chosen(o->self_shadow, s->self_shadow);
     if (o->aa)
@@ -130,6 +137,11 @@ static char *sets_of(const kage_scene *k, const kage_render_options *o, const sc
     method_name(view->shadow, name);
     if (o->method)
         add_line(&text, "render.shadow=%s", name);
+    if (o->shifted)
+        add_line(&text, "render.shade=%s", view->shifted ? "shifted" : "smooth");
+    bump_shadow_name(view->bump_shadow, name);
+    if (o->bump_shadow)
+        add_line(&text, "render.bump_shadow=%s", name);
     if (o->displaced)
         add_line(&text, "render.surface=%s", view->displaced ? "displaced" : "smooth");
     if (o->guard)
@@ -195,6 +207,8 @@ static bool fill(kage_film *f, const job *j, const kage_render_options *o, watch
     const tracer k = {.scene = s,
                       .shadow = s->shadow,
                       .guard = s->guard,
+                      .shifted = s->shifted,
+                      .bump_shadow = s->bump_shadow,
                       .layers = j->layers,
                       .displaced = s->displaced,
                       .self_shadow = s->self_shadow};

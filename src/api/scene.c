@@ -4,7 +4,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-static int reading_index(bool displaced, method m) { return 2 * displaced + (m.kind == METHOD_EXACT); }
+static int reading_index(reading r)
+{
+    return r.displaced + 2 * (r.shadow.kind == METHOD_EXACT) + 4 * (r.bump_shadow.kind == BUMP_SHADOW_EXACT) +
+           8 * (r.bump_shadow.kind == BUMP_SHADOW_HORIZON) + 16 * (r.shadow.kind == METHOD_AUTO);
+}
 
 static char *copy(const char *text, bool *good)
 {
@@ -50,7 +54,7 @@ static kage_status load(scene_source *from, const kage_load_options *given, kage
     scene *s = k && keep(k, from->folder, &o) ? scene_read(from, &e) : NULL;
     if (s) {
         k->first = s;
-        k->reading[reading_index(s->displaced, s->shadow)] = s;
+        k->reading[reading_index((reading){s->displaced, s->shadow, s->bump_shadow})] = s;
     }
     const bool good = s && !w.cancelled && scene_note(k);
     c_locale_end(&l);
@@ -90,26 +94,29 @@ void kage_scene_free(kage_scene *k)
     free(k);
 }
 
-/* Read the scene's text again, with two more changes. */
-static scene *read_again(const kage_scene *k, bool displaced, method m, errors *e)
+/* Read the scene's text again, with more changes. */
+static scene *read_again(const kage_scene *k, reading r, errors *e)
 {
+    enum { MORE = 3 };
     char shadow[METHOD_NAME_SIZE + sizeof "render.shadow="] = "render.shadow=";
-    method_name(m, shadow + strlen(shadow));
-    const char **set = malloc(((size_t)k->sets + 2) * sizeof *set);
+    char own[BUMP_SHADOW_NAME_SIZE + sizeof "render.bump_shadow="] = "render.bump_shadow=";
+    method_name(r.shadow, shadow + strlen(shadow));
+    bump_shadow_name(r.bump_shadow, own + strlen(own));
+    const char *const more[MORE] = {r.displaced ? "render.surface=displaced" : "render.surface=smooth", shadow, own};
+    const char **set = malloc(((size_t)k->sets + MORE) * sizeof *set);
     if (!set) {
         errors_add(e, "out of memory");
         return NULL;
     }
     for (int i = 0; i < k->sets; i++)
         set[i] = k->set[i];
-    set[k->sets] = displaced ? "render.surface=displaced" : "render.surface=smooth";
-    set[k->sets + 1] = shadow;
+    memcpy(set + k->sets, more, sizeof more);
     const scene_source from = {
         .path = k->first->path,
         .text = k->first->source,
         .size = strlen(k->first->source),
         .folder = k->folder,
-        .sets = k->sets + 2,
+        .sets = k->sets + MORE,
         .set = set,
         .threads = k->threads,
         .model_reader = k->model_reader,
@@ -119,12 +126,12 @@ static scene *read_again(const kage_scene *k, bool displaced, method m, errors *
     return s;
 }
 
-const scene *scene_reading(kage_scene *k, bool displaced, method m, errors *e)
+const scene *scene_reading(kage_scene *k, reading r, errors *e)
 {
-    scene **at = &k->reading[reading_index(displaced, m)];
+    scene **at = &k->reading[reading_index(r)];
     pthread_mutex_lock(&k->lock);
     if (!*at)
-        *at = read_again(k, displaced, m, e);
+        *at = read_again(k, r, e);
     const scene *s = *at;
     pthread_mutex_unlock(&k->lock);
     return s;

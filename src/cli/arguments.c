@@ -61,7 +61,7 @@ static bool read_output(arguments *a, const char *name, const char *v)
     return true;
 }
 
-/* The methods' names: none, 0, 1 ... or exact. */
+/* The methods' names: none, 0, 1 ... or auto[:E]. */
 static void list_methods(char *text, size_t size)
 {
     const int n = kage_method_count();
@@ -87,6 +87,19 @@ static bool read_surface(arguments *a, const char *name, const char *v)
     return strcmp(v, "smooth") == 0 || strcmp(v, "displaced") == 0
                ? add_set(a, "render.surface=%s", v)
                : usage_error("%s %s: expected smooth or displaced", name, v);
+}
+
+static bool read_shade(arguments *a, const char *name, const char *v)
+{
+    return strcmp(v, "smooth") == 0 || strcmp(v, "shifted") == 0
+               ? add_set(a, "render.shade=%s", v)
+               : usage_error("%s %s: expected smooth or shifted", name, v);
+}
+
+static bool read_bump_shadow(arguments *a, const char *name, const char *v)
+{
+    return kage_bump_shadow_is_known(v) ? add_set(a, "render.bump_shadow=%s", v)
+                                        : usage_error("%s %s: expected none, march:N, horizon or exact", name, v);
 }
 
 static bool read_size(arguments *a, const char *name, const char *v)
@@ -161,30 +174,37 @@ typedef struct option {
     int commands; /* that have it */
     bool (*read)(arguments *a, const char *name,
                  const char *value); /* NULL: it has no value, but one of the next two */
-    const char *change;              /* of the scene; NULL: none */
+    const char *change[3];           /* of the scene; NULL: none */
     size_t flag;                     /* the offset of a bool in `arguments` */
 } option;
 
 enum { ALL = COMMAND_RENDER | COMMAND_CHECK | COMMAND_PIXEL | COMMAND_POV, PICTURES = COMMAND_RENDER | COMMAND_POV };
 
 static const option options[] = {
-    {"-o", PICTURES, read_output, NULL, 0},
-    {"--shadow", COMMAND_RENDER, read_shadow, NULL, 0},
-    {"--surface", PICTURES, read_surface, NULL, 0},
-    {"--size", ALL, read_size, NULL, 0},
-    {"--aa", COMMAND_RENDER, read_aa, NULL, 0},
-    {"--aa-threshold", COMMAND_RENDER, read_threshold, NULL, 0},
-    {"--crop", COMMAND_RENDER, read_crop, NULL, 0},
-    {"--set", ALL, read_set, NULL, 0},
-    {"--threads", COMMAND_RENDER, read_threads, NULL, 0},
-    {"--bits", COMMAND_RENDER, read_bits, NULL, 0},
-    {"--layers", COMMAND_RENDER, read_layers, NULL, 0},
-    {"--no-guard", COMMAND_RENDER, NULL, "render.guard=false", 0},
-    {"--no-self-shadow", PICTURES, NULL, "render.self_shadow=false", 0},
-    {"--no-cast", COMMAND_POV, NULL, NULL, offsetof(arguments, no_cast)},
-    {"--overwrite", COMMAND_RENDER, NULL, NULL, offsetof(arguments, overwrite)},
-    {"--stats", COMMAND_RENDER, NULL, NULL, offsetof(arguments, stats)},
-    {"--quiet", COMMAND_RENDER, NULL, NULL, offsetof(arguments, quiet)},
+    {"-o", PICTURES, read_output, {NULL}, 0},
+    {"--shadow", COMMAND_RENDER, read_shadow, {NULL}, 0},
+    {"--shade", COMMAND_RENDER, read_shade, {NULL}, 0},
+    {"--bump-shadow", COMMAND_RENDER, read_bump_shadow, {NULL}, 0},
+    {"--relief",
+     COMMAND_RENDER,
+     NULL,
+     {"render.shadow=" KAGE_RELIEF_METHOD, "render.shade=shifted", "render.bump_shadow=" KAGE_RELIEF_BUMP_SHADOW},
+     0},
+    {"--surface", PICTURES, read_surface, {NULL}, 0},
+    {"--size", ALL, read_size, {NULL}, 0},
+    {"--aa", COMMAND_RENDER, read_aa, {NULL}, 0},
+    {"--aa-threshold", COMMAND_RENDER, read_threshold, {NULL}, 0},
+    {"--crop", COMMAND_RENDER, read_crop, {NULL}, 0},
+    {"--set", ALL, read_set, {NULL}, 0},
+    {"--threads", COMMAND_RENDER, read_threads, {NULL}, 0},
+    {"--bits", COMMAND_RENDER, read_bits, {NULL}, 0},
+    {"--layers", COMMAND_RENDER, read_layers, {NULL}, 0},
+    {"--no-guard", COMMAND_RENDER, NULL, {"render.guard=false"}, 0},
+    {"--no-self-shadow", PICTURES, NULL, {"render.self_shadow=false"}, 0},
+    {"--no-cast", COMMAND_POV, NULL, {NULL}, offsetof(arguments, no_cast)},
+    {"--overwrite", COMMAND_RENDER, NULL, {NULL}, offsetof(arguments, overwrite)},
+    {"--stats", COMMAND_RENDER, NULL, {NULL}, offsetof(arguments, stats)},
+    {"--quiet", COMMAND_RENDER, NULL, {NULL}, offsetof(arguments, quiet)},
 };
 
 /* NULL: the command has no such option. */
@@ -207,8 +227,11 @@ static bool read_option(arguments *a, int argc, char **argv, int *k)
         return usage_error("%s: no option of 'kage %s'; see kage --help", arg, a->name);
     if (!o->read && equals)
         return usage_error("%s takes no value; see kage --help", arg);
-    if (o->change)
-        return add_set(a, "%s", o->change);
+    for (int c = 0; c < 3 && o->change[c]; c++)
+        if (!add_set(a, "%s", o->change[c]))
+            return false;
+    if (o->change[0])
+        return true;
     if (!o->read)
         return *(bool *)((char *)a + o->flag) = true;
     if (!equals && *k + 1 == argc)

@@ -89,6 +89,10 @@ static void print_survey(const kage_scene_info *s, const kage_survey *v)
     if (s->aa > 1 && s->aa_threshold >= 0)
         printf(" that differs from a neighbour by more than %g", s->aa_threshold);
     printf(", shadow %s%s", s->method, s->guard ? "" : ", no guard");
+    if (s->shifted)
+        printf(", shade shifted");
+    if (strcmp(s->bump_shadow, "none") != 0)
+        printf(", bump shadow %s", s->bump_shadow);
     if (s->depth)
         printf(", depth %d", s->depth);
     printf("\n");

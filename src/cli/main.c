@@ -22,7 +22,11 @@ static const char help[] =
     "  -o FILE              output file: .png (sRGB) or .exr (linear, with all layers); may be repeated.\n"
     "                       Without it: the scene's name with .png, in this folder. Never one of the scene's files\n"
     "  --overwrite          without -o, also replace a file that kage did not write\n"
-    "  --shadow METHOD      where shadow rays start: none, 0, 1, 2, 2+, iter:K, march:N, exact\n"
+    "  --shadow METHOD      where shadow rays start: none, 0, 1, 2, 2+, iter:K, march:N, exact, auto[:E]\n"
+    "  --shade PLACE        smooth (at the smooth hit), or shifted: where the shadow rays start\n"
+    "  --bump-shadow KIND   the bumps' shadows on their own surface: none, march:N, horizon, exact\n"
+    "  --relief             the best picture for its cost: --shadow " KAGE_RELIEF_METHOD
+    " --shade shifted --bump-shadow " KAGE_RELIEF_BUMP_SHADOW "\n"
     "  --surface KIND       smooth (bump mapping), or displaced: surfaces that are truly displaced by P\n"
     "  --no-self-shadow     bumped objects cast no shadows\n"
     "  --no-guard           the paper's formulas alone, also where tau leaves the slab between Pmin and Pmax\n"

@@ -89,6 +89,23 @@ STAGE static void box_locate(const surface *base, int n, const rays *x, const re
     }
 }
 
+STAGE static void box_foot(const surface *base, int n, const rays *x, const real *restrict t, int32_t *restrict part,
+                           real *restrict u, real *restrict w)
+{
+    const box f = *(const box *)base;
+    const real dx = f.hi[0] - f.lo[0], dy = f.hi[1] - f.lo[1], dz = f.hi[2] - f.lo[2];
+    for (int i = 0; i < n; i++) {
+        real px = (x->r.x[i] + x->s.x[i] * t[i] - f.lo[0]) / dx;
+        real py = (x->r.y[i] + x->s.y[i] * t[i] - f.lo[1]) / dy;
+        real pz = (x->r.z[i] + x->s.z[i] * t[i] - f.lo[2]) / dz;
+        /* sums with weights of 0 and 1, as choices would be branches */
+        real on_x = (real)(part[i] < 2), on_z = (real)(part[i] > 3), on_y = 1 - on_x - on_z, high = (real)(part[i] & 1);
+        real a = on_x * py + on_y * pz + on_z * px, b = on_x * pz + on_y * px + on_z * py;
+        u[i] = high * a + (1 - high) * b;
+        w[i] = high * b + (1 - high) * a;
+    }
+}
+
 /* One coordinate of Q, Qu and Qw on a face across axis k: the coordinate along axis c of the box from lo to hi. */
 static inline real box_coordinate(int c, int k, int high, real u, real w, real lo, real hi, real *U, real *W)
 {
@@ -213,11 +230,13 @@ static const surface_ops box_methods = {
     .hit = box_hit,
     .hit_own = box_hit_own,
     .locate = box_locate,
+    .foot = box_foot,
     .eval = box_eval,
     .occlude = box_occlude,
     .occlude_own = box_occlude_own,
     .extent = extent_unit,
     .box = box_box,
+    .flat = true,
     .parts = 6,
     .bound = box_bound,
     .closest = box_closest,

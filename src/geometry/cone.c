@@ -262,9 +262,9 @@ static void cone_bend(const surface *base, int part, int n, const rays *x, const
 #define CONE_METHODS(name, is_cone, form, number)                                                                      \
     {                                                                                                                  \
         .kind = name, .hit = cone_##form##_hit, .hit_own = cone_##form##_hit_own, .locate = cone_locate,               \
-        .eval = cone_eval, .occlude = cone_##form##_occlude, .occlude_own = cone_##form##_occlude_own,                 \
-        .extent = cone_extent, .box = cone_box, .parts = number, .bound = cone_bound, .closest = cone_closest,         \
-        .bend = cone_bend, .around = AROUND_U, .unclamped = is_cone                                                    \
+        .foot = cone_foot, .eval = cone_eval, .occlude = cone_##form##_occlude,                                        \
+        .occlude_own = cone_##form##_occlude_own, .extent = cone_extent, .box = cone_box, .parts = number,             \
+        .bound = cone_bound, .closest = cone_closest, .bend = cone_bend, .around = AROUND_U, .unclamped = is_cone      \
     }
 
 static const surface_ops cone_methods[2][2] = {

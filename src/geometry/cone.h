@@ -50,6 +50,7 @@ static inline const surface *cone_cap(const surface *base, int part)
 
 /* In cone_shape.c; as the members of surface_ops of the same names. */
 void cone_locate(const surface *base, int n, const rays *x, const real *t, int32_t *part, real *u, real *w);
+void cone_foot(const surface *base, int n, const rays *x, const real *t, int32_t *part, real *u, real *w);
 void cone_eval(const surface *base, int n, const int32_t *part, const real *u, const real *w, int order, partials *q);
 void cone_extent(const surface *base, int part, double u[2], double w[2]);
 void cone_box(const surface *base, double lo[3], double hi[3]);

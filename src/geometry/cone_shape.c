@@ -38,6 +38,11 @@ void cone_locate(const surface *base, int n, const rays *x, const real *t, int32
     cone_place((const cone *)base, n, x, t, part, u, w);
 }
 
+void cone_foot(const surface *base, int n, const rays *x, const real *t, int32_t *part, real *u, real *w)
+{
+    cone_place((const cone *)base, n, x, t, part, u, w);
+}
+
 STAGE static void cone_side_eval(const cone *restrict base, int n, const real *restrict u, const real *restrict w,
                                  int order, partials *restrict q)
 {

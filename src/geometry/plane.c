@@ -237,9 +237,9 @@ static void disc_box(const surface *base, double lo[3], double hi[3])
 
 #define FLAT_METHODS(name, range)                                                                                      \
     {                                                                                                                  \
-        .kind = #name, .hit = name##_hit, .hit_own = name##_hit_own, .locate = plane_locate, .eval = plane_eval,       \
-        .occlude = name##_occlude, .extent = range, .box = name##_box, .parts = 1, .bound = name##_bound,              \
-        .closest = plane_closest, .bend = bend_flat                                                                    \
+        .kind = #name, .hit = name##_hit, .hit_own = name##_hit_own, .locate = plane_locate, .foot = plane_locate,     \
+        .eval = plane_eval, .occlude = name##_occlude, .extent = range, .box = name##_box, .flat = true, .parts = 1,   \
+        .bound = name##_bound, .closest = plane_closest, .bend = bend_flat                                             \
     }
 
 static const surface_ops plane_methods = FLAT_METHODS(plane, plane_extent);

@@ -214,6 +214,7 @@ static const surface_ops sphere_methods = {
     .hit = sphere_hit,
     .hit_own = sphere_hit_own,
     .locate = sphere_locate,
+    .foot = sphere_locate,
     .eval = sphere_eval,
     .occlude = sphere_occlude,
     .occlude_own = sphere_occlude_own,

@@ -40,6 +40,11 @@ typedef struct surface_ops {
      * triangle. */
     void (*locate)(const surface *f, int n, const rays *x, const real *t, int32_t *part, real *u, real *w);
 
+    /* The place whose normal leads to r + s t, a point near the surface; the ray meets the surface on part[i] at
+     * (u[i],w[i]). (u,w) may go beyond the part's edge. On a mesh part[i] changes with the triangle. NULL: there is no
+     * closed form; Newton's steps from the ray's hit find it (render/place.c). */
+    void (*foot)(const surface *f, int n, const rays *x, const real *t, int32_t *part, real *u, real *w);
+
     /* Q, Qu and Qw at (u,w); order 2: also Quu, Quw and Qww. */
     void (*eval)(const surface *f, int n, const int32_t *part, const real *u, const real *w, int order, partials *q);
 
@@ -56,6 +61,7 @@ typedef struct surface_ops {
     /* The bounding box, up to rounding. Ends are infinite where the surface has none. */
     void (*box)(const surface *f, double lo[3], double hi[3]);
 
+    bool flat; /* all parts are: Quu, Quw and Qww are 0 */
     int parts; /* how many; 1 for a mesh, though `part` is a triangle there */
 
     /* For displaced surfaces (displaced.h), over one part of the surface alone. All three are NULL where closest points

@@ -158,6 +158,7 @@ static const surface_ops torus_methods = {
     .hit = torus_hit,
     .hit_own = torus_hit_own,
     .locate = torus_locate,
+    .foot = torus_locate,
     .eval = torus_eval,
     .occlude = torus_occlude,
     .occlude_own = torus_occlude_own,

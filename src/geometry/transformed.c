@@ -127,6 +127,15 @@ static void transformed_locate(const surface *base, int n, const rays *x, const 
     mirror_u(f, n, u, u);
 }
 
+static void transformed_foot(const surface *base, int n, const rays *x, const real *t, int32_t *part, real *u, real *w)
+{
+    const transformed *f = of(base);
+    rays y;
+    rays_back(f, n, x, &y);
+    f->from->ops->foot(f->from, n, &y, t, part, u, w);
+    mirror_u(f, n, u, u);
+}
+
 static void transformed_eval(const surface *base, int n, const int32_t *part, const real *u, const real *w, int order,
                              partials *q)
 {
@@ -275,6 +284,7 @@ static void choose_methods(transformed *f)
     f->methods.hit = transformed_hit;
     f->methods.hit_own = transformed_hit_own;
     f->methods.locate = transformed_locate;
+    f->methods.foot = f->scale > 0 && f->from->ops->foot ? transformed_foot : NULL;
     f->methods.eval = transformed_eval;
     f->methods.occlude = transformed_occlude;
     f->methods.occlude_own = f->from->ops->occlude_own ? transformed_occlude_own : NULL;

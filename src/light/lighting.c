@@ -6,34 +6,63 @@
 
 #define SHORT 1e-6 /* scene units */
 
-STAGE static void aim_at_place(hit_group *restrict g, const light *l, const real *restrict t)
+/* The segment from o to the light. Called with constants, as a choice in the loop would prevent SIMD. */
+static inline void aim_at(int i, bs_vec3 o, bs_vec3 to, rays *restrict y)
 {
-    const real lx = (real)l->at.x, ly = (real)l->at.y, lz = (real)l->at.z;
-    for (int i = 0; i < g->n; i++) {
-        bs_vec3 o = lane_at(&g->x, i, t[i]), d = {lx - o.x, ly - o.y, lz - o.z};
-        lane_set(&g->to_light.r, i, o);
-        lane_set(&g->to_light.s, i, d);
-    }
+    lane_set(&y->r, i, o);
+    lane_set(&y->s, i, (bs_vec3){to.x - o.x, to.y - o.y, to.z - o.z});
 }
 
 /* To the light's plane. Behind the plane there is light without shadows, as in POV-Ray: there the ray is only SHORT. */
-STAGE static void aim_along(hit_group *restrict g, const light *l, const real *restrict t)
+static inline void aim_along(int i, bs_vec3 o, bs_vec3 to, bs_vec3 axis, rays *restrict y)
 {
-    const real lx = (real)l->at.x, ly = (real)l->at.y, lz = (real)l->at.z;
-    const real ax = (real)l->axis.x, ay = (real)l->axis.y, az = (real)l->axis.z;
-    for (int i = 0; i < g->n; i++) {
-        bs_vec3 o = lane_at(&g->x, i, t[i]);
-        real depth = real_max((o.x - lx) * ax + (o.y - ly) * ay + (o.z - lz) * az, R(SHORT));
-        bs_vec3 d = {-depth * ax, -depth * ay, -depth * az};
-        lane_set(&g->to_light.r, i, o);
-        lane_set(&g->to_light.s, i, d);
-    }
+    real depth = (o.x - to.x) * axis.x + (o.y - to.y) * axis.y + (o.z - to.z) * axis.z;
+    depth = real_max(depth, R(SHORT));
+    lane_set(&y->r, i, o);
+    lane_set(&y->s, i, (bs_vec3){-depth * axis.x, -depth * axis.y, -depth * axis.z});
 }
 
-void lighting_aim(const light *l, const real *t, hit_group *g)
+static inline bs_vec3 rounded(vec3 x) { return (bs_vec3){(real)x.x, (real)x.y, (real)x.z}; }
+
+STAGE static void rays_at(const light *l, int n, const rays *restrict x, const real *restrict t, rays *restrict y)
 {
-    (l->kind == LIGHT_PARALLEL ? aim_along : aim_at_place)(g, l, t);
+    const bs_vec3 at = rounded(l->at);
+    for (int i = 0; i < n; i++)
+        aim_at(i, lane_at(x, i, t[i]), at, y);
 }
+
+STAGE static void rays_along(const light *l, int n, const rays *restrict x, const real *restrict t, rays *restrict y)
+{
+    const bs_vec3 at = rounded(l->at), axis = rounded(l->axis);
+    for (int i = 0; i < n; i++)
+        aim_along(i, lane_at(x, i, t[i]), at, axis, y);
+}
+
+STAGE static void places_at(const light *l, int n, const vec3s *restrict from, rays *restrict y)
+{
+    const bs_vec3 at = rounded(l->at);
+    for (int i = 0; i < n; i++)
+        aim_at(i, lane_get(from, i), at, y);
+}
+
+STAGE static void places_along(const light *l, int n, const vec3s *restrict from, rays *restrict y)
+{
+    const bs_vec3 at = rounded(l->at), axis = rounded(l->axis);
+    for (int i = 0; i < n; i++)
+        aim_along(i, lane_get(from, i), at, axis, y);
+}
+
+void lighting_rays(const light *l, int n, const rays *x, const real *t, rays *to_light)
+{
+    (l->kind == LIGHT_PARALLEL ? rays_along : rays_at)(l, n, x, t, to_light);
+}
+
+void lighting_aim_from(const light *l, const vec3s *from, hit_group *g)
+{
+    (l->kind == LIGHT_PARALLEL ? places_along : places_at)(l, g->n, from, &g->to_light);
+}
+
+void lighting_aim(const light *l, const real *t, hit_group *g) { lighting_rays(l, g->n, &g->x, t, &g->to_light); }
 
 STAGE static void add(const hit_group *restrict g, real share, real *restrict sum)
 {
@@ -55,13 +84,13 @@ STAGE static void add_tint(const hit_group *restrict g, real share, vec3s *restr
 
 void lighting_add_tint(const hit_group *g, real share, vec3s *sum) { add_tint(g, share, sum); }
 
-/* The distance of p1 from the light, or from its plane, and the cosine of the angle to its axis. */
+/* The distance of the shaded place from the light, or from its plane, and the cosine of the angle to its axis. */
 STAGE static void place(const hit_group *restrict g, const light *l, double *restrict distance, double *restrict cosine)
 {
     const real lx = (real)l->at.x, ly = (real)l->at.y, lz = (real)l->at.z;
     const real ax = (real)l->axis.x, ay = (real)l->axis.y, az = (real)l->axis.z, flat = l->kind == LIGHT_PARALLEL;
     for (int i = 0; i < g->n; i++) {
-        bs_vec3 p = lane_at(&g->x, i, g->t[i]);
+        bs_vec3 p = lane_at(&g->x, i, g->t_shade[i]);
         real x = p.x - lx, y = p.y - ly, z = p.z - lz;
         real far = real_sqrt(x * x + y * y + z * z), deep = x * ax + y * ay + z * az;
         distance[i] = (double)(far + flat * (real_abs(deep) - far));

@@ -5,10 +5,14 @@
 #include "scene/light.h"
 #include "wave/hit_group.h"
 
-/* g->to_light = shadow rays r + s t', 0 < t' < 1, from the point at t on each lane's ray to the light. t is g->t or
- * g->t0.
- */
+/* Shadow rays r + s t', 0 < t' < 1, from the point at t[i] on each of n rays to the light. */
+void lighting_rays(const light *l, int n, const rays *x, const real *t, rays *to_light);
+
+/* The same into g->to_light. t is g->t or g->t0. */
 void lighting_aim(const light *l, const real *t, hit_group *g);
+
+/* The same from any places. */
+void lighting_aim_from(const light *l, const vec3s *from, hit_group *g);
 
 /* sum += share * g->lit, for one sample of an area light; with tint: share * g->lit * g->tint. */
 void lighting_add(const hit_group *g, real share, real *sum);

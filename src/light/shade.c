@@ -24,30 +24,32 @@ void shade_ambient(hit_group *g, const material *m)
     vec3s_fill(&g->rgb, g->n, (real)(share * m->color.x), (real)(share * m->color.y), (real)(share * m->color.z));
 }
 
-/* The direction from p to a light: at - near p. near is 0 for a parallel light. Constant in each stage, so it is free.
- */
+/* The direction from p to a light: at - near p. near is 0 for a parallel light. The light is seen where its direction
+ * times the smooth normal is above `least`. Constant in each stage, so it is free. */
 typedef struct way {
     bs_vec3 at;
-    real near;
+    real near, least;
 } way;
 
-static inline way way_to(const light *l)
+static inline real least_of(bool front) { return front ? 0 : -REAL_FAR; }
+
+static inline way way_to(const light *l, bool front)
 {
-    way x = {{(real)l->at.x, (real)l->at.y, (real)l->at.z}, 1};
+    way x = {{(real)l->at.x, (real)l->at.y, (real)l->at.z}, 1, least_of(front)};
     return x;
 }
 
-static inline way way_against(const light *l)
+static inline way way_against(const light *l, bool front)
 {
-    way x = {{-(real)l->axis.x, -(real)l->axis.y, -(real)l->axis.z}, 0};
+    way x = {{-(real)l->axis.x, -(real)l->axis.y, -(real)l->axis.z}, 0, least_of(front)};
     return x;
 }
 
 /* L, the unit vector to the light, and n' on the viewer's side. Returns g->lit, or 0 where the light is behind the
- * smooth surface. */
+ * smooth surface, if that counts. */
 static inline real facing(const hit_group *g, int i, way to, bs_vec3 *L, bs_vec3 *n)
 {
-    bs_vec3 p = lane_at(&g->x, i, g->t[i]);
+    bs_vec3 p = lane_at(&g->x, i, g->t_shade[i]);
     bs_vec3 d = {to.at.x - to.near * p.x, to.at.y - to.near * p.y, to.at.z - to.near * p.z};
     bs_vec3 smooth = lane_get(&g->n_smooth, i), bumped = lane_get(&g->n_bump, i);
     real lit = g->lit[i]; /* always read: a conditional read would be a branch */
@@ -56,7 +58,7 @@ static inline real facing(const hit_group *g, int i, way to, bs_vec3 *L, bs_vec3
     n->x = side * bumped.x;
     n->y = side * bumped.y;
     n->z = side * bumped.z;
-    return side * bs_dot(smooth, d) > 0 ? lit : 0;
+    return side * bs_dot(smooth, d) > to.least ? lit : 0;
 }
 
 /* Call it with constants, as a choice in the loop would stop vectorisation. own: times the colour of each lane (with a
@@ -77,21 +79,21 @@ static inline void diffuse(hit_group *restrict g, const material *m, const light
     }
 }
 
-STAGE static void diffuse_to(hit_group *g, const material *m, const light *l)
+STAGE static void diffuse_to(hit_group *g, const material *m, const light *l, bool front)
 {
-    diffuse(g, m, l, way_to(l), false, NULL);
+    diffuse(g, m, l, way_to(l, front), false, NULL);
 }
-STAGE static void diffuse_against(hit_group *g, const material *m, const light *l)
+STAGE static void diffuse_against(hit_group *g, const material *m, const light *l, bool front)
 {
-    diffuse(g, m, l, way_against(l), false, NULL);
+    diffuse(g, m, l, way_against(l, front), false, NULL);
 }
-STAGE static void diffuse_color_to(hit_group *g, const material *m, const light *l, const vec3s *c)
+STAGE static void diffuse_color_to(hit_group *g, const material *m, const light *l, bool front, const vec3s *c)
 {
-    diffuse(g, m, l, way_to(l), true, c);
+    diffuse(g, m, l, way_to(l, front), true, c);
 }
-STAGE static void diffuse_color_against(hit_group *g, const material *m, const light *l, const vec3s *c)
+STAGE static void diffuse_color_against(hit_group *g, const material *m, const light *l, bool front, const vec3s *c)
 {
-    diffuse(g, m, l, way_against(l), true, c);
+    diffuse(g, m, l, way_against(l, front), true, c);
 }
 
 STAGE static void product(int n, const vec3s *restrict a, const vec3s *restrict b, vec3s *restrict c)
@@ -103,7 +105,7 @@ STAGE static void product(int n, const vec3s *restrict a, const vec3s *restrict 
     }
 }
 
-static void shade_diffuse(hit_group *g, const material *m, const light *l, bool tinted)
+static void shade_diffuse(hit_group *g, const material *m, const light *l, bool tinted, bool front)
 {
     const bool along = l->kind == LIGHT_PARALLEL;
     const vec3s *color = m->pattern ? &g->color : &g->tint;
@@ -113,9 +115,9 @@ static void shade_diffuse(hit_group *g, const material *m, const light *l, bool 
         color = &both;
     }
     if (tinted || m->pattern)
-        (along ? diffuse_color_against : diffuse_color_to)(g, m, l, color);
+        (along ? diffuse_color_against : diffuse_color_to)(g, m, l, front, color);
     else
-        (along ? diffuse_against : diffuse_to)(g, m, l);
+        (along ? diffuse_against : diffuse_to)(g, m, l, front);
 }
 
 /* Phong's highlight: the cosine between the mirrored view and L. */
@@ -128,10 +130,13 @@ static inline void phong(const hit_group *restrict g, const way to, double *rest
     }
 }
 
-STAGE static void phong_to(const hit_group *g, const light *l, double *c, real *lit) { phong(g, way_to(l), c, lit); }
-STAGE static void phong_against(const hit_group *g, const light *l, double *c, real *lit)
+STAGE static void phong_to(const hit_group *g, const light *l, bool front, double *c, real *lit)
 {
-    phong(g, way_against(l), c, lit);
+    phong(g, way_to(l, front), c, lit);
+}
+STAGE static void phong_against(const hit_group *g, const light *l, bool front, double *c, real *lit)
+{
+    phong(g, way_against(l, front), c, lit);
 }
 
 /* Blinn's highlight: the cosine between n' and the half-way vector h = L - s. Where L is near s (light behind the
@@ -152,10 +157,13 @@ static inline void blinn(const hit_group *restrict g, const way to, double *rest
     }
 }
 
-STAGE static void blinn_to(const hit_group *g, const light *l, double *c, real *lit) { blinn(g, way_to(l), c, lit); }
-STAGE static void blinn_against(const hit_group *g, const light *l, double *c, real *lit)
+STAGE static void blinn_to(const hit_group *g, const light *l, bool front, double *c, real *lit)
 {
-    blinn(g, way_against(l), c, lit);
+    blinn(g, way_to(l, front), c, lit);
+}
+STAGE static void blinn_against(const hit_group *g, const light *l, bool front, double *c, real *lit)
+{
+    blinn(g, way_against(l, front), c, lit);
 }
 
 /* c^power, in a loop of its own: mixed with float it would not be vectorised. log 0 is -inf, whose exp is 0. */
@@ -193,19 +201,19 @@ static void add_highlight(hit_group *g, const light *l, bool tinted, double shar
                                                   (real)(share * l->color.z), c, lit);
 }
 
-void shade_light(hit_group *g, const material *m, const light *l, bool tinted)
+void shade_light(hit_group *g, const material *m, const light *l, bool tinted, bool front)
 {
     const bool along = l->kind == LIGHT_PARALLEL;
     double c[LANES];
     real lit[LANES];
-    shade_diffuse(g, m, l, tinted);
+    shade_diffuse(g, m, l, tinted, front);
     if (m->phong > 0) {
-        (along ? phong_against : phong_to)(g, l, c, lit);
+        (along ? phong_against : phong_to)(g, l, front, c, lit);
         raise(g->n, c, m->phong_size);
         add_highlight(g, l, tinted, m->phong, c, lit);
     }
     if (m->specular > 0) {
-        (along ? blinn_against : blinn_to)(g, l, c, lit);
+        (along ? blinn_against : blinn_to)(g, l, front, c, lit);
         raise(g->n, c, 1 / m->roughness);
         add_highlight(g, l, tinted, m->specular, c, lit);
     }

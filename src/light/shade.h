@@ -8,8 +8,9 @@
 /* g->rgb = ambient light. The colour is the material's or, with a pattern, g->color; so too in shade_light. */
 void shade_ambient(hit_group *g, const material *m);
 
-/* g->rgb += diffuse light and highlights of light l at p1 = r + s t_hit with n', times g->lit and, if tinted, g->tint.
- * A light behind the smooth surface gives nothing. Opacity scales ambient and diffuse light, not highlights. */
-void shade_light(hit_group *g, const material *m, const light *l, bool tinted);
+/* g->rgb += diffuse light and highlights of light l at the shaded place with n', times g->lit and, if tinted, g->tint.
+ * front: a light behind the smooth surface gives nothing; otherwise n' decides. Opacity scales ambient and diffuse
+ * light, not highlights. */
+void shade_light(hit_group *g, const material *m, const light *l, bool tinted, bool front);
 
 #endif

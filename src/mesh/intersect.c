@@ -118,6 +118,19 @@ void mesh_occlude(const surface *base, int n, const rays *x, real *lit)
     }
 }
 
+bool mesh_near(const mesh *f, vec3 p, vec3 N, int32_t *part)
+{
+    mesh_query out = {.f = f}, in = {.f = f};
+    const vec3 down = vec3_scale(N, -1);
+    intersect(&out, p, N, 0, 1, -1);
+    intersect(&in, p, down, 0, out.index >= 0 ? out.to : 1, -1);
+    const mesh_query *q = in.index >= 0 ? &in : &out;
+    if (q->index < 0)
+        return false;
+    *part = q->index;
+    return true;
+}
+
 /* ---- rays from the mesh itself ---- */
 
 /* Where on its triangle a ray starts, in double. The triangle itself is left out by its index. A neighbour whose edge

@@ -19,6 +19,47 @@ static void mesh_locate(const surface *base, int n, const rays *x, const real *t
     }
 }
 
+/* The place on the triangle's plane whose N leads to p, from the foot of p on: N turns little within the height of p.
+ */
+static void shares_along_normal(const mesh_triangle *a, vec3 p, double *b, double *c)
+{
+    enum { STEPS = 4 };
+    const vec3 n = vec3_cross(vec3_sub(a->at[1], a->at[0]), vec3_sub(a->at[2], a->at[0]));
+    mesh_foot_shares(a, p, b, c);
+    for (int k = 0; k < STEPS; k++) {
+        double inside_b = *b, inside_c = *c;
+        mesh_keep_inside(&inside_b, &inside_c);
+        const vec3 N = mesh_mix(a->normal, inside_b, inside_c);
+        const double high = vec3_dot(vec3_sub(p, a->at[0]), n) / vec3_dot(N, n);
+        mesh_foot_shares(a, vec3_sub(p, vec3_scale(N, high)), b, c);
+    }
+}
+
+/* On the ray's own triangle where the point is over it, else where the normal there meets the mesh. Beyond the mesh's
+ * edge (u,w) stays at the edge. */
+static void mesh_foot(const surface *base, int n, const rays *x, const real *t, int32_t *part, real *u, real *w)
+{
+    enum { REACH = 4 }; /* times the point's height: at a crease neighbours are farther away along N */
+    const mesh *f = (const mesh *)base;
+    for (int i = 0; i < n; i++) {
+        const vec3 p = vec3_add(vec3s_get(&x->r, i), vec3_scale(vec3s_get(&x->s, i), (double)t[i]));
+        mesh_triangle a = mesh_triangle_of(f, part[i]);
+        double b, c;
+        shares_along_normal(&a, p, &b, &c);
+        const bool over = b >= 0 && c >= 0 && b + c <= 1;
+        mesh_keep_inside(&b, &c);
+        const vec3 N = vec3_unit(mesh_mix(a.normal, b, c));
+        const double high = vec3_length(vec3_sub(p, mesh_mix(a.at, b, c)));
+        if (!over && mesh_near(f, p, vec3_scale(N, REACH * high), &part[i])) {
+            a = mesh_triangle_of(f, part[i]);
+            shares_along_normal(&a, p, &b, &c);
+            mesh_keep_inside(&b, &c);
+        }
+        u[i] = (real)(a.u[0] + b * (a.u[1] - a.u[0]) + c * (a.u[2] - a.u[0]));
+        w[i] = (real)(a.w[0] + b * (a.w[1] - a.w[0]) + c * (a.w[2] - a.w[0]));
+    }
+}
+
 void mesh_shares(const mesh_triangle *x, double u, double w, double *b, double *c)
 {
     const double bu = x->u[1] - x->u[0], bw = x->w[1] - x->w[0], cu = x->u[2] - x->u[0], cw = x->w[2] - x->w[0],
@@ -119,6 +160,7 @@ static const surface_ops methods = {
     .hit = mesh_hit,
     .hit_own = mesh_hit_own,
     .locate = mesh_locate,
+    .foot = mesh_foot,
     .eval = mesh_eval,
     .occlude = mesh_occlude,
     .occlude_own = mesh_occlude_own,

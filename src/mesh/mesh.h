@@ -90,6 +90,10 @@ void mesh_hit_own(const surface *base, int n, const rays *x, const ray_origins *
 void mesh_occlude(const surface *base, int n, const rays *x, real *lit);
 void mesh_occlude_own(const surface *base, int n, const rays *x, const int32_t *part, real *lit);
 
+/* In intersect.c: the triangle that the line through p along N meets nearest to p, at most as far away as N is long.
+ * False: none. */
+bool mesh_near(const mesh *f, vec3 p, vec3 N, int32_t *part);
+
 /* In texture.c: lay out the texture coordinates and set the range, of a mesh that has none in its file, and of one
  * that has them on every triangle. */
 void mesh_lay_bare(mesh *f);

@@ -10,6 +10,7 @@ typedef enum method_kind {
     METHOD_ITER,  /* order 0, n times */
     METHOD_MARCH, /* n steps through the slab between Pmin and Pmax */
     METHOD_EXACT, /* at the first hit of the displaced surface (displaced.h) */
+    METHOD_AUTO,  /* order 0, and where that may change what a light sees, a bracket (bracket.h); n: the error */
 } method_kind;
 
 typedef struct method {
@@ -17,10 +18,13 @@ typedef struct method {
     int n;
 } method;
 
-enum { METHOD_STEPS_MAX = 1024, METHOD_NAME_SIZE = 16 };
+enum { METHOD_STEPS_MAX = 1024, METHOD_NAME_SIZE = 24 };
 
-/* Read a method's name: none 0 1 2 2+ iter:K march:N exact, with K and N in 1..METHOD_STEPS_MAX. False: not a method.
- */
+/* The error of auto is kept in millionths of a pixel, so that its name is exact. */
+enum { METHOD_PIXEL = 1000000, METHOD_ERROR = METHOD_PIXEL / 4, METHOD_ERROR_MAX = 1000 * METHOD_PIXEL };
+
+/* Read a method's name: none 0 1 2 2+ iter:K march:N exact auto auto:E, with K and N in 1..METHOD_STEPS_MAX, and E in
+ * pixels, above 0 and up to 1000, with six decimals at most. False: not a method. */
 bool method_parse(const char *text, method *m);
 
 /* Write its name. */
@@ -33,7 +37,7 @@ int method_order(method m);
 bool method_bends(method m);
 
 /* Its number in the layer `order` and in the statistics, if it does not fall back: none -1; 0, 1, 2; 2+ 3; iter 4;
- * march 5; exact 6. */
+ * march 5; exact 6. auto: 0, its first try. */
 int method_code(method m);
 enum { ORDER_EXACT = 6, ORDER_CODES = 8 /* from none on */ };
 

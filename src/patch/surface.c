@@ -141,21 +141,40 @@ static void patch_occlude_own(const surface *base, int n, const rays *x, const i
 
 /* ---- (u,w) and size ---- */
 
+/* The closest points to p->place, at most p->off away. */
+static void project(const surface *base, int n, projections *p, int32_t *part, real *u, real *w)
+{
+    patch_project((const patch_surface *)base, n, NULL, p);
+    for (int i = 0; i < n; i++) {
+        part[i] = p->part[i];
+        u[i] = (real)p->u[i];
+        w[i] = (real)p->w[i];
+    }
+}
+
 static void patch_locate(const surface *base, int n, const rays *x, const real *t, int32_t *part, real *u, real *w)
 {
-    const patch_surface *f = (const patch_surface *)base;
     projections p;
     for (int i = 0; i < n; i++) {
         const vec3 r = vec3s_get(&x->r, i), way = vec3_scale(vec3s_get(&x->s, i), (double)t[i]);
         p.place[i] = vec3_add(r, way);
         p.off[i] = REAL_ROUNDING * (vec3_length(r) + vec3_length(way));
     }
-    patch_project(f, n, NULL, &p);
+    project(base, n, &p, part, u, w);
+}
+
+/* The closest point is at most as far away as Q at the ray's hit. */
+static void patch_foot(const surface *base, int n, const rays *x, const real *t, int32_t *part, real *u, real *w)
+{
+    projections p;
+    partials q;
+    patch_surface_eval(base, n, part, u, w, 1, &q);
     for (int i = 0; i < n; i++) {
-        part[i] = p.part[i];
-        u[i] = (real)p.u[i];
-        w[i] = (real)p.w[i];
+        const vec3 r = vec3s_get(&x->r, i), way = vec3_scale(vec3s_get(&x->s, i), (double)t[i]);
+        p.place[i] = vec3_add(r, way);
+        p.off[i] = vec3_length(vec3_sub(p.place[i], vec3s_get(&q.Q, i)));
     }
+    project(base, n, &p, part, u, w);
 }
 
 /* ---- shadows ---- */
@@ -209,6 +228,7 @@ static surface_ops *methods_of(const patch *q)
             .hit = patch_hit,
             .hit_own = patch_hit_own,
             .locate = patch_locate,
+            .foot = patch_foot,
             .eval = patch_surface_eval,
             .occlude = patch_occlude,
             .occlude_own = patch_occlude_own,

@@ -124,10 +124,11 @@ static double accuracy(const scene *s, const object *o)
            vec3_length(vec3_sub(s->view.at, s->camera.from));
 }
 
+/* By itself POV-Ray looks for one intersection, and that of a shadow ray is where it starts. */
 static void put_limits(pov_text *t, const scene *s, const object *o, int part, const char *note)
 {
-    pov_print(t, "  accuracy %g\n  max_gradient %g // a bound%s\n", accuracy(s, o), pov_isosurface_gradient(o, part),
-              note);
+    pov_print(t, "  all_intersections\n  accuracy %g\n  max_gradient %g // a bound%s\n", accuracy(s, o),
+              pov_isosurface_gradient(o, part), note);
 }
 
 static void put_over(pov_text *t, const char *x, double length)

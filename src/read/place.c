@@ -106,6 +106,6 @@ bool reader_place(reader *r, node *at, object *o)
         return yaml_error(r->y, at,
                           "a %s with caps and a bump is scaled differently along its axes, expected equal scales, or "
                           "'open: true', for %s",
-                          o->shape->ops->kind, r->s->displaced ? "surface displaced" : "shadow exact");
+                          o->shape->ops->kind, scene_truth_name(r->s));
     return true;
 }

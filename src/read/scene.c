@@ -2,6 +2,7 @@
  * has its place in the file.
  */
 #include "read/parts.h"
+#include "scene/horizons.h"
 #include "scene/object_bvh.h"
 
 #include <stdlib.h>
@@ -36,6 +37,8 @@ scene *scene_read(const scene_source *from, errors *e)
                 note_secondary(r.s);
                 bool good = true;
                 r.s->object_bvh = object_bvh_new(r.s, &good);
+                if (r.s->bump_shadow.kind == BUMP_SHADOW_HORIZON)
+                    good = (r.s->horizons = horizons_new(r.s, from->threads)) && good;
                 if (!good)
                     errors_add(e, "out of memory");
             }

@@ -55,7 +55,9 @@ static void read_render(reader *r)
     s->aa_threshold = -1;
     s->depth = 5;
     s->self_shadow = true;
-    if (!at || !yaml_map(r->y, at, "render", "shadow guard aa aa_threshold depth surface self_shadow"))
+    if (!at || !yaml_map(r->y, at, "render",
+                         "shadow guard shade bump_shadow aa aa_threshold depth "
+                         "surface self_shadow"))
         return;
     if ((k = yaml_get(at, "shadow"))) {
         const char *text = yaml_text(r->y, k, method_expected);
@@ -64,6 +66,12 @@ static void read_render(reader *r)
     }
     if ((k = yaml_get(at, "guard")))
         yaml_bool(r->y, k, "true or false", &s->guard);
+    s->shifted = reader_word(r, at, "shade", "smooth shifted", "smooth or shifted") == 1;
+    if ((k = yaml_get(at, "bump_shadow"))) {
+        const char *text = yaml_text(r->y, k, bump_shadow_expected);
+        if (text && !bump_shadow_parse(text, &s->bump_shadow))
+            yaml_error(r->y, k, "'%.60s' is unknown, expected %s", text, bump_shadow_expected);
+    }
     if ((k = yaml_get(at, "aa")))
         yaml_whole(r->y, k, 1, SCENE_MAX_AA, "samples along a pixel's side, 1 to 16", &s->aa);
     reader_number(r, at, "aa_threshold", 0, false, 3,

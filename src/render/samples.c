@@ -46,7 +46,7 @@ void samples_put(const hit_group *g, bool layers, bool bumped, samples *o)
     scatter_vec3s(g, &g->rgb, &o->rgb);
     if (!layers)
         return;
-    scatter(g, g->t, o->depth);
+    scatter(g, g->t_shade, o->depth);
     scatter_vec3s(g, &g->q.Q, &o->position);
     scatter_vec3s(g, &g->n_bump, &o->normal);
     scatter(g, g->u, o->u);

@@ -8,6 +8,8 @@
 #include <string.h>
 
 #include "render/intersect.h"
+#include "scene/horizons.h"
+#include "method/own_shadow.h"
 #include "light/lighting.h"
 #include "wave/gather.h"
 #include "wave/lane.h"
@@ -106,7 +108,7 @@ static void follow_through(const scene *s, int32_t id, bool own, workspace *v)
 
 /* ---- all objects ---- */
 
-static bool casts(const tracer *tr, int32_t id) { return tr->self_shadow || !tr->scene->object[id].bump; }
+bool shadow_casts(const tracer *tr, int32_t id) { return tr->self_shadow || !tr->scene->object[id].bump; }
 
 static bool is_clear(const tracer *tr, int32_t id)
 {
@@ -166,7 +168,7 @@ static void cast_others(const tracer *tr, int32_t id, workspace *v)
         find_candidates(s->object_bvh, g, v->candidates);
     for (int32_t j = intersect_next(s, v->candidates, -1); j >= 0; j = intersect_next(s, v->candidates, j)) {
         const surface *f = v->surface[j];
-        if (j == id || !casts(tr, j))
+        if (j == id || !shadow_casts(tr, j))
             continue;
         if (is_clear(tr, j))
             follow_through(s, j, false, v);
@@ -177,20 +179,132 @@ static void cast_others(const tracer *tr, int32_t id, workspace *v)
     }
 }
 
-/* The shadow of a light at one point. */
-static void shadow_place(const tracer *tr, int32_t id, const light *l, workspace *v)
+/* ---- the bumps' own shadows ---- */
+
+enum { STEPS = 24 }; /* of the march where there is no horizon map */
+
+bool shadow_is_own(const tracer *tr, int32_t id, const workspace *v)
+{
+    return tr->bump_shadow.kind != BUMP_SHADOW_NONE && tr->self_shadow && tr->scene->object[id].bump &&
+           !displaced_is(v->surface[id]);
+}
+
+/* The ways from X to a light at one point. */
+static void begin_ways(const tracer *tr, int32_t id, const light *l, workspace *v, own_ways *y)
+{
+    lighting_aim_from(l, &v->g.rough, &v->g);
+    own_begin(&v->g, tr->scene->object[id].bump, y);
+}
+
+/* The rise of the ways over the horizons. False: some part of the surface has none. */
+static bool rise_above(const tracer *tr, int32_t id, const workspace *v, const own_ways *y, real *above)
+{
+    const hit_group *g = &v->g;
+    const int32_t *part = tr->shifted ? g->shade_part : g->part;
+    const int parts = v->surface[id]->ops->parts;
+    for (int p = 0; p < parts; p++) {
+        const horizon *h = horizons_of(tr->scene->horizons, id, p);
+        real of_part[LANES];
+        if (!h)
+            return false;
+        own_above(g, y, h, of_part);
+        for (int i = 0; i < g->n; i++)
+            above[i] = parts == 1 || part[i] == p ? of_part[i] : above[i];
+    }
+    return true;
+}
+
+static void march(const tracer *tr, int32_t id, const own_ways *y, int steps, int seen_from, workspace *v)
+{
+    v->stats->evaluations += own_march(&v->g, tr->scene->object[id].bump, y, steps, seen_from);
+}
+
+static bool from_behind(int n, const own_ways *y)
+{
+    for (int i = 0; i < n; i++)
+        if (y->side[i] < 0)
+            return true;
+    return false;
+}
+
+/* The map is of the front. shared: its part is known from share_above. */
+static void sink(const tracer *tr, int32_t id, const own_ways *y, bool shared, workspace *v)
+{
+    real above[LANES];
+    const bool mapped = shared || rise_above(tr, id, v, y, above);
+    if (mapped && !shared)
+        own_sink(&v->g, y, above);
+    if (!mapped || from_behind(v->g.n, y))
+        march(tr, id, y, STEPS, mapped ? -1 : 0, v);
+}
+
+/* g->lit = 0 in the shadow of the object's bumps; then, from where the way leaves them, in that of its smooth shape. */
+static void cast_bumps(const tracer *tr, int32_t id, const light *l, bool shared, workspace *v)
+{
+    const surface *f = v->surface[id], *exact = &v->displaced[id].base;
+    hit_group *g = &v->g;
+    own_ways y;
+    begin_ways(tr, id, l, v, &y);
+    if (!shared)
+        own_turned_away(g, &y);
+    if (tr->bump_shadow.kind == BUMP_SHADOW_EXACT) {
+        if (exact->ops->occlude_own)
+            exact->ops->occlude_own(exact, g->n, &g->to_light, tr->shifted ? g->shade_part : g->part, g->lit);
+        return;
+    }
+    if (tr->bump_shadow.kind == BUMP_SHADOW_MARCH)
+        march(tr, id, &y, tr->bump_shadow.n, 0, v);
+    else
+        sink(tr, id, &y, shared, v);
+    if (!f->ops->occlude_own && !is_clear(tr, id))
+        return;
+    own_leave(g, &y);
+    if (is_clear(tr, id))
+        follow_through(tr->scene, id, false, v);
+    else
+        f->ops->occlude(f, g->n, &g->to_light, g->lit);
+}
+
+/* Whether a horizon map can tell the share of an area light that is above it, so that its samples need not be tested.
+ */
+static bool share_above(const tracer *tr, int32_t id, const light *l, workspace *v, real *share)
+{
+    const double half_u[3] = {0, 0.5, 0}, half_w[3] = {0, 0, 0.5};
+    real above[3][LANES];
+    own_ways y;
+    if (tr->bump_shadow.kind != BUMP_SHADOW_HORIZON || !shadow_is_own(tr, id, v))
+        return false;
+    for (int k = 2; k >= 0; k--) { /* the middle is last: its ways decide the side */
+        light one = *l;
+        one.at = vec3_add(l->at, vec3_add(vec3_scale(l->u, half_u[k]), vec3_scale(l->w, half_w[k])));
+        begin_ways(tr, id, &one, v, &y);
+        if (!rise_above(tr, id, v, &y, above[k]))
+            return false;
+    }
+    own_share(v->g.n, y.side, above[0], above[1], above[2], share);
+    return true;
+}
+
+/* ---- one light ---- */
+
+/* The shadow of a light at one point. shared: the bumps' shadow is known from share_above. */
+static void shadow_place(const tracer *tr, int32_t id, const light *l, bool shared, workspace *v)
 {
     hit_group *g = &v->g;
     for (int i = 0; i < g->n; i++)
         g->lit[i] = 1;
     if (tr->scene->clear)
         vec3s_fill(&g->tint, g->n, 1, 1, 1);
-    if (casts(tr, id) && (v->surface[id]->ops->occlude_own || is_clear(tr, id))) {
+    if (shadow_is_own(tr, id, v))
+        cast_bumps(tr, id, l, shared, v);
+    else if (shadow_casts(tr, id) && (v->surface[id]->ops->occlude_own || is_clear(tr, id))) {
         lighting_aim(l, g->t, g); /* from p1 */
         cast_own(tr, id, v);
     }
-    lighting_aim(l, g->t0, g); /* from r + s t0 */
-    cast_others(tr, id, v);
+    if (!v->alone) {
+        lighting_aim(l, g->t0, g); /* from r + s t0 */
+        cast_others(tr, id, v);
+    }
     v->stats->shadow_rays += g->n;
 }
 
@@ -200,14 +314,15 @@ void shadow_light(const tracer *tr, int32_t id, const light *l, workspace *v)
     const bool tinted = tr->scene->clear;
     hit_group *g = &v->g;
     if (places == 1) {
-        shadow_place(tr, id, l, v);
+        shadow_place(tr, id, l, false, v);
         return;
     }
-    real sum[LANES] = {0}, share;
+    real sum[LANES] = {0}, above[LANES], share;
+    const bool shared = share_above(tr, id, l, v, above);
     vec3s colors = {{0}, {0}, {0}};
     for (int k = 0; k < places; k++) {
         const light one = light_sample(l, k, &share);
-        shadow_place(tr, id, &one, v);
+        shadow_place(tr, id, &one, shared, v);
         if (tinted)
             lighting_add_tint(g, share, &colors);
         else
@@ -219,4 +334,6 @@ void shadow_light(const tracer *tr, int32_t id, const light *l, workspace *v)
             g->lit[i] = 1;
     } else
         memcpy(g->lit, sum, sizeof sum);
+    for (int i = 0; shared && i < g->n; i++)
+        g->lit[i] *= above[i];
 }

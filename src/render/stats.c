@@ -4,7 +4,7 @@
 #include <time.h>
 
 const char *const stage_names[STAGES] = {
-    "camera", "hit", "sort", "surface", "bump", "normal", "shift", "shadow", "shade", "film",
+    "camera", "hit", "sort", "surface", "bump", "normal", "shift", "place", "shadow", "shade", "film",
 };
 
 double stats_clock(void)
@@ -20,7 +20,7 @@ void stats_orders(stats *s, int n, const int32_t *order, int asked)
     for (int i = 0; i < n; i++)
         same += order[i] == asked;
     s->bumped += n;
-    s->fell_back += n - same;
+    s->fell_back += asked == ORDER_ANY ? 0 : n - same;
     if (same == n)
         s->orders[asked + 1] += n;
     else

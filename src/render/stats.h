@@ -16,6 +16,7 @@ enum stage {
     STAGE_BUMP,
     STAGE_NORMAL,
     STAGE_SHIFT,
+    STAGE_PLACE,
     STAGE_SHADOW,
     STAGE_SHADE,
     STAGE_FILM,
@@ -49,7 +50,8 @@ static inline void stats_stage(stats *s, enum stage k)
     }
 }
 
-/* Count n bumped samples by order; asked: the code of the method. */
+/* Count n bumped samples by order; asked: the code of the method, or ORDER_ANY where no order is a fall back. */
+enum { ORDER_ANY = -2 };
 void stats_orders(stats *s, int n, const int32_t *order, int asked);
 
 void stats_add(stats *sum, const stats *part);

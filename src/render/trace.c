@@ -10,11 +10,21 @@
 #include "render/trace.h"
 
 #include "method/shift.h"
+#include "render/auto.h"
 #include "render/intersect.h"
+#include "render/place.h"
 #include "light/lighting.h"
 #include "light/shade.h"
 #include "render/shadow.h"
 #include "wave/gather.h"
+
+/* The partials of Q at the smooth hit: for its curvature the second ones, too. */
+static int partials_needed(const tracer *tr, int32_t id, const workspace *v)
+{
+    const bool flat = tr->shadow.kind == METHOD_AUTO && v->surface[id]->ops->flat; /* auto leaves zeros out */
+    const bool bends = (method_bends(tr->shadow) && !flat) || (shadow_is_own(tr, id, v) && !tr->shifted);
+    return tr->scene->object[id].bump && bends ? 2 : 1;
+}
 
 /* The smooth hit Q and its partials; P and its partials, a map's by bilinear interpolation of differences
  * (texture/bump_map.c); n' (bs_perturbed_normal); and tau (method/shift.c by bs_tau0, bs_tau1, bs_tau2). The guard
@@ -26,7 +36,7 @@ static void shape_and_shift(const tracer *tr, int32_t id, workspace *v)
     hit_group *g = &v->g;
     stats *st = v->stats;
     f->ops->locate(f, g->n, &g->x, g->t, g->part, g->u, g->w);
-    f->ops->eval(f, g->n, g->part, g->u, g->w, P && method_bends(tr->shadow) ? 2 : 1, &g->q);
+    f->ops->eval(f, g->n, g->part, g->u, g->w, partials_needed(tr, id, v), &g->q);
     stats_stage(st, STAGE_SURFACE);
     if (P) {
         P->ops->eval(P, g->n, g->u, g->w, method_order(tr->shadow), &g->bump);
@@ -35,20 +45,38 @@ static void shape_and_shift(const tracer *tr, int32_t id, workspace *v)
     stats_stage(st, STAGE_BUMP);
     shift_normals(g, P);
     stats_stage(st, STAGE_NORMAL);
-    if (P && tr->shadow.kind == METHOD_EXACT)
+    v->alone = false;
+    if (P && tr->shadow.kind == METHOD_AUTO)
+        auto_shift(tr, id, v);
+    else if (P && tr->shadow.kind == METHOD_EXACT)
         displaced_shift(&v->displaced[id].base, g);
     else
         st->evaluations += shift_group(g, P, tr->shadow, tr->guard);
     stats_stage(st, STAGE_SHIFT);
     if (P)
-        stats_orders(st, g->n, g->order, method_code(tr->shadow));
+        stats_orders(st, g->n, g->order, tr->shadow.kind == METHOD_AUTO ? ORDER_ANY : method_code(tr->shadow));
 }
 
 static void shape_displaced(int32_t id, workspace *v)
 {
+    v->alone = false;
     displaced_shape(v->surface[id], &v->g);
     stats_orders(v->stats, v->g.n, v->g.order, ORDER_EXACT);
     stats_stage(v->stats, STAGE_SURFACE);
+}
+
+/* Where it is shaded: at the smooth hit, or at r + s t0. */
+static void place(const tracer *tr, int32_t id, workspace *v)
+{
+    const bump *P = tr->scene->object[id].bump;
+    const bool own = shadow_is_own(tr, id, v);
+    if (!tr->shifted || !P || displaced_is(v->surface[id])) {
+        place_smooth(own, &v->g);
+        return;
+    }
+    place_shifted(v->surface[id], P, own, &v->g);
+    v->stats->evaluations += v->g.n;
+    stats_stage(v->stats, STAGE_PLACE);
 }
 
 /* The light that object `id` sends to the eye. */
@@ -58,6 +86,7 @@ static void light_group(const tracer *tr, int32_t id, workspace *v)
     const object *o = &s->object[id];
     const material *m = &s->material[o->material];
     hit_group *g = &v->g;
+    const bool own = shadow_is_own(tr, id, v);
     if (o->color)
         o->color->ops->eval(o->color, g->n, g->u, g->w, &g->color);
     shade_ambient(g, m);
@@ -67,7 +96,7 @@ static void light_group(const tracer *tr, int32_t id, workspace *v)
         if (tr->layers)
             samples_put_visibility(g, s->clear, v->visibility[l]);
         lighting_fade(&s->light[l], g);
-        shade_light(g, m, &s->light[l], s->clear);
+        shade_light(g, m, &s->light[l], s->clear, !own);
         stats_stage(v->stats, STAGE_SHADE);
     }
 }
@@ -81,6 +110,7 @@ void trace_group(const tracer *tr, int32_t id, workspace *v)
     if (v->of)
         shift_within(&v->g);
     shift_origins(&v->g);
+    place(tr, id, v);
     light_group(tr, id, v);
 }
 

@@ -16,6 +16,8 @@ typedef struct tracer {
     const scene *scene;
     method shadow;
     bool guard;       /* orders fall back where their result is outside the slab */
+    bool shifted;     /* shade at r + s t0 */
+    bump_shadow bump_shadow;
     bool displaced;   /* rays meet the displaced surfaces of bumped objects; no method is used */
     bool self_shadow; /* bumped objects cast shadows, on themselves and on others */
     bool layers;      /* compute the layers, too */
@@ -26,6 +28,7 @@ struct workspace {
     rays x;       /* the wave */
     hits nearest; /* its hits; -1 where a group has been taken out */
     hit_group g;  /* the current group */
+    bool alone;   /* no other object can shadow it (auto.h) */
     samples out;
     real (*visibility)[LANES]; /* for each light of the scene; with layers only */
 

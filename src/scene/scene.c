@@ -1,6 +1,7 @@
 /* Frees a scene. */
 #include "scene/scene.h"
 
+#include "scene/horizons.h"
 #include "scene/object_bvh.h"
 
 #include <stdlib.h>
@@ -9,6 +10,7 @@ void scene_free(scene *s)
 {
     if (!s)
         return;
+    horizons_free(s->horizons);
     object_bvh_free(s->object_bvh);
     for (int i = 0; i < s->lights; i++)
         free(s->light[i].name);

@@ -9,6 +9,7 @@
 #include "geometry/closed_form.h"
 #include "geometry/surface.h"
 #include "mesh/mesh_data.h"
+#include "method/bump_shadow.h"
 #include "method/method.h"
 #include "scene/camera.h"
 #include "scene/light.h"
@@ -91,7 +92,9 @@ typedef struct scene {
     camera camera;
     camera_view view;
     method shadow;
-    bool guard;       /* orders fall back where their result is outside the slab */
+    bool guard;   /* orders fall back where their result is outside the slab */
+    bool shifted; /* shade at r + s t0 */
+    bump_shadow bump_shadow;
     bool displaced;   /* rays meet the displaced surfaces */
     bool self_shadow; /* bumped objects cast shadows */
     int aa;
@@ -104,11 +107,21 @@ typedef struct scene {
     int materials;
     object *object;
     int objects;
+    struct horizons *horizons;     /* for bump_shadow horizon; otherwise NULL */
     struct object_bvh *object_bvh; /* of many objects; NULL: few, all are tested */
 } scene;
 
 /* Whether bumped objects need their displaced surfaces. */
-static inline bool scene_wants_truth(const scene *s) { return s->displaced || s->shadow.kind == METHOD_EXACT; }
+static inline bool scene_wants_truth(const scene *s)
+{
+    return s->displaced || s->shadow.kind == METHOD_EXACT || s->bump_shadow.kind == BUMP_SHADOW_EXACT;
+}
+
+/* The setting that needs them, for messages. */
+static inline const char *scene_truth_name(const scene *s)
+{
+    return s->displaced ? "surface displaced" : s->shadow.kind == METHOD_EXACT ? "shadow exact" : "bump_shadow exact";
+}
 
 /* Limits: pixels along a side; lights, materials, objects; samples along a pixel's side; rays in a row. */
 enum { SCENE_MAX_SIDE = 32768, SCENE_MAX_ITEMS = 4096, SCENE_MAX_AA = 16, SCENE_MAX_DEPTH = 32 };

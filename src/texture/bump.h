@@ -71,6 +71,9 @@ bool bump_prepare(bump *p);
 
 void bump_free(bump *p);
 
+/* Whether bounds of P are known. */
+static inline bool bump_is_bounded(const bump *p) { return p->Pmax - p->Pmin < REAL_FAR; }
+
 /* For the constructors: nothing is known of second partials. */
 static inline void bump_unknown_bends(bump *p) { p->Puu_max = p->Puw_max = p->Pww_max = (real)HUGE_VAL; }
 

@@ -30,6 +30,12 @@ typedef struct hit_group {
     real t0[LANES];       /* t_hit + tau: the shadow ray starts at r + s t0 */
     int32_t order[LANES]; /* used; method_code's numbers */
 
+    /* the place that is shaded: the smooth hit, or r + s t0, with (u,w), q, bump and normals there (render/place.h) */
+    real t_shade[LANES];
+    int32_t shade_part[LANES]; /* of the surface; only with r + s t0 */
+
+    vec3s rough; /* X = Q + P n/|n| over the place that is shaded; only for the bumps' own shadows */
+
     /* the current light: the segments to it; 1 lit, 0 in shadow */
     rays to_light;
     real lit[LANES];

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from bench import cost, programs
+from bench import cost, plan, programs
 from tests.conftest import PROGRAM, TOP
 
 needs_povray = pytest.mark.skipif(not shutil.which("povray"), reason="no povray")
@@ -74,7 +74,7 @@ def test_kage_counts() -> None:
 
 def test_kage_check() -> None:
     assert programs.parse_check(CHECK_TEXT) == {"light": "lamp", "at": (-4, 5, -2.5), "receiver": "ground",
-                                                "slope_median": 0.145,
+                                                "casters": ("cube",), "slope_median": 0.145,
                                                 "slope_95": 0.291}
 
 
@@ -213,3 +213,30 @@ def test_a_coarse_mesh_is_not_measured(tmp_path: Path) -> None:
     with pytest.raises(programs.MeasureError, match="cube: POV-Ray would show another surface: .*coarse mesh"):
         cost.export(cast("Any", bench), cast("Any", scene), (4, 3), True, made)
     assert not made.exists()
+
+
+@pytest.mark.parametrize(("name", "options"), [
+    ("none", "--shadow none"), ("2 bare", "--shadow 2 --no-guard"), ("auto:1", "--shadow auto:1"),
+    ("march:8 shifted", "--shadow march:8 --shade shifted"),
+    ("march:8 shifted, own 24", "--shadow march:8 --shade shifted --bump-shadow march:24"),
+    ("0, own horizon", "--shadow 0 --bump-shadow horizon"),
+    ("exact shifted, own exact", "--shadow exact --shade shifted --bump-shadow exact"),
+    ("relief", "--relief"), ("displaced", "--surface displaced"),
+])
+def test_options_of_methods_and_variants(name: str, options: str) -> None:
+    assert programs.method_options(name) == tuple(options.split())
+
+
+@pytest.mark.parametrize("name", ["", "0 shiny", "0 shifted own 8", "0 shifted, own"])
+def test_no_variant(name: str) -> None:
+    with pytest.raises(ValueError, match="is no method, expected METHOD"):
+        programs.method_options(name)
+
+
+def test_kage_knows_the_variants(tmp_path: Path) -> None:
+    """All but those of methods that this program has not."""
+    known = programs.run([PROGRAM, "methods"])
+    for name in (*plan.METHODS, *plan.VARIANTS):
+        if not name.startswith("auto") or "auto" in known:
+            programs.run([PROGRAM, "render", "scenes/waves.yaml", *programs.method_options(name), "--size", "8x6",
+                          "--quiet", "-o", tmp_path / "a.png"])

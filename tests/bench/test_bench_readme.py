@@ -11,6 +11,7 @@ import pytest
 
 from bench import readme
 from tests.conftest import TOP
+from tests.support import bench_sample
 
 
 @pytest.fixture
@@ -72,6 +73,24 @@ def test_update_keeps_and_writes(data: dict[str, Any], tmp_path: Path, monkeypat
     monkeypatch.setattr(readme, "RESULT", tmp_path / "result.json")
     monkeypatch.setattr(readme, "kept", lambda report, sheets: report | {"sheets": sheets})
     readme.update(data, TOP / "docs")
-    assert json.loads((tmp_path / "result.json").read_text()) == data
+    sheets = {sheet: readme.pixels_digest(TOP / "docs" / sheet) for sheet in readme.SHEETS}
+    assert json.loads((tmp_path / "result.json").read_text()) == data | {"sheets": sheets}
     assert readme.disagreements(data) == []
     assert (tmp_path / "README.md").read_text() == (TOP / "README.md").read_text()
+
+
+def test_whole_pictures(data: dict[str, Any], tmp_path: Path) -> None:
+    """From a made-up report: what is kept is enough for the tables, and an old result has none of it."""
+    report = bench_sample.make_report(tmp_path)
+    made = readme.kept(report, {})
+    table = readme.whole_table(made, readme.WHOLE_VARIANTS)
+    assert "| `relief` | 0.02 %, 4.1× |" in table and "| `auto shifted, own 8` | – |" in table
+    assert "| cube, 10° | 60000 | 3.10 % | 5.00 % | 0.10 % |" in readme.own_table(made)
+    assert "| 0.0404 %, 1.37× |" in readme.auto_table(made)
+    assert "0 97.0 %, march 2.6 %, exact 0.4 %" in readme.auto_table(made)
+    assert "costs at most 4 times none. cube |" in readme.bounds_table(made)
+    assert "costs at most 4 times" not in readme.claims_table(made)
+    for part in ("whole", "claims"):
+        data[part] = [] if part == "claims" else {}
+    tables = (readme.own_table, readme.auto_table, readme.bounds_table)
+    assert {table(data) for table in tables} == {readme.whole_table(data, ())} == {readme.NOT_YET}

@@ -13,7 +13,8 @@ import pytest
 from bench import plots, report, tables
 from tests.support import bench_sample, browser
 
-FILES = {"index.html", "report.md", "cost.csv", "quality.csv", "sweeps.csv", "slopes.csv"}
+FILES = {"index.html", "report.md", "cost.csv", "quality.csv", "sweeps.csv", "slopes.csv",
+         "whole.csv", "series.csv", "own.csv"}
 NO_PICTURES = {"size": [640, 480], "scenes": {}}
 
 
@@ -57,7 +58,8 @@ def test_all_files(written: Path) -> None:
 def test_cost_csv(sample: tuple[dict, Path], written: Path) -> None:
     data, _ = sample
     rows = read_csv(written / "cost.csv")
-    assert len(rows) == len(data["scenes"]) * len(data["methods"]) + len(data["cost"]["peers"])
+    timed = set(data["methods"]) | set(data["variants"])
+    assert len(rows) == len(data["scenes"]) * len(timed) + len(data["cost"]["peers"])
     entry = data["cost"]["scenes"]["sphere"]["methods"]["march:4"]
     row = only(rows, scene="sphere", method="march:4")
     assert float(row["ns_median"]) == entry["ns"]["median"]
@@ -77,6 +79,30 @@ def test_quality_csv(sample: tuple[dict, Path], written: Path) -> None:
     assert float(row["mask_wrong"]) == 18.64
     assert float(row["hybrid_psnr"]) == entry["hybrid"]["psnr"]
     assert only(rows, scene="terrain", method="displaced")["tau_median"] == ""
+
+
+def test_whole_csv(sample: tuple[dict, Path], written: Path) -> None:
+    data, _ = sample
+    row = only(read_csv(written / "whole.csv"), scene="waves", variant="relief")
+    entry = data["whole"]["scenes"]["waves"]["relief"]
+    assert (float(row["off_8"]), float(row["povray_off_8"])) == (entry["off_8"], entry["povray"]["off_8"])
+    row = only(read_csv(written / "series.csv"), scene="cube", over="light", value="20", variant="0")
+    assert float(row["off"]) == data["whole"]["lamps"]["cube"]["off"]["0"][1]
+    row = only(read_csv(written / "own.csv"), scene="cube", light="10", how="own 8")
+    assert (row["shadow_pixels"], float(row["wrong"])) == ("60000", 3.1)
+
+
+def test_whole_pictures_in_words(sample: tuple[dict, Path], written: Path) -> None:
+    """In tables: what is off, what it costs, which no other beats, and what was not measured."""
+    text = (written / "report.md").read_text(encoding="utf-8")
+    part = text.split("## The whole picture")[1]
+    (line,) = re.findall(r"^\| relief \| (.*) \|$", part.split("###")[0], re.MULTILINE)
+    assert line.split(" | ")[:2] == ["0.02 ◆", "4.10 (4.08 to 4.13)"]
+    (line,) = re.findall(r"^\| cube, 30° \| (.*) \|$", part, re.MULTILINE)
+    assert line == "– | – | – | –"
+    (line,) = re.findall(r"^\| auto \| (.*) \|$", part.split("What auto costs")[1].split("###")[1], re.MULTILINE)
+    assert line.split(" | ")[1] == "0.0404 ★◆"
+    assert "2.70 % of the receiver is at the silhouette" in part
 
 
 def test_sweeps_csv(sample: tuple[dict, Path], written: Path) -> None:
@@ -196,13 +222,15 @@ def test_almost_nothing_measured(sample: tuple[dict, Path], tmp_path: Path) -> N
         scene["methods"] = {method: dict.fromkeys(entry) for method, entry in scene["methods"].items()}
     for methods in data["quality"]["scenes"].values():
         methods.update({method: dict.fromkeys(entry) for method, entry in methods.items()})
+    for scene in data["whole"]["scenes"].values():
+        scene.update({variant: dict.fromkeys(entry) for variant, entry in scene.items()})
     data |= {"complete": False, "sweeps": [], "slopes": {}, "pictures": NO_PICTURES, "claims": [], "answer": []}
     data["quality"] |= {"truth": None, "parity": {}}
     data["cost"] |= {"peers": [], "noise": {}}
     data["circumstances"] = {"date": "2026-11-22"} | dict.fromkeys(set(data["circumstances"]) - {"date"})
     assert report.write(data, tmp_path) == []
     assert "Not everything was measured" in (tmp_path / "index.html").read_text(encoding="utf-8")
-    for absent in ("quality", "cost"):
+    for absent in ("quality", "cost", "whole"):
         data[absent] = {}
     assert report.write(data, tmp_path) == []
 

@@ -163,8 +163,8 @@ for name in {missing}:
 if {tiny}:
     from bench import plan
     plan.LEVELS["quick"] = dataclasses.replace(
-        plan.LEVELS["quick"], methods=("none", "0", "exact", "displaced"), rounds=3, cost_size=(96, 54),
-        povray_size=(48, 27), count_size=(16, 16), slopes=(0.2, 1.0), angles=(30, 60))
+        plan.LEVELS["quick"], methods=("none", "0", "exact", "displaced"), variants=("none", "relief"), rounds=3,
+        cost_size=(96, 54), povray_size=(48, 27), count_size=(16, 16), slopes=(0.2, 1.0), angles=(30, 60))
 sys.argv = ["bench", *{arguments}]
 runpy.run_module("bench", run_name="__main__", alter_sys=True)
 """
@@ -194,7 +194,8 @@ def stable(out: Path) -> dict[str, object]:
     cost = {scene: {m: {k: c[k] for k in ("lookups", "shadow_rays", "instructions_added")} for m,
                     c in found["methods"].items()}
             for scene, found in data["cost"]["scenes"].items()}
-    return {"quality": data["quality"], "sweeps": data["sweeps"], "slopes": data["slopes"], "cost": cost}
+    return {"quality": data["quality"], "whole": data["whole"], "sweeps": data["sweeps"],
+            "slopes": data["slopes"], "cost": cost}
 
 
 @pytest.fixture(scope="module")
@@ -202,7 +203,10 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
     out = tmp_path_factory.mktemp("whole")
     done = bench(command(out, tiny=False))
     assert done.returncode in (0, 3), done.stderr
-    assert done.stdout == f"{out}/index.html\n"
+    *lines, last = done.stdout.splitlines()
+    assert last == f"{out}/index.html"
+    assert len(lines) > 10 and all(line.startswith("bound ") for line in lines)
+    assert "bound auto-wrong: waves: 0 % of the shadow's pixels wrong, at most 0.1: holds" in lines
     return out
 
 
@@ -224,7 +228,22 @@ def test_a_small_bench_has_it_all(whole: Path) -> None:
     assert steep["0"] > 1 > 0.2 > gentle["0"] and gentle["none"] > gentle["0"] > gentle["2"]
     fit = data["slopes"]["waves"]["fit"]
     assert abs(fit["0"] - 2) < 0.2 and abs(fit["1"] - 3) < 0.3 and abs(fit["2+"] - 4) < 0.5
-    assert len(data["answer"]) == 5 and len(data["claims"]) == 12
+    assert len(data["answer"]) == 7 and len(data["claims"]) == 12 + 7
+
+
+def test_a_small_bench_has_whole_pictures(whole: Path) -> None:
+    part = report(whole)["whole"]
+    none, shifted, relief = (part["scenes"]["waves"][v] for v in ("none", "march:8 shifted", "relief"))
+    assert none["off_8"] > 10 > 0.1 > shifted["off_8"] and none["flip"] > 10 * relief["flip"]
+    assert abs(none["off_8"] - none["povray"]["off_8"]) < 0.5 and none["silhouette"] == 0
+    low, high = (part["lamps"]["waves"]["off"]["march:8 shifted"][i] for i in (0, -1))
+    assert low > 1 > 0.1 > high, "bumps shadow each other by a low lamp"
+    own = part["own"]["waves"]
+    assert own["values"] == [10, 20, 30, 45, 60] and own["shadow"][0] > 5000
+    assert own["wrong"]["displaced"][0] < 1 and own["wrong"]["own 4"][-1] is None, "no shadow, no share"
+    assert sum(part["orders"]["waves"].values()) == pytest.approx(100)
+    pictures = report(whole)["pictures"]["scenes"]["waves"]
+    assert pictures["variants"].keys() == {"displaced", *report(whole)["variants"]} and pictures["orders"]
 
 
 def test_its_page_works_in_a_browser(whole: Path) -> None:

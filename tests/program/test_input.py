@@ -28,7 +28,8 @@ REPLACED = [
     ("camera-key-far", "fov: 40", "lens: 40", "1:58: camera has no 'lens', expected one of: from at up fov width"),
     ("image-key", "size: [40, 30]", "sise: [40, 30]", "2:9: image has no 'sise', did you mean 'size'?"),
     ("render-key", "aa: 1", "antialias: 1",
-     "3:34: render has no 'antialias', expected one of: shadow guard aa aa_threshold depth surface self_shadow"),
+     "3:34: render has no 'antialias', expected one of: shadow guard shade bump_shadow aa aa_threshold "
+     "depth surface self_shadow"),
     ("light-key", "color: [1, 1, 1]", "colour: [1, 1, 1]", "5:27: a light has no 'colour', did you mean 'color'?"),
     ("spot-key", "color: [1, 1, 1]", "spot: {to: [0, 0, 0], angle: 3}",
      "5:49: spot has no 'angle', expected one of: to radius falloff tightness"),
@@ -207,9 +208,9 @@ REPLACED = [
     ("size-one", "size: [40, 30]", "size: 40",
      "2:15: a single value, expected [width, height] in pixels, from 1 to 32768"),
     ("shadow", "shadow: 0", "shadow: 3",
-     "3:18: '3' is no method, expected none, 0, 1, 2, 2+, iter:K, march:N or exact"),
+     "3:18: '3' is no method, expected none, 0, 1, 2, 2+, iter:K, march:N, exact or auto[:E]"),
     ("shadow-iter", "shadow: 0", "shadow: 'iter:0'",
-     "3:19: 'iter:0' is no method, expected none, 0, 1, 2, 2+, iter:K, march:N or exact"),
+     "3:19: 'iter:0' is no method, expected none, 0, 1, 2, 2+, iter:K, march:N, exact or auto[:E]"),
     ("surface", "shadow: 0", "shadow: 0, surface: rough", "3:30: 'rough' is unknown, expected smooth or displaced"),
     ("self-shadow", "shadow: 0", "shadow: 0, self_shadow: 1", "3:34: '1' is unknown, expected true or false"),
     ("guard", "guard: true", "guard: yes", "3:28: 'yes' is unknown, expected true or false"),
@@ -774,7 +775,8 @@ def test_set_in_a_map_that_the_scene_lacks(bench: Kage) -> None:
     assert errors_in(lines) == [
         "--set:1:12: no '0' here: what stands before it is a single value, expected a map or a list",
         "--set:1:12: a single value, expected [width, height] in pixels, from 1 to 32768",
-        "--set:1:8: render has no 'foo', expected one of: shadow guard aa aa_threshold depth surface self_shadow",
+        "--set:1:8: render has no 'foo', expected one of: shadow guard shade bump_shadow aa "
+        "aa_threshold depth surface self_shadow",
     ]
     assert lines[-1] == "3 errors"
 
@@ -823,9 +825,9 @@ COMMAND = [
     ("ending-alone", ["render", "scene.yaml", "-o", ".png"],
      "-o .png: no such kind of picture, expected a name that ends in .png or .exr"),
     ("shadow", ["render", "scene.yaml", "--shadow", "3"],
-     "--shadow 3: no such method, expected none, 0, 1, 2, 2+, iter:K, march:N or exact"),
+     "--shadow 3: no such method, expected none, 0, 1, 2, 2+, iter:K, march:N, exact or auto[:E]"),
     ("shadow-steps", ["render", "scene.yaml", "--shadow", "march:0"],
-     "--shadow march:0: no such method, expected none, 0, 1, 2, 2+, iter:K, march:N or exact"),
+     "--shadow march:0: no such method, expected none, 0, 1, 2, 2+, iter:K, march:N, exact or auto[:E]"),
     *[(f"size-{size}", ["render", "scene.yaml", "--size", size],
        f"--size {size}: expected WIDTHxHEIGHT, each from 1 to 32768")
       for size in ("640", "640x", "640x480x2", "0x480", "-1x5", "640X480", "1e2x5", "32769x1", "99999999999x1", "")],

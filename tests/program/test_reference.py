@@ -64,9 +64,15 @@ isosurface was set to 1.0. The isosurface may contain holes!' >&2 ;;
 slow-*) echo 'Warning: ... Adjust max_gradient to get a faster rendering of the isosurface.' >&2 ;;
 nan-* | small-*) shot=$FAKE_POVRAY.exr ;;
 noshadow-mask-cast*) shot=mask-nocast.exr ;;
+noown-own-1.exr) shot=own-1-none.exr ;;
 esac
 cp {pictures}/$shot "$out"
 """
+
+
+SCENE = render.Checked({"lamp": (-4.0, 5.0, -2.5)}, ["cube"])
+ALL = 10  # renders for one scene: five for pictures and mask, five for the masks of own shadows
+FILES = {"waves.exr", "waves.mask.png", "waves.own.png", "manifest.json"}
 
 
 @pytest.fixture(scope="module")
@@ -77,11 +83,13 @@ def pictures(tmp_path_factory: pytest.TempPathFactory) -> Path:
     def write(name: str, picture: np.ndarray) -> None:
         references.write_exr(folder / f"{name}.exr", {c: picture[..., i] for i, c in enumerate("RGB")})
 
-    for shot in render.shots(["lamp"]):
+    for shot in (*render.shots(["lamp"]), *render.own_shots(SCENE)):
         picture = np.full((shot.size[1], shot.size[0], 3), 0.5)  # the receiver in the light
-        if shot.name != "mask-nocast":
+        if shot.name == "own-1":  # the red lamp is the lowest
+            picture[:20, :20, 0], picture[:10, :10, 1] = 0.1, 0.1
+        elif shot.name in ("self", "cast", "mask-cast"):
             picture[:20, :20] = 0.2
-        if shot.name == "mask-dark":
+        if shot.name in ("mask-dark", "own-dark"):
             picture[:] = 0.0984, 0.0864, 0.0696  # clay: colour times ambient
         picture[:, -10:] = 0.01  # another object
         write(shot.name, picture)
@@ -115,8 +123,8 @@ class Studio:
     def files(self) -> dict[str, bytes]:
         return {path.name: path.read_bytes() for path in self.folder.rglob("*") if path.is_file()}
 
-    def entry(self) -> dict[str, object]:
-        return references.read_manifest(self.folder)["waves"]
+    def entry(self, name: str = "waves") -> dict[str, object]:
+        return references.read_manifest(self.folder)[name]
 
 
 @pytest.fixture
@@ -131,21 +139,28 @@ def studio(tmp_path: Path, pictures: Path, monkeypatch: pytest.MonkeyPatch) -> S
 def test_committed(name: str) -> None:
     """Of the scene as it is now, by the commands as they are now, with the pixels of the manifest. (What `kage pov`
     writes is looked at by `make reference`: meshes take a while.)"""
-    plan = render.shots(render.lights_of(PROGRAM, render.scene_path(name)))
-    wanted = {"scene": references.scene_digest(TOP / render.scene_path(name)), "commands": render.commands(name, plan)}
-    assert references.why_stale(name, wanted) == "", "make reference"
+    scene = render.check(PROGRAM, render.scene_path(name))
+    digest = references.scene_digest(TOP / render.scene_path(name))
+    for entry, plan in ((name, render.shots(scene.lights)), (references.own_entry(name), render.own_shots(scene))):
+        wanted = {"scene": digest, "commands": render.commands(name, plan)}
+        assert references.why_stale(entry, wanted) == "", "make reference"
     reference = references.load(name)
     assert {picture.shape for picture in reference.pictures.values()} == {(240, 320, 3)}
     assert reference.mask.shape == (480, 640)
     assert set(np.unique(reference.mask)) <= {references.ELSEWHERE, references.AWAY, references.SHADOW, references.LIT}
     assert (reference.mask == references.SHADOW).sum() > 5000
-    assert all((references.FOLDER / file).stat().st_size < 500_000 for file in references.files(name))
+    own = references.load_own(name)
+    assert tuple(own.masks) == references.ELEVATIONS and {mask.shape for mask in own.masks.values()} == {(480, 640)}
+    assert (own.masks[min(own.masks)] == references.SHADOW).sum() > 5000
+    files = references.files(name) + references.files(references.own_entry(name))
+    assert all((references.FOLDER / file).stat().st_size < 500_000 for file in files)
 
 
 def test_every_scene_has_one() -> None:
     assert sorted(path.stem for path in (TOP / "scenes").glob("*.yaml")) == sorted(references.SCENES)
-    assert references.read_manifest().keys() == set(references.SCENES)
-    wanted = {file for name in references.SCENES for file in references.files(name)}
+    entries = {entry for name in references.SCENES for entry in (name, references.own_entry(name))}
+    assert references.read_manifest().keys() == entries
+    wanted = {file for entry in entries for file in references.files(entry)}
     assert {path.name for path in references.FOLDER.iterdir() if path.suffix in (".exr", ".png")} == wanted
 
 
@@ -154,46 +169,56 @@ def test_every_scene_has_one() -> None:
 
 def test_makes_then_leaves_alone(studio: Studio, capsys: pytest.CaptureFixture[str]) -> None:
     assert studio.make("good") == 0
-    assert studio.renders() == 5
-    assert studio.files().keys() == {"waves.exr", "waves.mask.png", "manifest.json"}
+    assert studio.renders() == ALL
+    assert studio.files().keys() == FILES
     reference = references.load("waves", studio.folder)
     assert reference.digest() == studio.entry()["pixels"]
     assert studio.entry()["povray"] == "POV-Ray 3.7.0.fake"
     want = np.full((480, 640), references.LIT, dtype=np.uint8)
     want[:20, :20], want[:, -10:] = references.SHADOW, references.ELSEWHERE
     assert (reference.mask == want).all()
-    assert capsys.readouterr().out == "waves: stale (not in the manifest)\nwaves: made\n"
+    own = references.load_own("waves", studio.folder)
+    assert own.digest() == studio.entry("waves.own")["pixels"]
+    for mask, side in zip(own.masks.values(), (20, 10, 0, 0, 0), strict=True):
+        want = np.full((480, 640), references.LIT, dtype=np.uint8)
+        want[:side, :side], want[:, -10:] = references.SHADOW, references.ELSEWHERE
+        assert (mask == want).all()
+    assert capsys.readouterr().out == "".join(f"{entry}: stale (not in the manifest)\n{entry}: made\n"
+                                              for entry in ("waves", "waves.own"))
     assert not list(render.WORK.glob("*.pov"))  # meshes are large
 
     before = studio.files()
     assert studio.make("good") == 0 and studio.make("good", "--check") == 0
-    assert capsys.readouterr().out == "waves: good\n" * 2
-    assert studio.renders() == 5 and studio.files() == before
+    assert capsys.readouterr().out == "waves: good\nwaves.own: good\n" * 2
+    assert studio.renders() == ALL and studio.files() == before
     assert studio.make("slow", "--all") == 0  # a warning that it could be faster is no reason to fail
-    assert studio.renders() == 10 and studio.files() == before
+    assert studio.renders() == 2 * ALL and studio.files() == before
 
 
 def test_check_only_tells(studio: Studio, capsys: pytest.CaptureFixture[str]) -> None:
     assert studio.make("good", "--check") == 1
-    assert capsys.readouterr().out == "waves: stale (not in the manifest)\n"
+    assert capsys.readouterr().out == "".join(f"{entry}: stale (not in the manifest)\n"
+                                              for entry in ("waves", "waves.own"))
     assert studio.renders() == 0 and not studio.files()
 
 
+@pytest.mark.parametrize("entry", ["waves", "waves.own"])
 @pytest.mark.parametrize("key", ["scene", "export", "povray", "commands", "pixels"])
-def test_stale(studio: Studio, key: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_stale(studio: Studio, key: str, entry: str, capsys: pytest.CaptureFixture[str]) -> None:
     studio.make("good")
     before = studio.files()
     manifest = references.read_manifest(studio.folder)
-    manifest["waves"][key] = "what it was once"
+    manifest[entry][key] = "what it was once"
     references.write_manifest(manifest, studio.folder)
     assert studio.make("good", "--check") == 1
     reason = "other pixels than the manifest's" if key == "pixels" else f"another {key}"
-    assert f"waves: stale ({reason})" in capsys.readouterr().out
+    assert f"{entry}: stale ({reason})" in capsys.readouterr().out
     assert studio.make("good") == 0
+    assert studio.renders() == ALL + ALL // 2  # the other one is left alone
     assert studio.files() == before
 
 
-@pytest.mark.parametrize("file", ["waves.exr", "waves.mask.png", "manifest.json"])
+@pytest.mark.parametrize("file", sorted(FILES))
 @pytest.mark.parametrize("content", [None, b"half a fi"])
 def test_broken_files(studio: Studio, file: str, content: bytes | None) -> None:
     studio.make("good")
@@ -239,17 +264,21 @@ FAILURES = {
     "nan": "values that are no numbers",
     "small": "another size",
     "noshadow": "show no shadow on the receiver",
+    "noown": "show no shadow of the bumps",
 }
+ONE_FAILS = {"fails": ("waves",), "fails-late": ("waves",), "noshadow": ("waves",), "noown": ("waves.own",)}
 
 
 @pytest.mark.parametrize("mode", FAILURES)
 def test_failures(studio: Studio, mode: str, capsys: pytest.CaptureFixture[str]) -> None:
-    """One message; nothing is made, and what was there stays as it was: a good reference, or a stale one that says
-    so."""
+    """One message for each entry that can't be made; of it nothing is made, and what was there stays as it was: good,
+    or stale and known to be."""
+    bad = ONE_FAILS.get(mode, ("waves", "waves.own"))
     assert studio.make(mode) == 1
     err = capsys.readouterr().err
-    assert err.startswith("render.py: waves: ") and err.count("render.py:") == 1 and FAILURES[mode] in err
-    assert not studio.files()
+    assert [line.split(": ")[1] for line in err.splitlines() if line.startswith("render.py: ")] == list(bad)
+    assert FAILURES[mode] in err
+    assert not studio.files().keys() & {file for entry in bad for file in references.files(entry)}
     assert studio.make("good") == 0
     before = studio.files()
     assert studio.make(mode, "--all") == 1
@@ -288,7 +317,7 @@ def test_check_needs_no_povray(studio: Studio, capsys: pytest.CaptureFixture[str
     studio.monkeypatch.setenv("PATH", str(studio.folder))
     assert studio.make("good", "--check") == 0
     out = capsys.readouterr().out
-    assert "its version is not compared" in out and out.endswith("waves: good\n")
+    assert "its version is not compared" in out and out.endswith("waves: good\nwaves.own: good\n")
 
 
 def test_interrupted_between_files(studio: Studio) -> None:
@@ -305,7 +334,7 @@ def test_interrupted_between_files(studio: Studio) -> None:
         render.keep("waves", reference, studio.entry(), studio.folder)
     assert studio.make("good", "--check") == 1
     assert studio.make("good") == 0
-    assert studio.files().keys() == {"waves.exr", "waves.mask.png", "manifest.json"}
+    assert studio.files().keys() == FILES
 
 
 def runs(pid: int) -> bool:
@@ -345,5 +374,5 @@ def test_usage(capsys: pytest.CaptureFixture[str]) -> None:
 def test_manifest_is_plain(studio: Studio) -> None:
     """Nothing of the machine or the day in it: the same references give the same bytes."""
     text = (references.FOLDER / "manifest.json").read_text()
-    assert json.loads(text).keys() == set(references.SCENES)
+    assert json.loads(text).keys() >= set(references.SCENES)
     assert str(TOP) not in text and "tmp" not in text

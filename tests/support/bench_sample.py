@@ -12,7 +12,8 @@ import numpy as np
 from PIL import Image
 
 METHODS = ("none", "0", "1", "1 bare", "2", "2 bare", "2+", "iter:2", "iter:4", "march:2", "march:4", "march:8",
-           "exact", "displaced")
+           "auto", "exact", "displaced")
+VARIANTS = ("none", "0", "march:8 shifted", "march:8 shifted, own 8", "relief")
 SCENES = {
     "cube": ("Cube over a bumpy plane (figures 4 to 7)", 0.30, 0.51, "ground", 40398),
     "sphere": ("Bumpy sphere (figure 8)", 0.33, 0.59, "globe", 20033),
@@ -20,17 +21,21 @@ SCENES = {
     "waves": ("Cube over waves, a function", 0.17, 0.30, "ground", 26768),
 }
 WRONG = {  # % by scene, in METHODS' order
-    "cube": (6.24, 1.37, 1.15, 2.61, 0.29, 0.61, 0.32, 0.64, 0.16, 0.62, 0.15, 0.03, 0.0, 0.0),
-    "sphere": (4.91, 1.38, 0.56, 1.32, 0.22, 0.68, 0.19, 0.53, 0.23, 0.63, 0.21, 0.10, 0.0, 0.0),
-    "terrain": (31.65, 7.13, 8.45, 18.64, 9.29, 15.43, 9.39, 2.95, 1.19, 4.45, 2.32, 0.70, 0.01, 0.009),
-    "waves": (3.18, 0.66, 0.17, 0.19, 0.04, 0.04, 0.01, 0.22, 0.06, 0.10, 0.02, 0.004, 0.0, 0.0),
+    "cube": (6.24, 1.37, 1.15, 2.61, 0.29, 0.61, 0.32, 0.64, 0.16, 0.62, 0.15, 0.03, 0.04, 0.0, 0.0),
+    "sphere": (4.91, 1.38, 0.56, 1.32, 0.22, 0.68, 0.19, 0.53, 0.23, 0.63, 0.21, 0.10, 0.12, 0.0, 0.0),
+    "terrain": (31.65, 7.13, 8.45, 18.64, 9.29, 15.43, 9.39, 2.95, 1.19, 4.45, 2.32, 0.70, 0.8, 0.01, 0.009),
+    "waves": (3.18, 0.66, 0.17, 0.19, 0.04, 0.04, 0.01, 0.22, 0.06, 0.10, 0.02, 0.004, 0.006, 0.0, 0.0),
 }
-NS = (27.1, 27.2, 28.4, 28.1, 33.4, 32.9, 34.6, 36.0, 45.1, 44.7, 58.1, 83.9, 870.8, 1389.6)
-INSTRUCTIONS = (151, 156, 168, 166, 209, 204, 221, 233, 318, 330, 455, 706, 9120, 15010)
+NS = (27.1, 27.2, 28.4, 28.1, 33.4, 32.9, 34.6, 36.0, 45.1, 44.7, 58.1, 83.9, 37.0, 870.8, 1389.6)
+INSTRUCTIONS = (151, 156, 168, 166, 209, 204, 221, 233, 318, 330, 455, 706, 260, 9120, 15010)
 STAGES = {"camera": 2.1, "hit": 2.4, "sort": 2.6, "surface": 2.4, "bump": 4.8, "normal": 2.2, "shift": 0.0,
           "shadow": 4.1, "shade": 4.1, "film": 2.4}
 FITS = {"waves": {"0": 1.98, "1": 2.97, "2": 3.01, "2+": 3.96}, "sphere": {"0": 2.0, "1": 2.02, "2": 2.01, "2+": 2.97}}
 THEORY = {"waves": {"0": 2, "1": 3, "2": 3, "2+": 4}, "sphere": {"0": 2, "1": 2, "2": 2, "2+": 3}}
+OFF = (29.5, 28.99, 0.2, 0.03, 0.02)  # % by more than 8/255, in VARIANTS' order
+TIMES = (1.0, 1.02, 2.4, 3.6, 3.1)  # none
+HEIGHTS = (10, 20, 30)  # of the lamp
+OWN = {"own 8": (3.1, 0.7, 0.2), "own horizon": (5.0, 1.2, 0.4), "displaced": (0.1, 0.1, 0.0)}  # % wrong, by HEIGHTS
 SIZE = (160, 120)  # of the made-up pictures
 REFERENCES = {"cast": "POV-Ray, displaced, only others' shadows", "self": "POV-Ray, displaced, all shadows"}
 COLOURS = ((235, 215, 180), (200, 200, 205), (225, 195, 150), (180, 205, 220))  # their grounds, by scene
@@ -43,6 +48,7 @@ SENTENCES = (
     ("area", "paper", "The method extends to area lights.", "journal, abstract"),
     ("cheap", "paper", "The added cost is negligible.", "section 5"),
     ("march", "kage", "A few steps of march beat every order on steep ground.", "docs/method.md"),
+    ("relief", "bound", "`--relief` costs at most 4 times none.", "docs/method.md"),
     ("parity", "kage", "Displacement agrees with POV-Ray's to within 1/255 on 99.5 % of the pixels.", "README.md"),
 )
 
@@ -77,6 +83,8 @@ def make_cost() -> dict:
                 "instructions": INSTRUCTIONS[i], "instructions_added": 100 * (INSTRUCTIONS[i] / INSTRUCTIONS[0] - 1),
                 "memory": 31_000_000 + 100_000 * i, "build_s": 0.0,
                 "command": f"build/float/kage render scenes/{scene}.yaml --shadow '{method}' --size 1280x720 --stats"}
+        for variant, times in zip(VARIANTS[2:], TIMES[2:], strict=True):
+            methods[variant] = methods["0"] | {"ns": interval(times * NS[0], 0.5), "added": interval(100 * times, 2.0)}
         scenes[scene] = {"methods": methods}
     peers = [
         {"name": "POV-Ray, bump_map", "scene": "cube", "ns": interval(1449.0, 12.0, 5), "build_s": None,
@@ -104,6 +112,27 @@ def make_quality() -> dict:
     parity = {scene: {"self": 99.97, "cast": 99.99, "mask": 0.005, "mask_differs": 1, "mask_shadow": pixels}
               for scene, (*_, pixels) in SCENES.items()}
     return {"truth": "POV-Ray 3.7.0.10", "picture_size": [320, 240], "scenes": scenes, "parity": parity}
+
+
+def make_errors(off: float) -> dict:
+    return {"off_1": 2 * off, "off_8": off, "off_32": off / 8, "median": off / 9, "p95": off, "silhouette": 2.7,
+            "silhouette_off": 40.0, "of_rest": 95.0 - off}
+
+
+def make_series(values: tuple[float, ...]) -> dict:
+    return {"values": list(values),
+            "off": {v: [off * (1 + 0.1 * i) for i in range(len(values))] for v, off in zip(VARIANTS, OFF, strict=True)}}
+
+
+def make_whole() -> dict:
+    entries = {variant: make_errors(off) | {"flip": off / 300, "povray": make_errors(off + 0.1),
+                                            "command": f"build/float/kage render scenes/cube.yaml # {variant}"}
+               for variant, off in zip(VARIANTS, OFF, strict=True)}
+    own = {"values": list(HEIGHTS), "shadow": [60000, 17000, None],
+           "wrong": {how: [*shares[:2], None] for how, shares in OWN.items()}}
+    return {"scenes": {scene: dict(entries) for scene in SCENES}, "lamps": dict.fromkeys(SCENES, make_series(HEIGHTS)),
+            "slopes": dict.fromkeys(SCENES, make_series((0.1, 0.6))), "own": dict.fromkeys(SCENES, own),
+            "orders": {scene: {"0": 97.0, "march": 2.6, "exact": 0.4} for scene in SCENES}}
 
 
 SWEPT = ("none", "0", "1", "2", "2+", "iter:2", "iter:4", "march:2", "march:4", "march:8")  # from cheap to dear
@@ -209,7 +238,16 @@ def make_pictures(folder: Path) -> dict:
         for kind, about in REFERENCES.items():
             make_picture(truth, colour).resize((80, 60)).save(place / f"povray-{kind}.png")
             references.append({"name": about, "file": f"pictures/{scene}/povray-{kind}.png"})
-        scenes[scene] = {"methods": methods, "references": references}
+        variants = {}
+        for variant in ("displaced", *VARIANTS):
+            name = f"pictures/{scene}/whole-{variant.replace(' ', '-').replace(':', '-').replace(',', '')}"
+            make_picture(truth, colour).save(folder / f"{name}.png")
+            make_wrong(truth, truth).save(folder / f"{name}.wrong.png")
+            variants[variant] = {"file": f"{name}.png",
+                                 "wrong": None if variant == "displaced" else f"{name}.wrong.png"}
+        Image.fromarray(np.where(truth, 1, 6).astype(np.uint8)).save(place / "auto.order.png")
+        scenes[scene] = {"methods": methods, "references": references, "variants": variants,
+                         "orders": f"pictures/{scene}/auto.order.png"}
     return {"size": list(SIZE), "scenes": scenes}
 
 
@@ -223,11 +261,12 @@ def make_report(folder: Path) -> dict:
             "processor": "Made-up Processor 9000", "processors": 2, "memory": 8 * 2**30, "system": "Linux 6.1",
             "compiler": "gcc 12.2", "povray": "POV-Ray 3.7.0.10", "load": [0.12, 0.3, 0.4],
             "packages": {"numpy": "2.4.6", "matplotlib": "3.11.2"}, "command": "make bench BENCH=normal"},
-        "methods": list(METHODS),
+        "methods": list(METHODS), "variants": list(VARIANTS),
         "scenes": {
             name: {"title": title, "slope_median": median, "slope_95": most, "receiver": receiver, "size": [640, 480],
                    "shadow_pixels": pixels} for name, (title, median, most, receiver, pixels) in SCENES.items()},
-        "cost": make_cost(), "quality": make_quality(), "sweeps": make_sweeps(), "slopes": make_slopes(),
+        "cost": make_cost(), "quality": make_quality(), "whole": make_whole(),
+        "sweeps": make_sweeps(), "slopes": make_slopes(),
         "pictures": make_pictures(folder), "claims": make_claims(),
         "answer": [
             "Order 0 takes away 72 to 79 % of the wrong shadow pixels for 0.4 % more time.",

@@ -52,6 +52,8 @@ static void options_are_as_changes(void **state)
         {{.method = "2+"}, "render.shadow=2+"},
         {{.method = "exact"}, "render.shadow=exact"},
         {{.displaced = KAGE_YES}, "render.surface=displaced"},
+        {{.shifted = KAGE_YES}, "render.shade=shifted"},
+        {{.bump_shadow = "exact"}, "render.bump_shadow=exact"},
         {{.guard = KAGE_NO, .method = "0"}, "render.guard=false"},
         {{.self_shadow = KAGE_NO}, "render.self_shadow=false"},
         {{.width = 30, .height = 40}, "image.size=[30, 40]"},

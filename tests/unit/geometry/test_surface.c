@@ -549,8 +549,56 @@ static void constructors_refuse_nonsense(void **state)
     assert_null(torus_new(o, x, (double)NAN, 1));
 }
 
+/* The foot of Q + h n/|n| is where Q is, however the ray to it runs, on the same part. */
+static void feet_are_below_their_points(void **state)
+{
+    const int kind = *(const int *)*state;
+    surface *f = make(kind);
+    int met = 0;
+    for (int round = 0; round < 20; round++) {
+        static rays x;
+        static hits h;
+        static partials q;
+        int32_t part[LANES], part_there[LANES];
+        real u[LANES], w[LANES], u_there[LANES], w_there[LANES], one[LANES];
+        for (int i = 0; i < LANES; i++)
+            random_ray(&x, i, 1);
+        no_hits(&h, LANES);
+        f->ops->hit(f, LANES, &x, 3, &h);
+        f->ops->locate(f, LANES, &x, h.t, part, u, w);
+        f->ops->eval(f, LANES, part, u, w, 1, &q);
+        for (int i = 0; i < LANES; i++) { /* rays that end at h = 0.02 or -0.02 over the hit, at t = 1 */
+            bs_vec3 Q = lane_get(&q.Q, i), n = bs_normal(lane_get(&q.Qu, i), lane_get(&q.Qw, i));
+            const real high = (i % 2 ? R(0.02) : R(-0.02)) / real_sqrt(bs_dot(n, n));
+            bs_vec3 to = {Q.x + high * n.x, Q.y + high * n.y, Q.z + high * n.z}, r = lane_get(&x.r, i),
+                    s = {to.x - r.x, to.y - r.y, to.z - r.z};
+            lane_set(&x.s, i, s);
+            one[i] = 1;
+            part_there[i] = part[i];
+            u_there[i] = w_there[i] = 0;
+        }
+        f->ops->foot(f, LANES, &x, one, part_there, u_there, w_there);
+        for (int i = 0; i < LANES; i++) {
+            if (h.id[i] < 0)
+                continue;
+            bs_vec3 Qu = lane_get(&q.Qu, i), Qw = lane_get(&q.Qw, i);
+            const double du = (double)(u_there[i] - u[i]), dw = (double)(w_there[i] - w[i]);
+            const bool around = fabs(du) > 3 || fabs(dw) > 3; /* across the end of a turn */
+            if (around || !bs_regular(bs_normal(Qu, Qw), Qu, Qw))
+                continue;
+            met++;
+            assert_int_equal(part_there[i], part[i]);
+            const double off = fabs(du) * sqrt((double)bs_dot(Qu, Qu)) + fabs(dw) * sqrt((double)bs_dot(Qw, Qw));
+            CHECK(off, <=, 200 * EPS * (1 + distance(lane_at(&x, i, 0), lane_at(&x, i, 1))));
+        }
+    }
+    CHECK(met, >, (kind == THIN ? 100 : 250));
+    surface_free(f);
+}
+
 static const property PROPERTIES[] = {
     {"hits are on the surface", hits_are_on_the_surface, NULL},
+    {"feet are below their points", feet_are_below_their_points, NULL},
     {"partials are derivatives", partials_are_derivatives, NULL},
     {"shadows agree with hits", shadows_agree_with_hits, NULL},
     {"dark stays dark", dark_stays_dark, NULL},

@@ -57,7 +57,7 @@ static void as_by_hand(material m, light_kind kind, bool tinted)
     int bright = 0;
     random_group(&g);
     shade_ambient(&g, &m);
-    shade_light(&g, &m, &l, tinted);
+    shade_light(&g, &m, &l, tinted, true);
     for (int i = 0; i < LANES; i++) {
         const double want = red(&g, i, &m, &l, tinted);
         NEAR(g.rgb.x[i], want, 400 * EPS);

@@ -1,0 +1,118 @@
+/* The formulas of bumpshadow.h for the bumps' own shadows, in loops over the lanes of a group. */
+#include "method/own_shadow.h"
+
+#include "wave/lane.h"
+
+STAGE static void places(const hit_group *restrict g, vec3s *restrict X)
+{
+    for (int i = 0; i < g->n; i++) {
+        bs_vec3 n = lane_get(&g->n_smooth, i), Q = lane_get(&g->q.Q, i);
+        real n2 = bs_dot(n, n), high = n2 > 0 ? g->bump.P[i] / real_sqrt(n2) : 0;
+        X->x[i] = Q.x + high * n.x;
+        X->y[i] = Q.y + high * n.y;
+        X->z[i] = Q.z + high * n.z;
+    }
+}
+
+void own_places(const hit_group *g, vec3s *X) { places(g, X); }
+
+/* Where the surface is not regular the way has no length: it is seen. */
+STAGE static void ways(const hit_group *restrict g, real Pmin, real Pmax, own_ways *restrict y)
+{
+    const real top = real_max(Pmax, 0) + (Pmax - Pmin), bottom = real_max(-Pmin, 0) + (Pmax - Pmin);
+    for (int i = 0; i < g->n; i++) {
+        bs_vec3 n = lane_get(&g->n_smooth, i), Qu = lane_get(&g->q.Qu, i), Qw = lane_get(&g->q.Qw, i);
+        bs_vec3 Quu = lane_get(&g->q.Quu, i), Quw = lane_get(&g->q.Quw, i), Qww = lane_get(&g->q.Qww, i);
+        bs_offset o = bs_offset_of(n, Qu, Qw, Quu, Quw, Qww, g->bump.P[i]);
+        bs_view d = bs_view_of(lane_get(&g->to_light.s, i), bs_normal(o.Qu, o.Qw), o.Qu, o.Qw);
+        bs_turn turn = bs_turn_of(d, n, Qu, Qw, Quu, Quw, Qww);
+        real P = g->bump.P[i], side = bs_dot(n, lane_get(&g->x.s, i)) < 0 ? R(1) : R(-1);
+        real curvature = bs_curvature(d, n, Quu, Quw, Qww);
+        bs_way w = bs_way_of(side, d, curvature, P, Pmin, Pmax);
+        real leave = bs_way_to(w.d, w.curvature, side > 0 ? top - P : bottom + P);
+        int regular = bs_regular(n, Qu, Qw);
+        y->side[i] = side;
+        y->sn[i] = regular ? w.d.sn : 0;
+        y->a[i] = regular ? d.a : 0;
+        y->b[i] = regular ? d.b : 0;
+        y->A[i] = regular ? turn.A : 0;
+        y->B[i] = regular ? turn.B : 0;
+        y->curvature[i] = regular ? w.curvature : 0;
+        y->end[i] = regular ? w.end : 0;
+        y->leave[i] = regular ? leave : 0;
+    }
+}
+
+STAGE static void turned_away(hit_group *restrict g, const real *restrict side)
+{
+    for (int i = 0; i < g->n; i++) {
+        real lit = g->lit[i];
+        g->lit[i] = side[i] * bs_dot(lane_get(&g->n_bump, i), lane_get(&g->to_light.s, i)) > 0 ? lit : 0;
+    }
+}
+
+void own_begin(const hit_group *g, const bump *P, own_ways *y) { ways(g, P->Pmin, P->Pmax, y); }
+
+void own_turned_away(hit_group *g, const own_ways *y) { turned_away(g, y->side); }
+
+STAGE static void bearings(int n, const own_ways *restrict y, real ku, real kw, real *restrict bearing,
+                           real *restrict rise)
+{
+    for (int i = 0; i < n; i++) {
+        bs_view d = {y->sn[i], y->a[i], y->b[i]};
+        bs_bearing x = bs_bearing_of(d, ku, kw);
+        bearing[i] = x.bearing;
+        rise[i] = x.rise;
+    }
+}
+
+STAGE static void subtract(int n, const real *restrict x, const real *restrict y, real *restrict z)
+{
+    for (int i = 0; i < n; i++)
+        z[i] = x[i] - y[i];
+}
+
+void own_above(const hit_group *g, const own_ways *y, const horizon *h, real *above)
+{
+    const table_grid *t = horizon_grid(h);
+    real bearing[LANES], rise[LANES], risen[LANES];
+    bearings(g->n, y, t->ku, t->kw, bearing, rise);
+    horizon_look(h, g->n, g->u, g->w, bearing, risen);
+    subtract(g->n, rise, risen, above);
+}
+
+STAGE static void sink(hit_group *restrict g, const real *restrict side, const real *restrict above)
+{
+    for (int i = 0; i < g->n; i++) {
+        real lit = g->lit[i];
+        g->lit[i] = (side[i] < 0) | (above[i] > 0) ? lit : 0;
+    }
+}
+
+void own_sink(hit_group *g, const own_ways *y, const real *above) { sink(g, y->side, above); }
+
+STAGE static void shares(int n, const real *restrict side, const real *restrict middle, const real *restrict along_u,
+                         const real *restrict along_w, real *restrict share)
+{
+    for (int i = 0; i < n; i++) {
+        real x = bs_horizon_share(middle[i], along_u[i] - middle[i], along_w[i] - middle[i], R(1e-6));
+        share[i] = side[i] < 0 ? 1 : x;
+    }
+}
+
+void own_share(int n, const real *side, const real *middle, const real *along_u, const real *along_w, real *share)
+{
+    shares(n, side, middle, along_u, along_w, share);
+}
+
+STAGE static void leave(hit_group *restrict g, const real *restrict at)
+{
+    for (int i = 0; i < g->n; i++) {
+        bs_vec3 r = lane_at(&g->to_light, i, at[i]), d = lane_get(&g->to_light.s, i);
+        real rest = 1 - at[i];
+        lane_set(&g->to_light.r, i, r);
+        lane_set(&g->to_light.s, i, (bs_vec3){d.x * rest, d.y * rest, d.z * rest});
+    }
+}
+
+void own_leave(hit_group *g, const own_ways *y) { leave(g, y->leave); }
