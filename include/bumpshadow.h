@@ -348,6 +348,28 @@ static inline bs_way bs_way_of(bs_real side, bs_view d, bs_real curvature, bs_re
     return y;
 }
 
+/* On a curved surface a straight way is a curve in (u,w), to second order (u + a t + A t^2, w + b t + B t^2): Q + h
+ * n/|n| does not accelerate, so what the partials of Q and of n/|n| add along (a,b) is made up for. a and b are best
+ * those of bs_view_of at X's own height, with bs_offset_of's Qu and Qw. On a plane A = B = 0. */
+typedef struct bs_turn {
+    bs_real A, B;
+} bs_turn;
+
+static inline bs_turn bs_turn_of(bs_view d, bs_vec3 n, bs_vec3 Qu, bs_vec3 Qw, bs_vec3 Quu, bs_vec3 Quw, bs_vec3 Qww)
+{
+    bs_offset o = bs_offset_of(n, Qu, Qw, Quu, Quw, Qww, 1); /* less Qu and Qw: the partials of n/|n| */
+    bs_real aa = d.a * d.a, ab = 2 * d.a * d.b, bb = d.b * d.b, ua = 2 * d.sn * d.a, wb = 2 * d.sn * d.b;
+    bs_vec3 x;
+    x.x = Quu.x * aa + Quw.x * ab + Qww.x * bb + (o.Qu.x - Qu.x) * ua + (o.Qw.x - Qw.x) * wb;
+    x.y = Quu.y * aa + Quw.y * ab + Qww.y * bb + (o.Qu.y - Qu.y) * ua + (o.Qw.y - Qw.y) * wb;
+    x.z = Quu.z * aa + Quw.z * ab + Qww.z * bb + (o.Qu.z - Qu.z) * ua + (o.Qw.z - Qw.z) * wb;
+    bs_view v = bs_view_of(x, n, Qu, Qw);
+    bs_turn r;
+    r.A = (bs_real)-0.5 * v.a;
+    r.B = (bs_real)-0.5 * v.b;
+    return r;
+}
+
 /* The place of step i of 1..N: near X they are denser, as there P is nearest to the way. */
 static inline bs_real bs_way_step(bs_real end, int i, int N)
 {

@@ -4,12 +4,13 @@
 
 enum { MOST = 64 }; /* steps: more halvings than a real has digits */
 
-#define ENOUGH R(0.125) /* of the tolerance: further steps would move the hit by less than rounding */
+#define ENOUGH R(0.0625) /* of the tolerance: further steps would move the hit by less than rounding */
 
 /* What goes on beside the brackets. */
 typedef struct refinement {
-    real best[LANES], before[LANES];  /* the best place; the gap at the last one */
-    int32_t kept[LANES], open[LANES]; /* which end the last step kept: 1 for b, -1 for a */
+    real best[LANES], before[LANES]; /* the best place; the gap at the last one */
+    real kept[LANES];                /* which end the last step kept: 1 for b, -1 for a, 0 for none yet */
+    int32_t open[LANES];             /* goes on */
 } refinement;
 
 static void keep(crossings *c, refinement *r, int from, int to)
@@ -29,39 +30,49 @@ static void keep(crossings *c, refinement *r, int from, int to)
     r->open[to] = r->open[from];
 }
 
-/* The next place in the bracket; NaN or an end where there is none. */
-static real next(const crossings *c, int i, bool halve)
+/* The next place in a bracket; an end where there is none. */
+static inline real next(real a, real b, real above_a, real above_b, int halve)
 {
-    const real a = c->a[i], b = c->b[i], k = c->above_a[i] / (c->above_a[i] - c->above_b[i]);
-    const real t = a + (b - a) * k;
-    return halve || !(t > a && t < b) ? a + (b - a) * R(0.5) : t;
+    const real t = a + (b - a) * (above_a / (above_a - above_b)), middle = a + (b - a) * R(0.5);
+    const int out = halve | !((t > a) & (t < b));
+    return out ? middle : t;
 }
 
-/* Take the gap at t; whether the search goes on. */
-static bool narrow(crossings *c, refinement *r, int i)
+STAGE static void lay(crossings *restrict c, refinement *restrict r)
 {
-    const real t = c->at.t[i], above = c->side[i] * c->at.gap[i], size = real_abs(above);
-    const bool slow = size > R(0.5) * r->before[i];
-    if (size < c->least[i]) {
-        c->least[i] = size;
-        r->best[i] = t;
+    const int n = c->at.n;
+    for (int i = 0; i < n; i++) {
+        c->at.t[i] = next(c->a[i], c->b[i], c->above_a[i], c->above_b[i], 0);
+        c->least[i] = real_abs(c->above_b[i]);
+        r->best[i] = c->b[i];
+        r->before[i] = REAL_FAR;
+        r->kept[i] = 0;
+        r->open[i] = 1;
     }
-    if (above > 0) {
-        c->a[i] = t;
-        c->above_a[i] = above;
-        c->above_b[i] *= r->kept[i] == 1 ? R(0.5) : 1;
-        r->kept[i] = 1;
-    } else {
-        c->b[i] = t;
-        c->above_b[i] = above;
-        c->above_a[i] *= r->kept[i] == -1 ? R(0.5) : 1;
-        r->kept[i] = -1;
+}
+
+/* Take the gaps at t. An end that is kept twice has its gap halved. */
+STAGE static void narrow(crossings *restrict c, refinement *restrict r)
+{
+    const int n = c->at.n;
+    for (int i = 0; i < n; i++) {
+        const real t = c->at.t[i], above = c->side[i] * c->at.gap[i], size = real_abs(above), kept = r->kept[i];
+        const int up = above > 0, better = size<c->least[i], slow = size> R(0.5) * r->before[i];
+        const real less_a = kept < 0 ? R(0.5) * c->above_a[i] : c->above_a[i];
+        const real less_b = kept > 0 ? R(0.5) * c->above_b[i] : c->above_b[i];
+        const real a = up ? t : c->a[i], b = up ? c->b[i] : t, fa = up ? above : less_a, fb = up ? less_b : above;
+        const real to = next(a, b, fa, fb, slow);
+        r->best[i] = better ? t : r->best[i];
+        c->least[i] = better ? size : c->least[i];
+        c->a[i] = a;
+        c->b[i] = b;
+        c->above_a[i] = fa;
+        c->above_b[i] = fb;
+        r->kept[i] = up ? R(1) : R(-1);
+        r->before[i] = size;
+        r->open[i] = (size > ENOUGH * c->tolerance[i]) & (to > a) & (to < b);
+        c->at.t[i] = to;
     }
-    r->before[i] = size;
-    if (size <= ENOUGH * c->tolerance[i])
-        return false;
-    c->at.t[i] = next(c, i, slow);
-    return c->at.t[i] > c->a[i] && c->at.t[i] < c->b[i];
 }
 
 /* A ray from the surface itself was let go on until it was clearly below, so that its bracket can begin there. */
@@ -75,21 +86,16 @@ static void take(const crossings *c, const refinement *r, int i, real *t, int32_
 void crossings_refine(const domain *f, const bump *P, crossings *c, real *t, int32_t *found)
 {
     refinement r;
-    for (int i = 0; i < c->at.n; i++) {
-        c->at.t[i] = next(c, i, false);
-        c->least[i] = real_abs(c->above_b[i]);
-        r.best[i] = c->b[i];
-        r.before[i] = REAL_FAR;
-        r.kept[i] = 0;
-    }
+    lay(c, &r);
     for (int step = 0; step < MOST && c->at.n; step++) {
         int n = 0;
         paths_evaluate(f, P, 0, &c->at);
+        narrow(c, &r);
         for (int i = 0; i < c->at.n; i++)
-            if (narrow(c, &r, i))
-                keep(c, &r, i, n++);
-            else
+            if (!r.open[i])
                 take(c, &r, i, t, found);
+            else if (n++ < i)
+                keep(c, &r, i, n - 1);
         c->at.n = n;
     }
     for (int i = 0; i < c->at.n; i++)

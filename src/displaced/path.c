@@ -9,16 +9,22 @@ STAGE static void gaps(int n, const real *restrict h, const real *restrict P, re
         gap[i] = h[i] - P[i];
 }
 
-STAGE static void slopes(int n, const rays *restrict x, const closest_points *restrict p, const bump_values *restrict h,
-                         real *restrict du, real *restrict dw, real *restrict dh, real *restrict slope)
+STAGE static void rates(int n, const rays *restrict x, const closest_points *restrict p, real *restrict du,
+                        real *restrict dw, real *restrict dh)
 {
     for (int i = 0; i < n; i++) {
         const bs_vec3 d = lane_get(&x->s, i);
         du[i] = bs_dot(d, lane_get(&p->gu, i));
         dw[i] = bs_dot(d, lane_get(&p->gw, i));
         dh[i] = bs_dot(d, lane_get(&p->gh, i));
-        slope[i] = dh[i] - h->Pu[i] * du[i] - h->Pw[i] * dw[i];
     }
+}
+
+STAGE static void slopes(paths *restrict k)
+{
+    const int n = k->n;
+    for (int i = 0; i < n; i++)
+        k->slope[i] = k->dh[i] - k->h.Pu[i] * k->du[i] - k->h.Pw[i] * k->dw[i];
 }
 
 void paths_evaluate(const domain *f, const bump *P, int order, paths *k)
@@ -30,8 +36,13 @@ void paths_evaluate(const domain *f, const bump *P, int order, paths *k)
     P->ops->eval(P, k->n, f->unclamped ? u : k->p.u, f->unclamped ? w : k->p.w, order, &k->h);
     k->evaluations += k->n;
     gaps(k->n, k->p.h, k->h.P, k->gap);
+}
+
+void paths_differentiate(int order, paths *k)
+{
+    rates(k->n, &k->x, &k->p, k->du, k->dw, k->dh);
     if (order > 0)
-        slopes(k->n, &k->x, &k->p, &k->h, k->du, k->dw, k->dh, k->slope);
+        slopes(k);
 }
 
 void paths_copy(const paths *k, int from, paths *other, int to)

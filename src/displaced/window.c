@@ -54,9 +54,12 @@ STAGE static void clear(const paths *restrict k, const bends *restrict P2, const
         const real bu = b->u[i] * d, bw = b->w[i] * d, bh = b->h[i] * d;
         const real U = real_abs(k->du[i]) + bu, W = real_abs(k->dw[i]) + bw;
         /* the slope's bounds, by P's slopes and by its bends */
-        const real any = bh + P->Pu[i] * U + P->Pw[i] * W;
-        const real turn = bh + P->Pu[i] * bu + P->Pw[i] * bw + (uu * U * U + 2 * uw * U * W + ww * W * W) * d;
-        const real least = real_max(g - turn, h - any), most = real_min(g + turn, h + any);
+        const real air = bh + P->Pu[i] * bu + P->Pw[i] * bw, du = k->du[i], dw = k->dw[i];
+        const real u0 = du * P->Pu_lo[i], u1 = du * P->Pu_hi[i], w0 = dw * P->Pw_lo[i], w1 = dw * P->Pw_hi[i];
+        const real low = real_min(u0, u1) + real_min(w0, w1), high = real_max(u0, u1) + real_max(w0, w1);
+        const real turn = air + (uu * U * U + 2 * uw * U * W + ww * W * W) * d;
+        const real least = real_max(g - turn, h - air - (s > 0 ? high : -low));
+        const real most = real_min(g + turn, h + air - (s > 0 ? low : -high));
         const real by_slope = above / -least;
         /* above + g x - turn/d x^2/2 = 0; the root without cancellation */
         const real c = turn / d, root = real_sqrt(g * g + 2 * c * above),

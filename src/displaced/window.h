@@ -11,7 +11,8 @@ typedef struct windows {
     int32_t one[LANES]; /* the gap falls all over the window: it has one hit at most, and step is size */
 } windows;
 
-/* k is evaluated to order 1. side: 1 where the gap is above 0, -1 where it is below. tolerance: of places. */
+/* k is evaluated and differentiated; where P has no bounds of its second partials, the gap's slope does not matter.
+ * side: 1 where the gap is above 0, -1 where it is below. tolerance: of places. */
 void windows_clear(const domain *f, const bump *P, const paths *k, const real *side, const real *tolerance,
                    windows *out);
 

@@ -6,10 +6,12 @@
 #include "wave/lane.h"
 
 enum {
-    STEPS_MAX = 16,  /* through a bracket */
+    STEPS_MAX = 16,
     SECANTS_MAX = 8, /* after them */
+    COMPACT = 3,     /* after so many steps the lanes that have ended are dropped */
 };
 #define STEP_ERRORS 32 /* the length of a step in errors */
+#define LEAST_GAP 0.1  /* of an end, of what the ray sinks in its bracket */
 
 static inline bs_view view(const brackets *k, int i) { return (bs_view){k->sn[i], k->a[i], k->b[i]}; }
 
@@ -32,12 +34,15 @@ static inline real reaches(bs_view v, real curvature, real P)
     return d >= 0 ? root : turn;
 }
 
-/* Both ends, not before the ray's start; tau where there is no bracket. */
-static inline void set_ends(const hit_group *restrict g, int i, real x, real y, brackets *restrict k)
+/* Both ends, not before the ray's start; tau where there is no bracket. Where the smooth hit is below the rough surface
+ * the ray has met it before. */
+static inline void set_ends(const hit_group *restrict g, int i, real sn, real x, real y, brackets *restrict k)
 {
-    real tau = g->tau[i], start = -g->t[i], front = real_max(real_min(x, y), start), back = real_max(x, y);
+    real tau = g->tau[i], start = -g->t[i], P = g->bump.P[i], front = real_max(real_min(x, y), start);
+    real back = real_max(x, y), above = sn < 0 ? -P : P;
+    back = (above <= 0) & (back > 0) ? 0 : back;
     int good = (g->order[i] >= 0) & (back - front < REAL_FAR);
-    back = real_max(back, start);
+    back = real_max(back, front);
     k->front[i] = good ? front : tau;
     k->back[i] = good ? back : tau;
 }
@@ -49,7 +54,7 @@ STAGE static void begin_flat(hit_group *restrict g, real Pmin, real Pmax, bracke
         bs_view v = bs_view_of(lane_get(&g->x.s, i), n, Qu, Qw);
         first_try(g, i, n, Qu, Qw, v.sn);
         k->sn[i] = v.sn;
-        set_ends(g, i, Pmin / v.sn, Pmax / v.sn, k);
+        set_ends(g, i, v.sn, Pmin / v.sn, Pmax / v.sn, k);
     }
 }
 
@@ -64,7 +69,7 @@ STAGE static void begin_curved(hit_group *restrict g, real Pmin, real Pmax, brac
         k->a[i] = v.a;
         k->b[i] = v.b;
         k->curvature[i] = curvature;
-        set_ends(g, i, reaches(v, curvature, Pmin), reaches(v, curvature, Pmax), k);
+        set_ends(g, i, v.sn, reaches(v, curvature, Pmin), reaches(v, curvature, Pmax), k);
     }
 }
 
@@ -110,6 +115,9 @@ void places_pick(const hit_group *g, const brackets *k, int n, const int32_t *la
         p->t[i] = g->t[j];
         p->u[i] = g->u[j];
         p->w[i] = g->w[j];
+        p->P[i] = g->bump.P[j];
+        p->Pu[i] = g->bump.Pu[j];
+        p->Pw[i] = g->bump.Pw[j];
         p->tau[i] = g->tau[j];
         p->pixels[i] = 0;
         p->order[i] = g->order[j];
@@ -131,74 +139,175 @@ void places_put(const places *p, hit_group *g)
 
 /* ---- the search ---- */
 
-/* The ends of the brackets that the search has reached, and the gaps there, positive above the rough surface. */
+/* The ends that the search has reached, and the gaps there, positive above the rough surface. At first they are those
+ * of P's tangent at the smooth hit, of the sign that they must have. */
 typedef struct search {
     real front[LANES], back[LANES], above[LANES], below[LANES];
     real steps[LANES];
-    int32_t found[LANES]; /* `back` is below the rough surface */
     int32_t done[LANES];
     real at[LANES], u[LANES], w[LANES]; /* the place that is looked up */
     bump_values h;
 } search;
 
+static inline real above_at(bs_view v, real curvature, real tau, real P)
+{
+    real gap = bs_gap(v, curvature, tau, P);
+    return v.sn < 0 ? gap : -gap;
+}
+
 STAGE static void search_begin(const places *restrict p, real per_step, search *restrict s)
 {
     const brackets *k = &p->k;
     for (int i = 0; i < k->n; i++) {
-        real steps = real_floor((k->back[i] - k->front[i]) * p->pixels[i] / per_step) + 1;
-        s->steps[i] = real_min(steps, STEPS_MAX);
-        s->front[i] = k->front[i];
-        s->back[i] = k->back[i];
-        s->above[i] = 0;
-        s->below[i] = 0;
-        s->found[i] = 0;
-        s->done[i] = 0;
-    }
-}
-
-STAGE static void search_place(const brackets *restrict k, real step, search *restrict s)
-{
-    for (int i = 0; i < k->n; i++) {
-        real front = k->front[i], back = k->back[i], along = step / s->steps[i];
-        s->at[i] = along < 1 ? front + (back - front) * along : back;
-    }
-}
-
-STAGE static void search_step(const brackets *restrict k, real step, search *restrict s)
-{
-    for (int i = 0; i < k->n; i++) {
         bs_view v = view(k, i);
-        real gap = bs_gap(v, k->curvature[i], s->at[i], s->h.P[i]), above = v.sn < 0 ? gap : -gap, at = s->at[i];
-        real front = s->front[i], back = s->back[i], high = s->above[i], low = s->below[i];
-        int looking = (s->found[i] == 0) & (step <= s->steps[i]), hit = looking & (above <= 0),
-            pass = looking & (above > 0);
-        s->front[i] = pass ? at : front;
-        s->above[i] = pass ? above : high;
-        s->back[i] = hit ? at : back;
-        s->below[i] = hit ? above : low;
-        s->found[i] |= hit;
+        real front = k->front[i], back = k->back[i], width = back - front;
+        real least = real_abs(v.sn) * width * R(LEAST_GAP), rise = p->Pu[i] * v.a + p->Pw[i] * v.b;
+        real steps = real_floor(width * p->pixels[i] / per_step) + 1;
+        s->steps[i] = real_min(steps, STEPS_MAX);
+        s->front[i] = front;
+        s->back[i] = back;
+        s->above[i] = real_max(above_at(v, k->curvature[i], front, p->P[i] + rise * front), least);
+        s->below[i] = real_min(above_at(v, k->curvature[i], back, p->P[i] + rise * back), -least);
+        s->done[i] = width <= 0;
     }
 }
 
-STAGE static void secant_place(int n, search *restrict s)
+/* Lanes that still take steps, side by side. */
+typedef struct walk {
+    int n;
+    int32_t place[LANES];
+    real sn[LANES], a[LANES], b[LANES], curvature[LANES], u[LANES], w[LANES];
+    real from[LANES], length[LANES], steps[LANES];
+    real front[LANES], back[LANES], above[LANES], below[LANES];
+    int32_t found[LANES];
+    real at[LANES], pu[LANES], pw[LANES];
+    bump_values h;
+} walk;
+
+static void walk_begin(const places *p, const search *s, walk *x)
 {
-    for (int i = 0; i < n; i++) {
-        real rise = s->above[i] - s->below[i];
-        real part = rise > 0 ? s->above[i] / rise : 0;
-        s->at[i] = s->front[i] + (s->back[i] - s->front[i]) * part;
+    const brackets *k = &p->k;
+    int n = 0;
+    for (int i = 0; i < k->n; i++) {
+        if (!(s->steps[i] > 1))
+            continue;
+        x->place[n] = i;
+        x->sn[n] = k->sn[i];
+        x->a[n] = k->a[i];
+        x->b[n] = k->b[i];
+        x->curvature[n] = k->curvature[i];
+        x->u[n] = p->u[i];
+        x->w[n] = p->w[i];
+        x->from[n] = k->front[i];
+        x->length[n] = (k->back[i] - k->front[i]) / s->steps[i];
+        x->steps[n] = s->steps[i];
+        x->front[n] = s->front[i];
+        x->back[n] = s->back[i];
+        x->above[n] = s->above[i];
+        x->below[n] = s->below[i];
+        x->found[n] = 0;
+        n++;
+    }
+    x->n = n;
+}
+
+/* Let those end that have found a crossing or have but the last step left, to the bracket's back. */
+static void walk_compact(walk *x, real step, search *s)
+{
+    int n = 0;
+    for (int i = 0; i < x->n; i++) {
+        if (x->found[i] || step + 1 >= x->steps[i]) {
+            const int j = x->place[i];
+            s->front[j] = x->front[i];
+            s->back[j] = x->back[i];
+            s->above[j] = x->above[i];
+            s->below[j] = x->below[i];
+            continue;
+        }
+        x->place[n] = x->place[i];
+        x->sn[n] = x->sn[i];
+        x->a[n] = x->a[i];
+        x->b[n] = x->b[i];
+        x->curvature[n] = x->curvature[i];
+        x->u[n] = x->u[i];
+        x->w[n] = x->w[i];
+        x->from[n] = x->from[i];
+        x->length[n] = x->length[i];
+        x->steps[n] = x->steps[i];
+        x->front[n] = x->front[i];
+        x->back[n] = x->back[i];
+        x->above[n] = x->above[i];
+        x->below[n] = x->below[i];
+        x->found[n] = 0;
+        n++;
+    }
+    x->n = n;
+}
+
+STAGE static void walk_place(walk *restrict x, real step)
+{
+    for (int i = 0; i < x->n; i++) {
+        real at = x->from[i] + x->length[i] * step;
+        x->at[i] = at;
+        x->pu[i] = x->u[i] + x->a[i] * at;
+        x->pw[i] = x->w[i] + x->b[i] * at;
     }
 }
 
-/* Take the place in, unless the lane is done; the end that stays counts half, so that both ends move (Illinois). */
+STAGE static void walk_step(walk *restrict x, real step)
+{
+    for (int i = 0; i < x->n; i++) {
+        bs_view v = {x->sn[i], x->a[i], x->b[i]};
+        real at = x->at[i], above = above_at(v, x->curvature[i], at, x->h.P[i]);
+        real front = x->front[i], back = x->back[i], high = x->above[i], low = x->below[i];
+        int looking = (x->found[i] == 0) & (step < x->steps[i]), hit = looking & (above <= 0),
+            pass = looking & (above > 0);
+        x->front[i] = pass ? at : front;
+        x->above[i] = pass ? above : high;
+        x->back[i] = hit ? at : back;
+        x->below[i] = hit ? above : low;
+        x->found[i] |= hit;
+    }
+}
+
+static long take_steps(const places *p, const bump *P, search *s)
+{
+    walk x;
+    long looks = 0;
+    walk_begin(p, s, &x);
+    for (int step = 1; x.n > 0; step++) {
+        walk_place(&x, (real)step);
+        P->ops->eval(P, x.n, x.pu, x.pw, 0, &x.h);
+        walk_step(&x, (real)step);
+        looks += x.n;
+        if (step % COMPACT == 0)
+            walk_compact(&x, (real)step, s);
+    }
+    return looks;
+}
+
+STAGE static void secant_place(const places *restrict p, search *restrict s)
+{
+    for (int i = 0; i < p->k.n; i++) {
+        real rise = s->above[i] - s->below[i], part = rise > 0 ? s->above[i] / rise : 0;
+        real at = s->front[i] + (s->back[i] - s->front[i]) * part;
+        s->at[i] = at;
+        s->u[i] = p->u[i] + p->k.a[i] * at;
+        s->w[i] = p->w[i] + p->k.b[i] * at;
+    }
+}
+
+/* Take the place in, unless the lane is done, and as tau the next. The end that stays counts half, so that both ends
+ * move (Illinois). */
 STAGE static void secant_step(places *restrict p, real error, search *restrict s)
 {
     const brackets *k = &p->k;
     for (int i = 0; i < k->n; i++) {
         bs_view v = view(k, i);
-        real gap = bs_gap(v, k->curvature[i], s->at[i], s->h.P[i]), above = v.sn < 0 ? gap : -gap, at = s->at[i];
+        real above = above_at(v, k->curvature[i], s->at[i], s->h.P[i]), at = s->at[i];
         real front = s->front[i], back = s->back[i], high = s->above[i], low = s->below[i];
         real rise = high - low, left = real_abs(above) * (back - front), tau = p->tau[i];
-        int open = (s->found[i] != 0) & (s->done[i] == 0), hit = above <= 0;
+        int open = s->done[i] == 0, hit = above <= 0;
         front = hit ? front : at;
         back = hit ? at : back;
         high = hit ? high : above;
@@ -210,20 +319,6 @@ STAGE static void secant_step(places *restrict p, real error, search *restrict s
         s->below[i] = hit ? low : low * R(0.5);
         s->done[i] |= left * p->pixels[i] <= error * rise;
     }
-}
-
-STAGE static void search_places(const places *restrict p, search *restrict s)
-{
-    for (int i = 0; i < p->k.n; i++) {
-        s->u[i] = p->u[i] + p->k.a[i] * s->at[i];
-        s->w[i] = p->w[i] + p->k.b[i] * s->at[i];
-    }
-}
-
-static void look_up(const places *p, const bump *P, search *s)
-{
-    search_places(p, s);
-    P->ops->eval(P, p->k.n, s->u, s->w, 0, &s->h);
 }
 
 static bool all(int n, const int32_t *x)
@@ -238,23 +333,15 @@ long places_search(places *p, const bump *P, real error)
 {
     const int n = p->k.n;
     search s;
-    long looks = 0;
     search_begin(p, STEP_ERRORS * error, &s);
-    for (int step = 0; step <= STEPS_MAX && !all(n, s.found); step++) {
-        search_place(&p->k, (real)step, &s);
-        look_up(p, P, &s);
-        search_step(&p->k, (real)step, &s);
-        looks += n;
-    }
     for (int i = 0; i < n; i++)
-        s.done[i] = !s.found[i];
+        p->order[i] = s.done[i] ? p->order[i] : method_code((method){METHOD_MARCH, 1});
+    long looks = take_steps(p, P, &s);
     for (int secant = 0; secant < SECANTS_MAX && !all(n, s.done); secant++) {
-        secant_place(n, &s);
-        look_up(p, P, &s);
+        secant_place(p, &s);
+        P->ops->eval(P, n, s.u, s.w, 0, &s.h);
         secant_step(p, error, &s);
         looks += n;
     }
-    for (int i = 0; i < n; i++)
-        p->order[i] = s.found[i] ? method_code((method){METHOD_MARCH, 1}) : 0;
     return looks;
 }

@@ -27,6 +27,7 @@ typedef struct places {
     rays x;
     real t[LANES];           /* t_hit */
     real u[LANES], w[LANES]; /* of the smooth hit */
+    real P[LANES], Pu[LANES], Pw[LANES];
     real tau[LANES];         /* the place, in the bracket */
     real pixels[LANES];      /* so many is an error of 1 in tau on the screen */
     int32_t order[LANES];    /* the method that found it, as method_code has it */

@@ -22,9 +22,12 @@ STAGE static void ways(const hit_group *restrict g, real Pmin, real Pmax, own_wa
     const real top = real_max(Pmax, 0) + (Pmax - Pmin), bottom = real_max(-Pmin, 0) + (Pmax - Pmin);
     for (int i = 0; i < g->n; i++) {
         bs_vec3 n = lane_get(&g->n_smooth, i), Qu = lane_get(&g->q.Qu, i), Qw = lane_get(&g->q.Qw, i);
-        bs_view d = bs_view_of(lane_get(&g->to_light.s, i), n, Qu, Qw);
+        bs_vec3 Quu = lane_get(&g->q.Quu, i), Quw = lane_get(&g->q.Quw, i), Qww = lane_get(&g->q.Qww, i);
+        bs_offset o = bs_offset_of(n, Qu, Qw, Quu, Quw, Qww, g->bump.P[i]);
+        bs_view d = bs_view_of(lane_get(&g->to_light.s, i), bs_normal(o.Qu, o.Qw), o.Qu, o.Qw);
+        bs_turn turn = bs_turn_of(d, n, Qu, Qw, Quu, Quw, Qww);
         real P = g->bump.P[i], side = bs_dot(n, lane_get(&g->x.s, i)) < 0 ? R(1) : R(-1);
-        real curvature = bs_curvature(d, n, lane_get(&g->q.Quu, i), lane_get(&g->q.Quw, i), lane_get(&g->q.Qww, i));
+        real curvature = bs_curvature(d, n, Quu, Quw, Qww);
         bs_way w = bs_way_of(side, d, curvature, P, Pmin, Pmax);
         real leave = bs_way_to(w.d, w.curvature, side > 0 ? top - P : bottom + P);
         int regular = bs_regular(n, Qu, Qw);
@@ -32,6 +35,8 @@ STAGE static void ways(const hit_group *restrict g, real Pmin, real Pmax, own_wa
         y->sn[i] = regular ? w.d.sn : 0;
         y->a[i] = regular ? d.a : 0;
         y->b[i] = regular ? d.b : 0;
+        y->A[i] = regular ? turn.A : 0;
+        y->B[i] = regular ? turn.B : 0;
         y->curvature[i] = regular ? w.curvature : 0;
         y->end[i] = regular ? w.end : 0;
         y->leave[i] = regular ? leave : 0;
@@ -49,47 +54,6 @@ STAGE static void turned_away(hit_group *restrict g, const real *restrict side)
 void own_begin(const hit_group *g, const bump *P, own_ways *y) { ways(g, P->Pmin, P->Pmax, y); }
 
 void own_turned_away(hit_group *g, const own_ways *y) { turned_away(g, y->side); }
-
-/* The ends of the ways of the lanes on one side; of others 0, so that they stay where they are. */
-STAGE static void ends_on_side(int n, real seen_from, const real *restrict side, const real *restrict end,
-                               real *restrict to)
-{
-    for (int i = 0; i < n; i++)
-        to[i] = seen_from * side[i] >= 0 ? end[i] : 0;
-}
-
-STAGE static void march_place(const hit_group *restrict g, const own_ways *restrict y, const real *restrict end,
-                              int step, int steps, real *restrict u, real *restrict w)
-{
-    for (int i = 0; i < g->n; i++) {
-        real t = bs_way_step(end[i], step, steps);
-        u[i] = g->u[i] + y->a[i] * t;
-        w[i] = g->w[i] + y->b[i] * t;
-    }
-}
-
-STAGE static void march_step(hit_group *restrict g, const own_ways *restrict y, const real *restrict end, int step,
-                             int steps, const real *restrict P)
-{
-    for (int i = 0; i < g->n; i++) {
-        real t = bs_way_step(end[i], step, steps), lit = g->lit[i];
-        bs_way w = {y->side[i], {y->sn[i], y->a[i], y->b[i]}, y->curvature[i], g->bump.P[i], end[i]};
-        g->lit[i] = bs_way_below(w, t, P[i]) ? 0 : lit;
-    }
-}
-
-long own_march(hit_group *g, const bump *P, const own_ways *y, int steps, int seen_from)
-{
-    real u[LANES], w[LANES], end[LANES];
-    bump_values h;
-    ends_on_side(g->n, (real)seen_from, y->side, y->end, end);
-    for (int step = 1; step <= steps; step++) {
-        march_place(g, y, end, step, steps, u, w);
-        P->ops->eval(P, g->n, u, w, 0, &h);
-        march_step(g, y, end, step, steps, h.P);
-    }
-    return (long)steps * g->n;
-}
 
 STAGE static void bearings(int n, const own_ways *restrict y, real ku, real kw, real *restrict bearing,
                            real *restrict rise)

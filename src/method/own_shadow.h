@@ -11,7 +11,8 @@
 /* The ways from a group's places on the rough surface to a light, as bs_way. */
 typedef struct own_ways {
     real side[LANES], sn[LANES], a[LANES], b[LANES], curvature[LANES], end[LANES];
-    real leave[LANES]; /* t from which on the way is above the smooth surface and the slab */
+    real A[LANES], B[LANES]; /* bs_turn */
+    real leave[LANES];       /* t from which on the way is above the smooth surface and the slab */
 } own_ways;
 
 /* The places on the rough surface, X = Q + P n/|n|, over the (u,w) that are shaded. */
@@ -20,12 +21,13 @@ void own_places(const hit_group *g, vec3s *X);
 /* The ways along g->to_light, whose segments start at X. Needs Quu, Quw and Qww. */
 void own_begin(const hit_group *g, const bump *P, own_ways *y);
 
-/* Each sets g->lit = 0: where n' is turned away from the light; where one of `steps` places on the way is below the
- * rough surface (returns how often P was evaluated); where the light is not above the horizon. seen_from: only lanes
- * seen from this side, 1 or -1; 0: all. */
+/* Each sets g->lit = 0: where n' is turned away from the light; where the light is not above the horizon. */
 void own_turned_away(hit_group *g, const own_ways *y);
-long own_march(hit_group *g, const bump *P, const own_ways *y, int steps, int seen_from);
 void own_sink(hit_group *g, const own_ways *y, const real *above);
+
+/* In own_march.c: g->lit = 0 where one of `steps` places on the way is below the rough surface. seen_from: only lanes
+ * seen from this side, 1 or -1; 0: all. Returns how often P was evaluated. */
+long own_march(hit_group *g, const bump *P, const own_ways *y, int steps, int seen_from);
 
 /* How far the light's rise is above the horizon, for lanes seen from the front. */
 void own_above(const hit_group *g, const own_ways *y, const horizon *h, real *above);

@@ -7,8 +7,8 @@
 
 enum {
     PARTS = 7,           /* of a surface at most: a box has 6 */
-    FUNCTION_SIDE = 512, /* samples along a function's extent */
-    SAMPLES = 1 << 20,   /* of a table over an extent at most: finer maps are sampled more coarsely */
+    FUNCTION_SIDE = 256, /* samples along a function's extent */
+    SAMPLES = 1 << 18,   /* of a table over an extent at most: finer maps are sampled more coarsely */
     LEAST = 8,           /* samples along a side at least */
 };
 
@@ -19,10 +19,34 @@ struct horizons {
 
 static bool is_finite(const double x[2]) { return x[1] - x[0] < HUGE_VAL; }
 
-/* The table over one period of the map. */
-static bool lay_period(const object *o, table_grid *g)
+/* The table of the map. */
+static bool lay_map(const object *o, table_grid *g)
 {
     return o->map.width > 0 && table_lay(g, o->map.width, o->map.height, &o->bump_spec.layout);
+}
+
+/* How many samples there are along a side of n, if all of `samples` are too many. */
+static int thinned(double n, double samples)
+{
+    const double fewer = ceil(n * fmin(1, sqrt(SAMPLES / samples)));
+    return (int)fmin(fmax(fewer, LEAST), SAMPLES / LEAST);
+}
+
+/* A table over one period of the map. */
+static bool lay_period(const object *o, table_grid *g)
+{
+    table_grid m;
+    if (!lay_map(o, &m))
+        return false;
+    *g = m;
+    g->columns = thinned(m.columns, (double)m.columns * m.rows);
+    g->rows = thinned(m.rows, (double)m.columns * m.rows);
+    const real x = (real)g->columns / (real)m.columns, y = (real)g->rows / (real)m.rows;
+    g->ku *= x;
+    g->ou *= x;
+    g->kw *= y;
+    g->ow *= y;
+    return true;
 }
 
 /* A table over an extent, as fine as the map, if that has fewer than SAMPLES there. */
@@ -30,18 +54,15 @@ static void lay_extent(const object *o, const double u[2], const double w[2], ta
 {
     table_grid m;
     double columns = FUNCTION_SIDE, rows = FUNCTION_SIDE;
-    if (lay_period(o, &m)) {
+    if (lay_map(o, &m)) {
         columns = fabs((double)m.ku) * (u[1] - u[0]);
         rows = fabs((double)m.kw) * (w[1] - w[0]);
     }
-    const double coarser = fmin(1, sqrt(SAMPLES / (columns * rows)));
-    columns = fmin(fmax(ceil(columns * coarser), LEAST), SAMPLES);
-    rows = fmin(fmax(ceil(rows * coarser), LEAST), SAMPLES);
-    *g = (table_grid){.columns = (int)columns, .rows = (int)rows};
-    g->ku = (real)(columns / (u[1] - u[0]));
-    g->kw = (real)(rows / (w[1] - w[0]));
-    g->ou = (real)(-u[0] * columns / (u[1] - u[0]));
-    g->ow = (real)(-w[0] * rows / (w[1] - w[0]));
+    *g = (table_grid){.columns = thinned(columns, columns * rows), .rows = thinned(rows, columns * rows)};
+    g->ku = (real)(g->columns / (u[1] - u[0]));
+    g->kw = (real)(g->rows / (w[1] - w[0]));
+    g->ou = (real)(-u[0] * g->columns / (u[1] - u[0]));
+    g->ow = (real)(-w[0] * g->rows / (w[1] - w[0]));
 }
 
 /* The second fundamental form of a wave of places. */

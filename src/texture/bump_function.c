@@ -140,7 +140,7 @@ static cell_range function_part(const void *user, int row, int column)
                  w[2] = {part(p->w, row, nw), part(p->w, row + 1, nw)};
     expr_bounds b;
     function_bound(&p->base, u, w, &b);
-    return (cell_range){b.v[0], b.v[1], widest(b.u, 0), widest(b.w, 0)};
+    return (cell_range){b.v[0], b.v[1], b.u[0], b.u[1], b.w[0], b.w[1]};
 }
 
 static void function_bends(function *p)

@@ -165,16 +165,21 @@ static void map_range(const bump *base, int n, const real *u0, const real *u1, c
         bump_whole_range(base, n, out);
 }
 
-/* A bilinear P is steepest along the edges of its cell. `none` is 0, or NaN by a sample that is NaN or infinite. */
+/* The partials of a bilinear P are between those along the edges of its cell. `none` is 0, or NaN by a sample that is
+ * NaN or infinite. */
 static cell_range map_cell(const void *user, int row, int column)
 {
     const map *m = user;
     const corners c = corners_of(m, row, column);
-    const double ku = (double)m->grid.ku, kw = (double)m->grid.kw, none = 0 * (c.p0 + c.p1 + c.q0 + c.q1);
-    return (cell_range){fmin(fmin(c.p0, c.p1), fmin(c.q0, c.q1)) + none,
-                        fmax(fmax(c.p0, c.p1), fmax(c.q0, c.q1)) + none,
-                        (double)bump_slope(greater(fabs(c.p1 - c.p0), fabs(c.q1 - c.q0)), ku),
-                        (double)bump_slope(greater(fabs(c.q0 - c.p0), fabs(c.q1 - c.p1)), kw)};
+    const double none = 0 * (c.p0 + c.p1 + c.q0 + c.q1), more = 1 + 1e-15; /* than the roundings here */
+    const double ku = (double)m->grid.ku * more, kw = (double)m->grid.kw * more;
+    const double p = (c.p1 - c.p0) * ku, q = (c.q1 - c.q0) * ku, l = (c.q0 - c.p0) * kw, r = (c.q1 - c.p1) * kw;
+    return (cell_range){lesser(lesser(c.p0, c.p1), lesser(c.q0, c.q1)) + none,
+                        greater(greater(c.p0, c.p1), greater(c.q0, c.q1)) + none,
+                        lesser(p, q),
+                        greater(p, q),
+                        lesser(l, r),
+                        greater(l, r)};
 }
 
 static bool map_prepare(bump *base)
@@ -280,8 +285,10 @@ void bump_whole_range(const bump *p, int n, bump_ranges *out)
     for (int i = 0; i < n; i++) {
         out->lo[i] = p->Pmin;
         out->hi[i] = p->Pmax;
-        out->Pu[i] = p->Pu_max;
-        out->Pw[i] = p->Pw_max;
+        out->Pu[i] = out->Pu_hi[i] = p->Pu_max;
+        out->Pw[i] = out->Pw_hi[i] = p->Pw_max;
+        out->Pu_lo[i] = -p->Pu_max;
+        out->Pw_lo[i] = -p->Pw_max;
     }
 }
 

@@ -1,15 +1,18 @@
 /* Building horizon maps, and looking them up.
  *
- * From each sample a walk goes in each direction, one sample's width a step, until the highest bump there is, Pmax,
- * could not rise above the horizon found so far. On a curved surface P has the curvature's drop added: the way of a
- * light that is seen is a straight line above both.
+ * From each sample a walk goes in each direction, until the highest bump there is, Pmax, could not rise above the
+ * horizon found so far. Its steps are a sample wide at first and then a share of the way so far: what they pass by
+ * between would raise the horizon by little. On a curved surface the curvature's drop is added to P.
  */
 #include "texture/horizon.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/threads.h"
 #include "wave/lane.h"
+
+#define LEAST 0.005 /* of the steepest slope: a rise that does not matter */
 
 enum { ENTRIES = HORIZON_DIRECTIONS + 1 }; /* of a sample; the last is the first again */
 
@@ -18,17 +21,23 @@ struct horizon {
     real *rise; /* ENTRIES of each sample */
 };
 
-/* What a walk in one direction needs. */
+enum {
+    NEAR = 16,   /* steps of one sample; later ones are 1/NEAR of the way */
+    COMPACT = 8, /* after so many steps, walks that have ended are dropped */
+};
+
+/* What walks in one direction need. */
 typedef struct walk {
-    real du, dw; /* a step of one sample's width */
-    real Pmax, range;
+    real du, dw;             /* a step of one sample's width */
+    real Pmax, range, least; /* a rise of `least` more does not matter */
 } walk;
 
-/* Samples of one row that are walked from, side by side. */
-typedef struct samples {
+/* Walks from samples of one row, side by side. */
+typedef struct walks {
     int n;
+    int32_t lane[LANES], open[LANES];
     real u[LANES], w[LANES], P[LANES], half_bend[LANES], best[LANES];
-} samples;
+} walks;
 
 /* The unit vector of direction k in samples, |x| + |y| = 1: the inverse of bs_bearing_of. */
 static void direction(int k, real *x, real *y)
@@ -38,32 +47,64 @@ static void direction(int k, real *x, real *y)
     *y = turn <= 2 ? 1 - real_abs(turn - 1) : real_abs(turn - 3) - 1;
 }
 
-STAGE static void step_to(const samples *restrict s, const walk *k, real steps, real *restrict u, real *restrict w)
+STAGE static void step_to(const walks *restrict s, const walk *k, real way, real *restrict u, real *restrict w)
 {
     for (int i = 0; i < s->n; i++) {
-        u[i] = s->u[i] + k->du * steps;
-        w[i] = s->w[i] + k->dw * steps;
+        u[i] = s->u[i] + k->du * way;
+        w[i] = s->w[i] + k->dw * way;
     }
 }
 
-/* Raise the horizons. Returns for how many samples a higher bump farther on could raise it again. Where the surface
- * itself has risen by more than the bumps' range, that is its own shadow and no longer the bumps'. */
-STAGE static int raise(samples *restrict s, const walk *k, real steps, const real *restrict P)
+/* Raise the horizons. A walk is open if a higher bump farther on could raise its own again. Where the surface itself
+ * has risen by more than the bumps' range, that is its own shadow and no longer the bumps'. */
+STAGE static void raise(walks *restrict s, const walk *k, real way, const real *restrict P)
 {
-    const real share = 1 / steps;
-    int open = 0;
+    const real share = 1 / way, top = k->Pmax, range = k->range, least = k->least;
     for (int i = 0; i < s->n; i++) {
-        real drop = s->half_bend[i] * steps, rise = (P[i] - s->P[i]) * share + drop, so_far = s->best[i];
-        int near = drop * steps <= k->range;
+        real drop = s->half_bend[i] * way, rise = (P[i] - s->P[i]) * share + drop, so_far = s->best[i];
+        int near = drop * way <= range;
         real best = near & (rise > so_far) ? rise : so_far;
         s->best[i] = best;
-        open += near & ((k->Pmax - s->P[i]) * share + drop > best) ? 1 : 0;
+        s->open[i] = near & ((top - s->P[i]) * share + drop > best + least);
     }
-    return open;
 }
 
-/* The curvature along the direction, and the horizon to begin with. */
-static void bend(samples *s, const walk *k, const horizon_curvature *c, size_t at)
+/* Drop the walks that have ended, after their horizons are stored. */
+static void compact(walks *s, real *best)
+{
+    int n = 0;
+    for (int i = 0; i < s->n; i++) {
+        best[s->lane[i]] = s->best[i];
+        s->lane[n] = s->lane[i];
+        s->u[n] = s->u[i];
+        s->w[n] = s->w[i];
+        s->P[n] = s->P[i];
+        s->half_bend[n] = s->half_bend[i];
+        s->best[n] = s->best[i];
+        n += s->open[i];
+    }
+    s->n = n;
+}
+
+static void walk_far(const bump *P, const table_grid *g, const walk *k, walks *s, real *best)
+{
+    const real far = (real)(g->columns > g->rows ? g->columns : g->rows);
+    real u[LANES], w[LANES], way = 0;
+    bump_values h;
+    for (int step = 1; way < far && s->n; step++) {
+        way += real_max(1, real_floor(way / NEAR));
+        step_to(s, k, way, u, w);
+        P->ops->eval(P, s->n, u, w, 0, &h);
+        raise(s, k, way, h.P);
+        if (step % COMPACT == 0)
+            compact(s, best);
+    }
+    compact(s, best);
+}
+
+/* Half the curvature along the direction, and the horizon to begin with: without bumps it is 0, or below where the
+ * surface curves away. */
+static void bend(walks *s, const walk *k, const horizon_curvature *c, size_t at)
 {
     for (int i = 0; i < s->n; i++) {
         const size_t j = at + (size_t)i;
@@ -73,17 +114,18 @@ static void bend(samples *s, const walk *k, const horizon_curvature *c, size_t a
     }
 }
 
-static void walk_direction(const bump *P, const table_grid *g, const walk *k, samples *s)
+static void start_walks(const bump *P, const table_grid *g, int row, int column, walks *s)
 {
-    const int far = g->columns > g->rows ? g->columns : g->rows;
-    real u[LANES], w[LANES];
+    const int left = g->columns + 1 - column;
     bump_values h;
-    for (int step = 1; step <= far; step++) {
-        step_to(s, k, (real)step, u, w);
-        P->ops->eval(P, s->n, u, w, 0, &h);
-        if (raise(s, k, (real)step, h.P) == 0)
-            break;
+    s->n = left < LANES ? left : LANES;
+    for (int i = 0; i < s->n; i++) {
+        s->lane[i] = i;
+        s->u[i] = ((real)(column + i) - g->ou) / g->ku;
+        s->w[i] = ((real)row - g->ow) / g->kw;
     }
+    P->ops->eval(P, s->n, s->u, s->w, 0, &h);
+    memcpy(s->P, h.P, sizeof s->P);
 }
 
 /* The horizons of up to LANES samples of a row. */
@@ -91,26 +133,21 @@ static void build_block(horizon *h, const bump *P, const horizon_curvature *c, i
 {
     const table_grid *g = &h->grid;
     const size_t at = (size_t)row * (size_t)(g->columns + 1) + (size_t)column;
-    const int left = g->columns + 1 - column;
-    samples s = {.n = left < LANES ? left : LANES};
-    bump_values start;
-    for (int i = 0; i < s.n; i++) {
-        s.u[i] = ((real)(column + i) - g->ou) / g->ku;
-        s.w[i] = ((real)row - g->ow) / g->kw;
-    }
-    P->ops->eval(P, s.n, s.u, s.w, 0, &start);
-    for (int i = 0; i < s.n; i++)
-        s.P[i] = start.P[i];
+    walks all, s;
+    real best[LANES];
+    start_walks(P, g, row, column, &all);
     for (int k = 0; k < HORIZON_DIRECTIONS; k++) {
         real x, y;
         direction(k, &x, &y);
-        const walk way = {.du = x / g->ku, .dw = y / g->kw, .Pmax = P->Pmax, .range = P->Pmax - P->Pmin};
+        walk way = {.du = x / g->ku, .dw = y / g->kw, .Pmax = P->Pmax, .range = P->Pmax - P->Pmin};
+        way.least = R(LEAST) * (P->Pu_max * real_abs(way.du) + P->Pw_max * real_abs(way.dw));
+        s = all;
         bend(&s, &way, c, at);
-        walk_direction(P, g, &way, &s);
-        for (int i = 0; i < s.n; i++)
-            h->rise[(at + (size_t)i) * ENTRIES + (size_t)k] = s.best[i];
+        walk_far(P, g, &way, &s, best);
+        for (int i = 0; i < all.n; i++)
+            h->rise[(at + (size_t)i) * ENTRIES + (size_t)k] = best[i];
     }
-    for (int i = 0; i < s.n; i++)
+    for (int i = 0; i < all.n; i++)
         h->rise[(at + (size_t)i) * ENTRIES + HORIZON_DIRECTIONS] = h->rise[(at + (size_t)i) * ENTRIES];
 }
 

@@ -6,7 +6,7 @@
 
 #include "texture/bump.h"
 
-enum { HORIZON_DIRECTIONS = 8 };
+enum { HORIZON_DIRECTIONS = 32 }; /* 8, 16 and 32 had 10, 4 and 1.2 % wrong pixels under a light 10 degrees high */
 
 typedef struct horizon horizon;
 

@@ -59,6 +59,15 @@ STAGE static void reflect_range(int n, const ends *k, const real *restrict u0, c
     }
 }
 
+/* On one side of a fold P runs as the original, on the other against it. */
+STAGE static void either_sign(int n, bump_ranges *r)
+{
+    for (int i = 0; i < n; i++) {
+        r->Pu_lo[i] = -r->Pu[i];
+        r->Pu_hi[i] = r->Pu[i];
+    }
+}
+
 static void mirrored_bump_range(const bump *base, int n, const real *u0, const real *u1, const real *w0, const real *w1,
                                 bump_ranges *out)
 {
@@ -66,6 +75,7 @@ static void mirrored_bump_range(const bump *base, int n, const real *u0, const r
     real from[LANES], to[LANES];
     reflect_range(n, &f->k, u0, u1, from, to);
     f->of->ops->range(f->of, n, from, to, w0, w1, out);
+    either_sign(n, out);
 }
 
 /* The original keeps its pyramid. */

@@ -1,4 +1,4 @@
-/* Pyramids of bounds. A node is four numbers of which each is the most of the nodes below: -lo, hi, Pu and Pw.
+/* Pyramids of bounds. A node is numbers of which each is the most of the nodes below: -lo and hi of P, Pu and Pw.
  *
  * Where the grid repeats, a rectangle may begin before its end and go on behind its start. So each level goes on for
  * some nodes behind the end, over the cells that follow there.
@@ -6,20 +6,48 @@
 #include "texture/pyramid.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 enum {
     LEVELS = 32,
     BEHIND = 3, /* nodes that a level has behind the last whole one */
+    NODE = 8,   /* numbers of a node: six and padding, so that they are one vector */
 };
 
 struct pyramid {
     table_grid grid;
     int levels;
     int32_t first[LEVELS], pitch[LEVELS], rows[LEVELS]; /* of each level: its first node, nodes in a row, rows */
-    real *node;                                         /* TABLE_VALUES each */
+    real *node;                                         /* NODE each */
 };
 
 /* ---- look-up ---- */
+
+/* A number's exponent, by its bits. */
+#ifdef KAGE_DOUBLE
+enum { DIGITS = 52, BIAS = 1023 };
+typedef int64_t bits;
+#else
+enum { DIGITS = 23, BIAS = 127 };
+typedef int32_t bits;
+#endif
+
+/* The level whose nodes are longer than x >= 0, but no more than twice as long if longer than a cell. */
+static inline int32_t level_over(real x)
+{
+    bits b;
+    memcpy(&b, &x, sizeof b);
+    return (int32_t)(b >> DIGITS) - BIAS + 1;
+}
+
+/* A cell's share of a node's side. */
+static inline real share_at(int32_t level)
+{
+    const bits b = (bits)(BIAS - level) << DIGITS;
+    real x;
+    memcpy(&x, &b, sizeof x);
+    return x;
+}
 
 /* The grid along an axis. */
 typedef struct axis {
@@ -30,7 +58,7 @@ typedef struct axis {
  * repeats; elsewhere both are on the grid, as P is constant beyond it. `air` is more than the roundings of this and of
  * table_cells. Called with a constant `repeat`, as a choice in the loop would prevent SIMD. */
 static inline void place(axis g, int repeat, int n, const real *restrict x0, const real *restrict x1,
-                         real *restrict first, real *restrict last)
+                         real *restrict first, real *restrict last, int32_t *restrict beyond)
 {
     const real cells = g.cells, k = g.k, o = g.o, each = 1 / cells, most = repeat ? 2 * cells : cells;
     for (int i = 0; i < n; i++) {
@@ -41,66 +69,52 @@ static inline void place(axis g, int repeat, int n, const real *restrict x0, con
         const real a = real_min(real_max(from - start, 0), cells), b = real_min(real_max(to - start, a), most);
         first[i] = some ? a : 0;
         last[i] = some ? b : cells;
+        beyond[i] = repeat ? 0 : !((from >= 0) & (to <= cells));
     }
 }
 
-STAGE static void place_repeat(axis g, int n, const real *x0, const real *x1, real *first, real *last)
+STAGE static void place_repeat(axis g, int n, const real *x0, const real *x1, real *first, real *last, int32_t *beyond)
 {
-    place(g, 1, n, x0, x1, first, last);
+    place(g, 1, n, x0, x1, first, last, beyond);
 }
 
-STAGE static void place_clamp(axis g, int n, const real *x0, const real *x1, real *first, real *last)
+STAGE static void place_clamp(axis g, int n, const real *x0, const real *x1, real *first, real *last, int32_t *beyond)
 {
-    place(g, 0, n, x0, x1, first, last);
+    place(g, 0, n, x0, x1, first, last, beyond);
 }
 
-/* The level of each range: what it goes over fits a node. `share` of a node is a cell there. */
-typedef struct level_of {
-    real size[LANES], share[LANES];
-    int32_t first[LANES], pitch[LANES], rows[LANES];
-} level_of;
+/* What a range along each axis begins and ends with, and whether it goes beyond the grid. */
+typedef struct spans {
+    real a0[LANES], a1[LANES], b0[LANES], b1[LANES];
+    int32_t beyond_u[LANES], beyond_w[LANES];
+} spans;
 
-STAGE static void level_bottom(const pyramid *y, int n, const real *restrict a0, const real *restrict a1,
-                               const real *restrict b0, const real *restrict b1, level_of *restrict l)
+/* The level of each range: what it goes over fits one node. */
+STAGE static void levels_of(int most, int n, const spans *restrict x, int32_t *restrict level, real *restrict share)
 {
-    const int32_t pitch = y->pitch[0], rows = y->rows[0];
     for (int i = 0; i < n; i++) {
-        l->size[i] = real_max(a1[i] - a0[i], b1[i] - b0[i]);
-        l->share[i] = 1;
-        l->first[i] = 0;
-        l->pitch[i] = pitch;
-        l->rows[i] = rows;
-    }
-}
-
-/* Up to level k where the range does not fit the one below. */
-STAGE static void level_up(const pyramid *y, int k, int n, real below, level_of *restrict l)
-{
-    const int32_t first = y->first[k], pitch = y->pitch[k], rows = y->rows[k];
-    const real share = R(0.5) / below;
-    for (int i = 0; i < n; i++) {
-        const int up = l->size[i] > below;
-        l->share[i] = up ? share : l->share[i];
-        l->first[i] = up ? first : l->first[i];
-        l->pitch[i] = up ? pitch : l->pitch[i];
-        l->rows[i] = up ? rows : l->rows[i];
+        const real size = real_max(x->a1[i] - x->a0[i], x->b1[i] - x->b0[i]);
+        const int32_t up = level_over(size), k = up < 0 ? 0 : up > most ? most : up;
+        level[i] = k;
+        share[i] = share_at(k);
     }
 }
 
 static inline int32_t lesser_of(int32_t a, int32_t b) { return a < b ? a : b; }
 
 /* The 2 x 2 nodes; some or all of them may be the same. */
-STAGE static void nodes_of(int n, const level_of *restrict l, const real *restrict a0, const real *restrict a1,
-                           const real *restrict b0, const real *restrict b1, int32_t *restrict p, int32_t *restrict q,
-                           int32_t *restrict r, int32_t *restrict s)
+STAGE static void nodes_of(const pyramid *restrict y, int n, const spans *restrict x, const int32_t *restrict level,
+                           const real *restrict share, int32_t *restrict p, int32_t *restrict q, int32_t *restrict r,
+                           int32_t *restrict s)
 {
+    const int32_t *restrict first = y->first, *restrict pitches = y->pitch, *restrict rows = y->rows;
     for (int i = 0; i < n; i++) {
-        const real k = l->share[i];
-        const int32_t pitch = l->pitch[i], right = pitch - 1, low = l->rows[i] - 1;
-        const int32_t c0 = lesser_of((int32_t)(a0[i] * k), right), r0 = lesser_of((int32_t)(b0[i] * k), low);
-        const int32_t c1 = lesser_of(lesser_of((int32_t)(a1[i] * k), c0 + 1), right);
-        const int32_t r1 = lesser_of(lesser_of((int32_t)(b1[i] * k), r0 + 1), low);
-        const int32_t upper = l->first[i] + r0 * pitch, lower = l->first[i] + r1 * pitch;
+        const real k = share[i];
+        const int32_t pitch = pitches[level[i]], right = pitch - 1, low = rows[level[i]] - 1;
+        const int32_t c0 = lesser_of((int32_t)(x->a0[i] * k), right), r0 = lesser_of((int32_t)(x->b0[i] * k), low);
+        const int32_t c1 = lesser_of(lesser_of((int32_t)(x->a1[i] * k), c0 + 1), right);
+        const int32_t r1 = lesser_of(lesser_of((int32_t)(x->b1[i] * k), r0 + 1), low);
+        const int32_t upper = first[level[i]] + r0 * pitch, lower = first[level[i]] + r1 * pitch;
         p[i] = upper + c0;
         q[i] = upper + c1;
         r[i] = lower + c0;
@@ -110,44 +124,48 @@ STAGE static void nodes_of(int n, const level_of *restrict l, const real *restri
 
 /* A node is one vector, so this takes four loads a lane and no gather. */
 STAGE static void most_of(const real *restrict v, int n, const int32_t *restrict p, const int32_t *restrict q,
-                          const int32_t *restrict r, const int32_t *restrict s, real (*restrict out)[TABLE_VALUES])
+                          const int32_t *restrict r, const int32_t *restrict s, real (*restrict out)[NODE])
 {
     for (int i = 0; i < n; i++) {
-        const real *a = v + (size_t)p[i] * TABLE_VALUES, *b = v + (size_t)q[i] * TABLE_VALUES;
-        const real *c = v + (size_t)r[i] * TABLE_VALUES, *d = v + (size_t)s[i] * TABLE_VALUES;
-        for (int k = 0; k < TABLE_VALUES; k++)
+        const real *a = v + (size_t)p[i] * NODE, *b = v + (size_t)q[i] * NODE;
+        const real *c = v + (size_t)r[i] * NODE, *d = v + (size_t)s[i] * NODE;
+        for (int k = 0; k < NODE; k++)
             out[i][k] = real_max(real_max(a[k], b[k]), real_max(c[k], d[k]));
     }
 }
 
-/* Bilinear look-ups are rounded, and may pass the samples by as much. */
-STAGE static void unpack(int n, const real (*restrict from)[TABLE_VALUES], bump_ranges *restrict out)
+/* Bilinear look-ups are rounded, and may pass the samples by as much. Beyond the grid P does not change along its axis.
+ */
+STAGE static void unpack(int n, const spans *restrict x, const real (*restrict from)[NODE], bump_ranges *restrict out)
 {
     for (int i = 0; i < n; i++) {
         const real lo = -from[i][0], hi = from[i][1], air = 4 * R(REAL_ROUNDING) * real_max(real_abs(lo), real_abs(hi));
+        const real u0 = from[i][2], u1 = from[i][3], w0 = from[i][4], w1 = from[i][5];
         out->lo[i] = lo - air;
         out->hi[i] = hi + air;
-        out->Pu[i] = from[i][2];
-        out->Pw[i] = from[i][3];
+        out->Pu_lo[i] = -(x->beyond_u[i] ? real_max(u0, 0) : u0);
+        out->Pu_hi[i] = x->beyond_u[i] ? real_max(u1, 0) : u1;
+        out->Pw_lo[i] = -(x->beyond_w[i] ? real_max(w0, 0) : w0);
+        out->Pw_hi[i] = x->beyond_w[i] ? real_max(w1, 0) : w1;
+        out->Pu[i] = real_max(u0, u1);
+        out->Pw[i] = real_max(w0, w1);
     }
 }
 
 void pyramid_ranges(const pyramid *y, int n, const real *u0, const real *u1, const real *w0, const real *w1,
                     bump_ranges *out)
 {
-    real a0[LANES], a1[LANES], b0[LANES], b1[LANES], four[LANES][TABLE_VALUES];
-    int32_t p[LANES], q[LANES], r[LANES], s[LANES];
-    level_of l;
+    real share[LANES], most[LANES][NODE];
+    int32_t level[LANES], p[LANES], q[LANES], r[LANES], s[LANES];
+    spans x;
     const table_grid *g = &y->grid;
     const axis u = {g->ku, g->ou, (real)g->columns}, w = {g->kw, g->ow, (real)g->rows};
-    (g->repeat ? place_repeat : place_clamp)(u, n, u0, u1, a0, a1);
-    (g->repeat ? place_repeat : place_clamp)(w, n, w0, w1, b0, b1);
-    level_bottom(y, n, a0, a1, b0, b1, &l);
-    for (int k = 1; k < y->levels; k++)
-        level_up(y, k, n, (real)(1 << (k - 1)), &l);
-    nodes_of(n, &l, a0, a1, b0, b1, p, q, r, s);
-    most_of(y->node, n, p, q, r, s, four);
-    unpack(n, (const real(*)[TABLE_VALUES])four, out);
+    (g->repeat ? place_repeat : place_clamp)(u, n, u0, u1, x.a0, x.a1, x.beyond_u);
+    (g->repeat ? place_repeat : place_clamp)(w, n, w0, w1, x.b0, x.b1, x.beyond_w);
+    levels_of(y->levels - 1, n, &x, level, share);
+    nodes_of(y, n, &x, level, share, p, q, r, s);
+    most_of(y->node, n, p, q, r, s, most);
+    unpack(n, &x, (const real(*)[NODE])most, out);
 }
 
 /* ---- building ---- */
@@ -177,14 +195,14 @@ static nodes below(int i, int k, int cells, int repeat)
 
 static void join(real *to, const real *from)
 {
-    for (int k = 0; k < TABLE_VALUES; k++)
+    for (int k = 0; k < NODE; k++)
         to[k] = real_max(to[k], from[k]);
 }
 
 static real *node_of(const pyramid *y, int level, int row, int column)
 {
     const size_t at = (size_t)y->first[level] + (size_t)row * (size_t)y->pitch[level] + (size_t)column;
-    return y->node + at * TABLE_VALUES;
+    return y->node + at * NODE;
 }
 
 static int cell_at(int i, int cells, int repeat) { return i < cells ? i : repeat ? i % cells : cells - 1; }
@@ -197,14 +215,14 @@ static void lay_bottom(pyramid *y, cell_range (*cell)(const void *user, int row,
             real *to = node_of(y, 0, j, i);
             if (j >= g->rows || i >= g->columns) {
                 const real *same = node_of(y, 0, cell_at(j, g->rows, g->repeat), cell_at(i, g->columns, g->repeat));
-                for (int k = 0; k < TABLE_VALUES; k++)
+                for (int k = 0; k < NODE; k++)
                     to[k] = same[k];
                 continue;
             }
             const cell_range c = cell(user, j, i);
-            const double four[TABLE_VALUES] = {-c.lo, c.hi, c.Pu, c.Pw};
-            for (int k = 0; k < TABLE_VALUES; k++)
-                to[k] = four[k] == four[k] ? above(four[k]) : (real)HUGE_VAL; /* NaN: from a sample that is */
+            const double v[NODE] = {-c.lo, c.hi, -c.Pu_lo, c.Pu_hi, -c.Pw_lo, c.Pw_hi};
+            for (int k = 0; k < NODE; k++)
+                to[k] = v[k] == v[k] ? above(v[k]) : (real)HUGE_VAL; /* NaN: from a sample that is */
         }
 }
 
@@ -215,7 +233,7 @@ static void lay_level(pyramid *y, int level)
         for (int i = 0; i < y->pitch[level]; i++) {
             const nodes r = below(j, level - 1, g->rows, g->repeat), c = below(i, level - 1, g->columns, g->repeat);
             real *to = node_of(y, level, j, i);
-            for (int k = 0; k < TABLE_VALUES; k++)
+            for (int k = 0; k < NODE; k++)
                 to[k] = -(real)HUGE_VAL;
             for (int b = r.first; b <= r.last; b++)
                 for (int a = c.first; a <= c.last; a++)
@@ -239,7 +257,7 @@ pyramid *pyramid_new(const table_grid *grid, cell_range (*cell)(const void *user
         nodes_in_all += (int64_t)y->pitch[k] * y->rows[k];
         y->levels = k + 1;
     }
-    y->node = nodes_in_all < INT32_MAX ? malloc(sizeof(real) * TABLE_VALUES * (size_t)nodes_in_all) : NULL;
+    y->node = nodes_in_all < INT32_MAX ? malloc(sizeof(real) * NODE * (size_t)nodes_in_all) : NULL;
     if (!y->node) {
         free(y);
         return NULL;

@@ -7,19 +7,21 @@
 
 #include "texture/table.h"
 
-/* Over each rectangle: P within lo..hi, and its Lipschitz constants by u and by w, as Pu_max and Pw_max of bump.h. */
+/* Over each rectangle: P within lo..hi, and its partials within Pu_lo..Pu_hi and Pw_lo..Pw_hi. These bound differences
+ * of P, too: P changes along a way as fast as they say. Pu and Pw are the most of their sizes, as Pu_max and Pw_max of
+ * bump.h. */
 typedef struct bump_ranges {
-    real lo[LANES], hi[LANES], Pu[LANES], Pw[LANES];
+    real lo[LANES], hi[LANES], Pu_lo[LANES], Pu_hi[LANES], Pw_lo[LANES], Pw_hi[LANES], Pu[LANES], Pw[LANES];
 } bump_ranges;
 
 /* The same over one cell. */
 typedef struct cell_range {
-    double lo, hi, Pu, Pw;
+    double lo, hi, Pu_lo, Pu_hi, Pw_lo, Pw_hi;
 } cell_range;
 
 typedef struct pyramid pyramid;
 
-/* Over the cells of a grid (1 x 1 at least), whose bounds cell(user, row, column) gives. About 20 bytes a cell in
+/* Over the cells of a grid (1 x 1 at least), whose bounds cell(user, row, column) gives. About 43 bytes a cell in
  * float. NULL: out of memory, or more than 2^29 cells. */
 pyramid *pyramid_new(const table_grid *grid, cell_range (*cell)(const void *user, int row, int column),
                      const void *user);

@@ -27,6 +27,28 @@ static bs_vec3 vec(double x, double y, double z)
     return v;
 }
 
+/* The place to shade, and from there a march and a horizon towards a light. */
+static void relief(bs_view v, bs_slab slab, bs_vec3 n, bs_vec3 Qu, bs_vec3 Qw)
+{
+    bs_place q = bs_place_of(v, (bs_real).5, (bs_real).25, slab.front);
+    bs_view d = bs_view_of(vec(-.3, 1, .6), n, Qu, Qw);
+    printf("%a %a\n", (double)q.u, (double)q.w);
+    for (int side = -1; side <= 1; side += 2) {
+        bs_way y = bs_way_of((bs_real)side, d, (bs_real)-.2, (bs_real).04, (bs_real)-.1, (bs_real).2);
+        int dark = 0;
+        for (int i = 1; i <= 5; i++)
+            dark += bs_way_below(y, bs_way_step(y.end, i, 5), (bs_real)(.04 + .03 * i * side));
+        printf("%a %d\n", (double)y.end, dark);
+    }
+    for (int k = 0; k < 4; k++) {
+        bs_view way = {d.sn, k & 1 ? d.a : -d.a, k & 2 ? d.b : -d.b};
+        bs_bearing g = bs_bearing_of(way, 40, 30);
+        bs_real above = g.rise - bs_horizon((bs_real).001, (bs_real).004, (bs_real).25);
+        bs_real share = bs_horizon_share(above, (bs_real).01, (bs_real)-.004, (bs_real)1e-6);
+        printf("%a %a %a\n", (double)g.bearing, (double)g.rise, (double)share);
+    }
+}
+
 int main(void)
 {
     bs_vec3 Qu = vec(1, .2, 0), Qw = vec(.1, .3, -1.2), z = vec(.1, .2, .3), s = vec(.3, -1, .4), n = bs_normal(Qu, Qw);
@@ -57,6 +79,7 @@ int main(void)
         }
         printf("%d\n", e.found);
     }
+    relief(v, slab, n, Qu, Qw);
     return 0;
 }
 """
@@ -79,6 +102,37 @@ void shift(int n, const float *restrict sn, const float *restrict a, const float
 """
 
 
+MARCH = """
+#include "bumpshadow.h"
+void march(int n, const float *restrict sn, const float *restrict a, const float *restrict b, const float *restrict P,
+           const float *restrict P_on_the_way, int *restrict dark);
+void march(int n, const float *restrict sn, const float *restrict a, const float *restrict b, const float *restrict P,
+           const float *restrict P_on_the_way, int *restrict dark)
+{
+    for (int i = 0; i < n; i++) {
+        bs_view d = {sn[i], a[i], b[i]};
+        bs_way y = bs_way_of(1, d, -0.5f, P[i], -1, 1);
+        dark[i] |= bs_way_below(y, bs_way_step(y.end, STEP, 8), P_on_the_way[i]);
+    }
+}
+"""
+
+HORIZON = """
+#include "bumpshadow.h"
+void horizon(int n, const float *restrict sn, const float *restrict a, const float *restrict b,
+             const float *restrict at_k, const float *restrict at_next, float *restrict share);
+void horizon(int n, const float *restrict sn, const float *restrict a, const float *restrict b,
+             const float *restrict at_k, const float *restrict at_next, float *restrict share)
+{
+    for (int i = 0; i < n; i++) {
+        bs_view d = {sn[i], a[i], b[i]};
+        bs_bearing g = bs_bearing_of(d, 40, 40);
+        float part = 2 * g.bearing, fraction = part - (float)(int)part;
+        share[i] = bs_horizon_share(g.rise - bs_horizon(at_k[i], at_next[i], fraction), 0.1f, 0.2f, 1e-6f);
+    }
+}
+"""
+
 def run(compiler: str, standard: str, tmp_path: Path, real: list[str]) -> str:
     source = tmp_path / ("main.cpp" if "++" in compiler else "main.c")
     source.write_text(PROGRAM)
@@ -95,16 +149,21 @@ def test_alike_in_every_language(compiler: str, standard: str, real: list[str], 
     if not shutil.which(compiler):
         pytest.skip(f"{compiler} is not installed")
     want = run("gcc", "c99", tmp_path, real)
-    assert want.count("\n") == 13 and "nan" not in want and "inf" not in want
-    assert [line[-1] for line in want.splitlines()[-4:]] == ["1", "0", "0", "0"]  # what the marches found
+    assert want.count("\n") == 13 + 7 and "nan" not in want and "inf" not in want
+    assert [line[-1] for line in want.splitlines()[9:13]] == ["1", "0", "0", "0"]  # what the marches found
     assert run(compiler, standard, tmp_path, real) == want
 
 
-@pytest.mark.parametrize("order", range(4))
-def test_vectorises(order: int, tmp_path: Path) -> None:
+LOOPS = {**{f"order {order}": (LOOP, f"-DORDER={order}") for order in range(4)},
+         "march": (MARCH, "-DSTEP=3"), "horizon": (HORIZON, "-DSTEP=0")}
+
+
+@pytest.mark.parametrize("name", LOOPS)
+def test_vectorises(name: str, tmp_path: Path) -> None:
     source = tmp_path / "loop.c"
-    source.write_text(LOOP)
-    command = ["gcc", "-std=c99", *FLAGS, "-fopt-info-vec", f"-DORDER={order}", f"-I{SRC}", "-c", source, "-o",
+    text, constant = LOOPS[name]
+    source.write_text(text)
+    command = ["gcc", "-std=c99", *FLAGS, "-fopt-info-vec", constant, f"-I{SRC}", "-c", source, "-o",
                tmp_path / "loop.o"]
     told = subprocess.run(command, check=True, capture_output=True, text=True, timeout=120).stderr
     assert re.search(r"loop vectorized using 16 byte vectors", told), told

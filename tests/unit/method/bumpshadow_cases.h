@@ -1,54 +1,10 @@
 /* bumpshadow.h against the golden vectors, 240 cases on five kinds of surface, computed at 50 digits by a program that
  * shares nothing with this one. Included by a test for float and one for double: the header is for either.
  *
- * Tolerances, relative to the vector's or number's own size: straightforward code reaches 1e-14 in double and 1e-5 in
- * float, where the shift is well-conditioned. tau loses digits where B (the sum of three terms) or B^2 - 4AC cancels;
- * the bound grows by how much smaller the sum is than its terms.
+ * tau loses digits where B (the sum of three terms) or B^2 - 4AC cancels; its bound grows by how much smaller the sum
+ * is than its terms.
  */
-#include <math.h>
-
-#include "bumpshadow.h"
-#include "support/check.h"
-#include "support/golden_json.h"
-
-#ifdef BS_DOUBLE
-#define TOLERANCE 1e-13
-#else
-#define TOLERANCE 3e-5
-#endif
-
-static bs_real number(struct fy_node *c, const char *key)
-{
-    double x;
-    assert_true(golden_number(golden_get(c, key), &x));
-    return (bs_real)x;
-}
-
-static bs_vec3 vector(struct fy_node *c, const char *key)
-{
-    struct fy_node *v = golden_get(c, key);
-    double x[3];
-    for (int i = 0; i < 3; i++)
-        assert_true(golden_number(fy_node_sequence_get_by_index(v, i), &x[i]));
-    bs_vec3 r = {(bs_real)x[0], (bs_real)x[1], (bs_real)x[2]};
-    return r;
-}
-
-static void near(int line, double got, double want, double size)
-{
-    if (!(fabs(got - want) <= TOLERANCE * size)) {
-        print_error("case %d: %.17g, expected %.17g within %g\n", line, got, want, TOLERANCE * size);
-        fail();
-    }
-}
-
-static void near_vector(int line, bs_vec3 got, bs_vec3 want)
-{
-    double size = sqrt((double)bs_dot(want, want));
-    near(line, (double)got.x, (double)want.x, size);
-    near(line, (double)got.y, (double)want.y, size);
-    near(line, (double)got.z, (double)want.z, size);
-}
+#include "unit/method/golden_values.h"
 
 /* One order, bare, against the golden tau; null where there is no real root on the branch of order 1. */
 static void near_tau(int line, struct fy_node *c, const char *key, bs_shift s, double condition, int order)

@@ -1,0 +1,177 @@
+/* The march towards the light, for the lanes that need it. Most do not: bounds of P prove that it does not rise as fast
+ * as the way does. What is left is gathered, so that lanes side by side do the same work.
+ */
+#include "method/own_shadow.h"
+
+#include "wave/lane.h"
+
+/* Ways that are not settled, side by side. */
+typedef struct open_ways {
+    int n;
+    int32_t lane[LANES], below[LANES]; /* of the group; met the rough surface */
+    real side[LANES], sn[LANES], a[LANES], b[LANES], A[LANES], B[LANES], curvature[LANES], end[LANES]; /* as own_ways */
+    real u[LANES], w[LANES], P[LANES];
+} open_ways;
+
+/* How far u, or w, moves on a way until t, over t, at most. */
+static inline real fastest(real a, real A, real end) { return real_abs(a) + real_abs(A) * end; }
+
+/* Whether P stays below the way: P rises by at most Pu a + Pw b per t (a and b are the fastest), the way by at least
+ * sn, less what the surface's curvature takes. */
+static inline int rises_faster(real sn, real a, real b, real curvature, real end, real Pu, real Pw)
+{
+    return sn - real_max(curvature, 0) * end >= Pu * a + Pw * b;
+}
+
+/* The lanes whose ways bounds of the slope of the whole P do not settle, nor the slope of P at the start with bounds of
+ * its second partials: the way and P part by sn - P' per t, and come together again by at most half the curvature of
+ * both. (Not so where a bound is infinite.) */
+STAGE static void find_open(const hit_group *restrict g, const bump *P, const own_ways *restrict y, real seen_from,
+                            int32_t *restrict open)
+{
+    const real Pu_max = P->Pu_max, Pw_max = P->Pw_max, Puu = P->Puu_max, Puw = P->Puw_max, Pww = P->Pww_max;
+    for (int i = 0; i < g->n; i++) {
+        real sn = y->sn[i], curvature = y->curvature[i], end = y->end[i], side = y->side[i], lit = g->lit[i];
+        real a = fastest(y->a[i], y->A[i], end), b = fastest(y->b[i], y->B[i], end);
+        real Pu = g->bump.Pu[i], Pw = g->bump.Pw[i], apart = sn - side * (Pu * y->a[i] + Pw * y->b[i]);
+        real together = Puu * a * a + 2 * Puw * a * b + Pww * b * b + curvature;
+        together += 2 * real_abs(Pu * y->A[i] + Pw * y->B[i]);
+        int parts = apart >= R(0.5) * real_max(together, 0) * end;
+        int settled = parts | rises_faster(sn, a, b, curvature, end, Pu_max, Pw_max);
+        open[i] = (lit > 0) & (end > 0) & (seen_from * side >= 0) & !settled;
+    }
+}
+
+static void gather_open(const hit_group *g, const own_ways *y, const int32_t *open, open_ways *o)
+{
+    o->n = 0;
+    for (int i = 0; i < g->n; i++) {
+        if (!open[i])
+            continue;
+        const int k = o->n++;
+        o->lane[k] = i;
+        o->below[k] = 0;
+        o->side[k] = y->side[i];
+        o->sn[k] = y->sn[i];
+        o->a[k] = y->a[i];
+        o->b[k] = y->b[i];
+        o->A[k] = y->A[i];
+        o->B[k] = y->B[i];
+        o->curvature[k] = y->curvature[i];
+        o->end[k] = y->end[i];
+        o->u[k] = g->u[i];
+        o->w[k] = g->w[i];
+        o->P[k] = g->bump.P[i];
+    }
+}
+
+/* A rectangle of (u,w) that a way is over. */
+STAGE static void rectangles(const open_ways *restrict o, real *restrict u0, real *restrict u1, real *restrict w0,
+                             real *restrict w1)
+{
+    for (int i = 0; i < o->n; i++) {
+        real e = o->end[i], u = o->a[i] * e, w = o->b[i] * e;
+        real more_u = real_abs(o->A[i]) * e * e, more_w = real_abs(o->B[i]) * e * e;
+        u0[i] = o->u[i] + real_min(u, 0) - more_u;
+        u1[i] = o->u[i] + real_max(u, 0) + more_u;
+        w0[i] = o->w[i] + real_min(w, 0) - more_w;
+        w1[i] = o->w[i] + real_max(w, 0) + more_w;
+    }
+}
+
+/* End the ways where they have risen above the P of their rectangles. */
+STAGE static void shorten(open_ways *restrict o, const bump_ranges *restrict k)
+{
+    for (int i = 0; i < o->n; i++) {
+        bs_view d = {o->sn[i], o->a[i], o->b[i]};
+        real above = o->side[i] > 0 ? k->hi[i] - o->P[i] : o->P[i] - k->lo[i];
+        o->end[i] = real_min(bs_way_to(d, o->curvature[i], real_max(above, 0)), o->end[i]);
+    }
+}
+
+STAGE static void still_open(const open_ways *restrict o, const bump_ranges *restrict k, int32_t *restrict open)
+{
+    for (int i = 0; i < o->n; i++) {
+        real end = o->end[i], a = fastest(o->a[i], o->A[i], end), b = fastest(o->b[i], o->B[i], end);
+        open[i] = !rises_faster(o->sn[i], a, b, o->curvature[i], end, k->Pu[i], k->Pw[i]);
+    }
+}
+
+static void drop_settled(open_ways *o, const int32_t *open)
+{
+    int n = 0;
+    for (int i = 0; i < o->n; i++) {
+        if (!open[i])
+            continue;
+        o->lane[n] = o->lane[i];
+        o->side[n] = o->side[i];
+        o->sn[n] = o->sn[i];
+        o->a[n] = o->a[i];
+        o->b[n] = o->b[i];
+        o->A[n] = o->A[i];
+        o->B[n] = o->B[i];
+        o->curvature[n] = o->curvature[i];
+        o->end[n] = o->end[i];
+        o->u[n] = o->u[i];
+        o->w[n] = o->w[i];
+        o->P[n] = o->P[i];
+        n++;
+    }
+    o->n = n;
+}
+
+/* By bounds of P over the rectangles of the ways. */
+static void settle_by_ranges(const bump *P, open_ways *o)
+{
+    enum { TIMES = 2 };
+    real u0[LANES], u1[LANES], w0[LANES], w1[LANES];
+    int32_t open[LANES];
+    bump_ranges k;
+    for (int time = 0; time < TIMES && o->n; time++) {
+        rectangles(o, u0, u1, w0, w1);
+        P->ops->range(P, o->n, u0, u1, w0, w1, &k);
+        shorten(o, &k);
+        still_open(o, &k, open);
+        drop_settled(o, open);
+    }
+}
+
+STAGE static void step_places(const open_ways *restrict o, int step, int steps, real *restrict u, real *restrict w)
+{
+    for (int i = 0; i < o->n; i++) {
+        real t = bs_way_step(o->end[i], step, steps);
+        u[i] = o->u[i] + (o->a[i] + o->A[i] * t) * t;
+        w[i] = o->w[i] + (o->b[i] + o->B[i] * t) * t;
+    }
+}
+
+STAGE static void step_below(open_ways *restrict o, int step, int steps, const real *restrict P)
+{
+    for (int i = 0; i < o->n; i++) {
+        real t = bs_way_step(o->end[i], step, steps);
+        bs_way w = {o->side[i], {o->sn[i], o->a[i], o->b[i]}, o->curvature[i], o->P[i], o->end[i]};
+        int32_t below = o->below[i];
+        o->below[i] = below | bs_way_below(w, t, P[i]);
+    }
+}
+
+long own_march(hit_group *g, const bump *P, const own_ways *y, int steps, int seen_from)
+{
+    real u[LANES], w[LANES];
+    int32_t open[LANES];
+    open_ways o;
+    bump_values h;
+    find_open(g, P, y, (real)seen_from, open);
+    gather_open(g, y, open, &o);
+    if (P->pyramid)
+        settle_by_ranges(P, &o);
+    for (int step = 1; step <= steps && o.n; step++) {
+        step_places(&o, step, steps, u, w);
+        P->ops->eval(P, o.n, u, w, 0, &h);
+        step_below(&o, step, steps, h.P);
+    }
+    for (int i = 0; i < o.n; i++)
+        if (o.below[i])
+            g->lit[o.lane[i]] = 0;
+    return (long)steps * o.n;
+}
