@@ -297,23 +297,22 @@ static inline bs_march bs_march_step(bs_march m, bs_real tau, bs_real gap, bs_vi
     return m;
 }
 
-/* ---- how good a shift is ----
+/* ---- what a place leaves (ours) ----
  *
- * After any method one look-up at its place tells what is left (ours): P, Pu and Pw at (u0 + a tau, w0 + b tau) give
- * the gap there, and how fast it changes with tau. */
-
-/* The error of tau to first order, positive where tau is too large for a ray from the front: gap over its slope. */
+ * How far is a shift, by whichever method, from the rough surface? Look P, Pu and Pw up once more, at bs_place_of(v,
+ * u0, w0, tau). There bs_gap is the height that is left. Over the gap's slope it is what tau lacks: */
 static inline bs_real bs_residual(bs_view v, bs_real curvature, bs_real tau, bs_bump there)
 {
-    return bs_gap(v, curvature, tau, there.P) / (v.sn - curvature * tau - there.Pu * v.a - there.Pw * v.b);
+    return bs_gap(v, curvature, tau, there.P) / (bs_slope(v, there) + curvature * tau);
 }
 
-/* How far an error in tau moves the shadow on the screen, in pixels: its length along the ray times the sine between
- * view s and light, over the size of a pixel there in scene units. `to_light` need not be a unit vector. */
-static inline bs_real bs_error_pixels(bs_real error, bs_vec3 s, bs_vec3 to_light, bs_real pixel)
+/* Added to tau it is Newton's step. So many pixels is the shadow's edge off by it, where s is the viewing ray's
+ * direction, d that to the light, and `pixel` the size of a pixel at the hit, in scene units: |s| times the sine
+ * between view and light, over that size, for each unit of tau. */
+static inline bs_real bs_pixels(bs_vec3 s, bs_vec3 d, bs_real pixel, bs_real residual)
 {
-    bs_vec3 c = bs_cross(s, to_light);
-    return BS_ABS(error) * BS_SQRT(bs_dot(c, c) / bs_dot(to_light, to_light)) / pixel;
+    bs_vec3 across = bs_cross(s, d);
+    return BS_ABS(residual) * BS_SQRT(bs_dot(across, across) / bs_dot(d, d)) / pixel;
 }
 
 /* ---- the bumps' own shadows ----

@@ -39,7 +39,7 @@ static inline void set_ends(hit_group *restrict g, int i, real sn, real x, real 
 {
     real tau = g->tau[i], start = -g->t[i], P = g->bump.P[i], front = real_max(real_min(x, y), start);
     real back = real_max(x, y), above = sn < 0 ? -P : P;
-    back = (above <= 0) & (back > 0) ? 0 : back;
+    back = ((above <= 0) & (back > 0)) ? 0 : back;
     int good = (g->order[i] >= 0) & (real_abs(y - x) < REAL_FAR);
     back = real_max(back, front);
     k->front[i] = good ? front : tau;
@@ -242,8 +242,8 @@ STAGE static void search_take(real step, real error, search *restrict s)
         s->tau[i] = s->open[i] ? next : tau;
         s->front[i] = front;
         s->back[i] = back;
-        s->above[i] = hit & again ? high * R(0.5) : high;
-        s->below[i] = (hit == 0) & again ? low * R(0.5) : low;
+        s->above[i] = (hit & again) ? high * R(0.5) : high;
+        s->below[i] = ((hit == 0) & again) ? low * R(0.5) : low;
         s->stepping[i] = stepping & (hit == 0) & (step + 1 < s->steps[i]);
         s->side[i] = stepping ? 0 : hit ? 1 : -1;
         s->open[i] &= (stepping != 0) | (left > error);

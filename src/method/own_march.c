@@ -36,7 +36,8 @@ STAGE static void find_open(const hit_group *restrict g, const bump *P, const ow
         real Pu = g->bump.Pu[i], Pw = g->bump.Pw[i], apart = sn - side * (Pu * y->a[i] + Pw * y->b[i]);
         real together = Puu * a * a + 2 * Puw * a * b + Pww * b * b + curvature;
         together += 2 * real_abs(Pu * y->A[i] + Pw * y->B[i]);
-        int parts = apart >= R(0.5) * real_max(together, 0) * end;
+        int parts =
+            apart >= R(0.5) * real_max(0, together) * end; /* never if that is NaN, of an infinite bound times 0 */
         int settled = parts | rises_faster(sn, a, b, curvature, end, Pu_max, Pw_max);
         open[i] = (lit > 0) & (end > 0) & (seen_from * side >= 0) & !settled;
     }

@@ -90,7 +90,8 @@ STAGE static void near_box(int n, const rays *restrict to_light, const vec3s *re
 static inline int parts(real vy, real vz, real cy, real cz, real ey, real ez, real hy, real hz)
 {
     real c = vy * cz - vz * cy, e = vy * ez - vz * ey, reach = real_abs(vz) * hy + real_abs(vy) * hz;
-    return (c - reach > real_max(e, 0)) | (c + reach < real_min(e, 0));
+    int above = c - reach > real_max(e, 0), below = c + reach < real_min(e, 0);
+    return above | below;
 }
 
 static inline int any_parts(bs_vec3 v, bs_vec3 c, bs_vec3 e, bs_vec3 h)
@@ -318,9 +319,8 @@ STAGE static void measure_shadow(int n, const rays *restrict x, const real *rest
                                  pixel_size size, real *restrict pixels)
 {
     for (int i = 0; i < n; i++) {
-        real pixel = size.fixed + size.spread * t[i];
-        real moves = bs_error_pixels(1, lane_get(&x->s, i), lane_get(&to_light->s, i), pixel);
-        pixels[i] = real_max(pixels[i], moves);
+        bs_vec3 s = lane_get(&x->s, i), d = lane_get(&to_light->s, i);
+        pixels[i] = real_max(pixels[i], bs_pixels(s, d, size.fixed + size.spread * t[i], 1));
     }
 }
 

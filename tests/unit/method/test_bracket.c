@@ -1,5 +1,4 @@
-/* The brackets of the method auto, and the search in them, against a fine march along each ray; its name; and what is
- * left at a place, bs_residual.
+/* The brackets of the method auto, and the search in them, against a fine march along each ray; and its name.
  */
 #include <math.h>
 #include <setjmp.h>
@@ -167,25 +166,6 @@ static void no_bracket_without_bounds(void **state)
     surface_free(f);
 }
 
-/* At a place off by d the residual is d, to first order; an error across the light's direction counts in full. */
-static void residual_is_the_error(void **state)
-{
-    const bs_view v = {R(-0.6), R(0.5), R(0.3)};
-    const double Pu = 0.2, Pw = -0.1;
-    (void)state;
-    /* P = 0.05 + Pu du + Pw dw: the root is known */
-    const double root = 0.05 / (-0.6 - Pu * 0.5 - Pw * 0.3);
-    for (int k = -3; k <= 3; k++) {
-        const double tau = root + 0.01 * k, P = 0.05 + (Pu * 0.5 + Pw * 0.3) * tau;
-        const bs_bump there = {(real)P, (real)Pu, (real)Pw, 0, 0, 0};
-        NEAR(bs_residual(v, 0, (real)tau, there), 0.01 * k, 1e-6);
-    }
-    const bs_vec3 s = {0, 0, 2}, across = {5, 0, 0}, slanted = {3, 0, 4}, along = {0, 0, 1};
-    NEAR(bs_error_pixels(R(-0.1), s, across, R(0.05)), 4, 1e-5);
-    NEAR(bs_error_pixels(R(0.1), s, slanted, R(0.05)), 4 * 0.6, 1e-5);
-    NEAR(bs_error_pixels(R(0.1), s, along, R(0.05)), 0, 1e-5);
-}
-
 static void names(void **state)
 {
     static const char *const good[][2] = {{"auto", "auto"},           {"auto:0.25", "auto"},
@@ -226,7 +206,7 @@ int main(void)
         cmocka_unit_test(brackets_hold_the_place),
         cmocka_unit_test(search_finds_the_place),
         cmocka_unit_test(no_bracket_without_bounds),
-        cmocka_unit_test(residual_is_the_error),
+
         cmocka_unit_test(names),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
