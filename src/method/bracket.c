@@ -9,7 +9,7 @@
 enum {
     SECANTS_MAX = 8, /* after them */
 };
-#define LEAST_GAP 0.1 /* of an end, of what the ray sinks in its bracket */
+#define LEAST_GAP 0.02 /* of an end, of what the ray sinks in its bracket */
 
 static inline bs_view view(const brackets *k, int i) { return (bs_view){k->sn[i], k->a[i], k->b[i]}; }
 
@@ -225,7 +225,7 @@ STAGE static void search_place(real step, search *restrict s)
 }
 
 /* Take it in. Steps end at the first that is below the rough surface, and with the last but one, as the bracket's back
- * is below. Secants end where twice the way to the next is short; tau is that. An end that stays twice in a row
+ * is below. Secants end where twice the error left is small; tau is the next place. An end that stays twice in a row
  * counts half, so that both ends move (Illinois). */
 STAGE static void search_take(real step, real error, search *restrict s)
 {
@@ -238,7 +238,9 @@ STAGE static void search_take(real step, real error, search *restrict s)
         back = hit ? at : back;
         high = hit ? high : above;
         low = hit ? above : low;
-        real next = front + (back - front) * (high / (high - low)), left = 2 * real_abs(next - at) * s->pixels[i];
+        real width = back - front, next = front + width * (high / (high - low));
+        real slope = real_min(high - low, real_abs(v.sn) * width); /* times width; an end's gap may be a guess */
+        real left = 2 * real_abs(above) * width * s->pixels[i];
         s->tau[i] = s->open[i] ? next : tau;
         s->front[i] = front;
         s->back[i] = back;
@@ -246,7 +248,7 @@ STAGE static void search_take(real step, real error, search *restrict s)
         s->below[i] = ((hit == 0) & again) ? low * R(0.5) : low;
         s->stepping[i] = stepping & (hit == 0) & (step + 1 < s->steps[i]);
         s->side[i] = stepping ? 0 : hit ? 1 : -1;
-        s->open[i] &= (stepping != 0) | (left > error);
+        s->open[i] &= (stepping != 0) | (left > error * slope);
     }
 }
 
