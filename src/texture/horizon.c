@@ -194,8 +194,6 @@ void horizon_free(horizon *h)
 
 const table_grid *horizon_grid(const horizon *h) { return &h->grid; }
 
-size_t horizon_bytes(const horizon *h) { return sizeof *h + entries(&h->grid) * sizeof *h->rise; }
-
 /* Eight gathers: the corners of the cell, in two directions. */
 STAGE static void look(const horizon *h, int n, const int32_t *restrict at, const real *restrict a,
                        const real *restrict b, const real *restrict bearing, real *restrict rise)
