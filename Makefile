@@ -113,7 +113,7 @@ render: all
 	@CC='$(CC)' scripts/bootstrap python
 	@$(MAKE) --no-print-directory $(PICTURES) out/figures.png out/gallery.png out/gallery/index.html
 	@$(MAKE) --no-print-directory out/relief.png # when nothing else runs, as it is timed
-	@echo 'The pictures are in out/, those of the paper side by side in out/figures.png, the truth beside in out/relief.png,'
+	@echo 'The pictures are in out/, those of the paper side by side in out/figures.png, with the truth in out/relief.png,'
 	@echo 'the gallery in out/gallery/index.html and out/gallery.png:'
 	@ls $(PICTURES) $(PICTURES:.png=.exr) out/figures.png $(GALLERY:%=out/gallery/%.png)
 
