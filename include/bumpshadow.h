@@ -297,6 +297,24 @@ static inline bs_march bs_march_step(bs_march m, bs_real tau, bs_real gap, bs_vi
     return m;
 }
 
+/* ---- what a place leaves (ours) ----
+ *
+ * How far is a shift, by whichever method, from the rough surface? Look P, Pu and Pw up once more, at bs_place_of(v,
+ * u0, w0, tau). There bs_gap is the height that is left. Over the gap's slope it is what tau lacks: */
+static inline bs_real bs_residual(bs_view v, bs_real curvature, bs_real tau, bs_bump there)
+{
+    return bs_gap(v, curvature, tau, there.P) / (bs_slope(v, there) + curvature * tau);
+}
+
+/* Added to tau it is Newton's step. So many pixels is the shadow's edge off by it, where s is the viewing ray's
+ * direction, d that to the light, and `pixel` the size of a pixel at the hit, in scene units: |s| times the sine
+ * between view and light, over that size, for each unit of tau. */
+static inline bs_real bs_pixels(bs_vec3 s, bs_vec3 d, bs_real pixel, bs_real residual)
+{
+    bs_vec3 across = bs_cross(s, d);
+    return BS_ABS(residual) * BS_SQRT(bs_dot(across, across) / bs_dot(d, d)) / pixel;
+}
+
 /* ---- the bumps' own shadows ----
  *
  * N. Max, "Shadows for bump-mapped surfaces", 1986 (the paper's case 1); the march is ours. Is a

@@ -96,10 +96,11 @@ static void closed_hit(const displaced *d, int n, const rays *x, const ray_origi
     real t[LANES];
     int32_t found[LANES], own[LANES];
     for (int part = 0; part < d->smooth->ops->parts; part++) {
+        int32_t any_own = 0;
         long uncertain = 0;
         for (int i = 0; i < n; i++)
-            own[i] = from && from->id[i] == id && from->part[i] == part;
-        const long evaluations = search_part(d, part, n, x, h->t, own, false, t, found);
+            any_own |= own[i] = from && from->id[i] == id && from->part[i] == part;
+        const long evaluations = search_part(d, part, n, x, h->t, any_own ? own : NULL, false, t, found);
         for (int i = 0; i < n; i++)
             if (found[i] != DISPLACED_MISSED && t[i] > 0 && t[i] < h->t[i]) {
                 h->t[i] = t[i];

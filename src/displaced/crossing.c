@@ -1,8 +1,11 @@
-/* Roots of the gap within brackets, by the Illinois form of regula falsi [Dowell and Jarratt 1971], which needs no
- * slopes: those of a map are not its bilinear surface's. Where that does not pay, the bracket is halved. */
+/* Roots of the gap within brackets, by regula falsi as Anderson and Bjorck (1973) have it, which needs no slopes: those
+ * of a map are not its bilinear surface's. Where that does not pay, the bracket is halved. */
 #include "displaced/crossing.h"
 
-enum { MOST = 64 }; /* steps: more halvings than a real has digits */
+enum {
+    MOST = 64,  /* steps: more halvings than a real has digits */
+    CLOSED = 4, /* those that have ended are dropped when they are so large a part of the wave */
+};
 
 #define ENOUGH R(0.0625) /* of the tolerance: further steps would move the hit by less than rounding */
 
@@ -51,15 +54,23 @@ STAGE static void lay(crossings *restrict c, refinement *restrict r)
     }
 }
 
-/* Take the gaps at t. An end that is kept twice has its gap halved. */
+/* The share of the gap at an end that is left where that end is kept again, and `was` became `is` at the other. */
+static inline real share_left(real is, real was)
+{
+    const real k = 1 - is / was;
+    return k > 0 ? k : R(0.5);
+}
+
+/* Take the gaps at t. Where a search has ended nothing changes any more. */
 STAGE static void narrow(crossings *restrict c, refinement *restrict r)
 {
     const int n = c->at.n;
     for (int i = 0; i < n; i++) {
         const real t = c->at.t[i], above = c->side[i] * c->at.gap[i], size = real_abs(above), kept = r->kept[i];
-        const int up = above > 0, better = size<c->least[i], slow = size> R(0.5) * r->before[i];
-        const real less_a = kept < 0 ? R(0.5) * c->above_a[i] : c->above_a[i];
-        const real less_b = kept > 0 ? R(0.5) * c->above_b[i] : c->above_b[i];
+        const int open = r->open[i] != 0, up = above > 0, better = open & (size < c->least[i]);
+        const int slow = size > R(0.5) * r->before[i];
+        const real less_a = kept < 0 ? share_left(above, c->above_b[i]) * c->above_a[i] : c->above_a[i];
+        const real less_b = kept > 0 ? share_left(above, c->above_a[i]) * c->above_b[i] : c->above_b[i];
         const real a = up ? t : c->a[i], b = up ? c->b[i] : t, fa = up ? above : less_a, fb = up ? less_b : above;
         const real to = next(a, b, fa, fb, slow);
         r->best[i] = better ? t : r->best[i];
@@ -70,7 +81,7 @@ STAGE static void narrow(crossings *restrict c, refinement *restrict r)
         c->above_b[i] = fb;
         r->kept[i] = up ? R(1) : R(-1);
         r->before[i] = size;
-        r->open[i] = (size > ENOUGH * c->tolerance[i]) & (to > a) & (to < b);
+        r->open[i] = open & (size > ENOUGH * c->tolerance[i]) & (to > a) & (to < b);
         c->at.t[i] = to;
     }
 }
@@ -83,20 +94,35 @@ static void take(const crossings *c, const refinement *r, int i, real *t, int32_
     found[c->at.lane[i]] = hit ? DISPLACED_HIT : DISPLACED_UNCERTAIN;
 }
 
+STAGE static int32_t count_open(int n, const int32_t *restrict open)
+{
+    int32_t sum = 0;
+    for (int i = 0; i < n; i++)
+        sum += open[i];
+    return sum;
+}
+
+/* Those that have ended. */
+static void drop(crossings *c, refinement *r, real *t, int32_t *found)
+{
+    int n = 0;
+    for (int i = 0; i < c->at.n; i++)
+        if (!r->open[i])
+            take(c, r, i, t, found);
+        else if (n++ < i)
+            keep(c, r, i, n - 1);
+    c->at.n = n;
+}
+
 void crossings_refine(const domain *f, const bump *P, crossings *c, real *t, int32_t *found)
 {
     refinement r;
     lay(c, &r);
     for (int step = 0; step < MOST && c->at.n; step++) {
-        int n = 0;
         paths_evaluate(f, P, 0, &c->at);
         narrow(c, &r);
-        for (int i = 0; i < c->at.n; i++)
-            if (!r.open[i])
-                take(c, &r, i, t, found);
-            else if (n++ < i)
-                keep(c, &r, i, n - 1);
-        c->at.n = n;
+        if (count_open(c->at.n, r.open) <= c->at.n - c->at.n / CLOSED)
+            drop(c, &r, t, found);
     }
     for (int i = 0; i < c->at.n; i++)
         take(c, &r, i, t, found);

@@ -136,6 +136,20 @@ void displaced_shape(const surface *f, hit_group *g)
     }
 }
 
+/* Order 0 where there is no hit. */
+STAGE static void take_shifts(const hits *restrict h, hit_group *restrict g)
+{
+    const int n = g->n;
+    for (int i = 0; i < n; i++) {
+        const bs_vec3 m = lane_get(&g->n_smooth, i), s = lane_get(&g->x.s, i);
+        const bs_view v = {bs_dot(s, m) / real_sqrt(bs_dot(m, m)), 0, 0};
+        const int regular = bs_regular(m, lane_get(&g->q.Qu, i), lane_get(&g->q.Qw, i)), hit = h->id[i] == 0;
+        const real tau0 = bs_tau0(v, g->bump.P[i]), order_0 = regular ? tau0 : 0;
+        g->tau[i] = hit ? h->t[i] - g->t[i] : order_0;
+        g->order[i] = hit ? ORDER_EXACT : 0;
+    }
+}
+
 void displaced_shift(const surface *f, hit_group *g)
 {
     hits h;
@@ -144,12 +158,5 @@ void displaced_shift(const surface *f, hit_group *g)
         h.id[i] = -1;
     }
     f->ops->hit(f, g->n, &g->x, 0, &h);
-    for (int i = 0; i < g->n; i++) {
-        bs_vec3 n = lane_get(&g->n_smooth, i), Qu = lane_get(&g->q.Qu, i), Qw = lane_get(&g->q.Qw, i);
-        bs_real sn = bs_dot(lane_get(&g->x.s, i), n) / real_sqrt(bs_dot(n, n));
-        bs_view v = {sn, 0, 0};
-        real order_0 = bs_regular(n, Qu, Qw) ? bs_tau0(v, g->bump.P[i]) : 0;
-        g->tau[i] = h.id[i] == 0 ? h.t[i] - g->t[i] : order_0;
-        g->order[i] = h.id[i] == 0 ? ORDER_EXACT : 0;
-    }
+    take_shifts(&h, g);
 }

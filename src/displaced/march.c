@@ -93,12 +93,15 @@ static void begin(const domain *f, const bump *P, int n, const rays *x, const re
     compact(s);
 }
 
-/* The side on which a ray begins, and its tolerance. Where the gap is 0 to rounding, a ray that starts on the surface
- * is on the side that it leaves to, any other on the one that it comes from. There the gap is what rounding has made of
- * 0: of sums, too, that are not known here, as of a camera far away. */
-STAGE static void take_sides(search *restrict s)
+/* The side on which a ray begins, and its tolerance; order: of the evaluation. Where the gap is 0 to rounding, a ray
+ * that starts on the surface is on the side that it leaves to, any other on the one that it comes from. There the gap
+ * is what rounding has made of 0: of sums, too, that are not known here, as of a camera far away. */
+STAGE static void take_sides(int order, search *restrict s)
 {
     const int n = s->at.n;
+    if (order == 0)
+        for (int i = 0; i < n; i++)
+            s->at.slope[i] = s->at.dh[i];
     for (int i = 0; i < n; i++) {
         const real gap = s->at.gap[i], off = real_abs(gap), tolerance = s->tolerance[i];
         const int own = s->own[i] != 0, clear = (off > tolerance) & !own, rises = s->at.slope[i] > 0;
@@ -235,11 +238,11 @@ long displaced_search(const domain *f, const bump *P, int n, const rays *x, cons
     all_missed(n, found);
     begin(f, P, n, x, end, own, &s);
     for (int step = 0; step < f->steps && s.at.n; step++) {
-        const int order = step == 0 || P->Puu_max < REAL_FAR;
+        const int order = (step == 0 && own) || P->Puu_max < REAL_FAR;
         paths_evaluate(f, P, order, &s.at);
         paths_differentiate(order, &s.at);
         if (step == 0)
-            take_sides(&s);
+            take_sides(order, &s);
         look(&s, state);
         if (!take(f, P, &s, state, &c, t, found))
             break;

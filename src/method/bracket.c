@@ -1,17 +1,16 @@
 /* Draws brackets together: bounds, steps, secants. */
 #include "method/bracket.h"
 
+#include <string.h>
+
 #include "method/method.h"
-#include "wave/gather.h"
 #include "wave/lane.h"
 
 enum {
     STEPS_MAX = 16,
     SECANTS_MAX = 8, /* after them */
-    COMPACT = 3,     /* after so many steps the lanes that have ended are dropped */
 };
-#define STEP_ERRORS 32 /* the length of a step in errors */
-#define LEAST_GAP 0.1  /* of an end, of what the ray sinks in its bracket */
+#define LEAST_GAP 0.1 /* of an end, of what the ray sinks in its bracket */
 
 static inline bs_view view(const brackets *k, int i) { return (bs_view){k->sn[i], k->a[i], k->b[i]}; }
 
@@ -54,6 +53,9 @@ STAGE static void begin_flat(hit_group *restrict g, real Pmin, real Pmax, bracke
         bs_view v = bs_view_of(lane_get(&g->x.s, i), n, Qu, Qw);
         first_try(g, i, n, Qu, Qw, v.sn);
         k->sn[i] = v.sn;
+        k->a[i] = v.a;
+        k->b[i] = v.b;
+        k->curvature[i] = 0;
         set_ends(g, i, v.sn, Pmin / v.sn, Pmax / v.sn, k);
     }
 }
@@ -76,57 +78,49 @@ STAGE static void begin_curved(hit_group *restrict g, real Pmin, real Pmax, brac
 void bracket_begin(hit_group *g, const bump *P, bool flat, brackets *k)
 {
     k->n = g->n;
-    k->flat = flat;
     (flat ? begin_flat : begin_curved)(g, P->Pmin, P->Pmax, k);
 }
 
-/* What a flat surface leaves out. */
-static void pick_flat(const hit_group *g, int n, const int32_t *lane, brackets *k)
+/* Some lanes, or all. */
+static void pick(const hit_group *g, int n, const int32_t *lane, const real *from, real *to)
 {
-    for (int i = 0; i < n; i++) {
-        const int j = lane[i];
-        bs_view v =
-            bs_view_of(lane_get(&g->x.s, j), lane_get(&g->n_smooth, j), lane_get(&g->q.Qu, j), lane_get(&g->q.Qw, j));
-        k->a[i] = v.a;
-        k->b[i] = v.b;
-        k->curvature[i] = 0;
-    }
+    if (n == g->n)
+        memcpy(to, from, (size_t)n * sizeof *to);
+    else
+        for (int i = 0; i < n; i++)
+            to[i] = from[lane[i]];
 }
 
-static void pick_curved(const brackets *from, int n, const int32_t *lane, brackets *k)
+static void pick3(const hit_group *g, int n, const int32_t *lane, const vec3s *from, vec3s *to)
 {
-    for (int i = 0; i < n; i++) {
-        k->a[i] = from->a[lane[i]];
-        k->b[i] = from->b[lane[i]];
-        k->curvature[i] = from->curvature[lane[i]];
-    }
+    pick(g, n, lane, from->x, to->x);
+    pick(g, n, lane, from->y, to->y);
+    pick(g, n, lane, from->z, to->z);
 }
 
 void places_pick(const hit_group *g, const brackets *k, int n, const int32_t *lane, places *p)
 {
     p->k.n = n;
-    p->k.flat = k->flat;
+    pick(g, n, lane, k->sn, p->k.sn);
+    pick(g, n, lane, k->a, p->k.a);
+    pick(g, n, lane, k->b, p->k.b);
+    pick(g, n, lane, k->curvature, p->k.curvature);
+    pick(g, n, lane, k->front, p->k.front);
+    pick(g, n, lane, k->back, p->k.back);
+    pick3(g, n, lane, &g->x.r, &p->x.r);
+    pick3(g, n, lane, &g->x.s, &p->x.s);
+    pick(g, n, lane, g->t, p->t);
+    pick(g, n, lane, g->u, p->u);
+    pick(g, n, lane, g->w, p->w);
+    pick(g, n, lane, g->bump.P, p->P);
+    pick(g, n, lane, g->bump.Pu, p->Pu);
+    pick(g, n, lane, g->bump.Pw, p->Pw);
+    pick(g, n, lane, g->tau, p->tau);
     for (int i = 0; i < n; i++) {
-        const int j = lane[i];
-        p->lane[i] = j;
-        p->k.sn[i] = k->sn[j];
-        p->k.front[i] = k->front[j];
-        p->k.back[i] = k->back[j];
-        p->t[i] = g->t[j];
-        p->u[i] = g->u[j];
-        p->w[i] = g->w[j];
-        p->P[i] = g->bump.P[j];
-        p->Pu[i] = g->bump.Pu[j];
-        p->Pw[i] = g->bump.Pw[j];
-        p->tau[i] = g->tau[j];
+        p->lane[i] = lane[i];
+        p->order[i] = g->order[lane[i]];
         p->pixels[i] = 0;
-        p->order[i] = g->order[j];
     }
-    if (k->flat)
-        pick_flat(g, n, lane, &p->k);
-    else
-        pick_curved(k, n, lane, &p->k);
-    gather_rays(n, lane, &g->x, &p->x);
 }
 
 void places_put(const places *p, hit_group *g)
@@ -139,15 +133,43 @@ void places_put(const places *p, hit_group *g)
 
 /* ---- the search ---- */
 
-/* The ends that the search has reached, and the gaps there, positive above the rough surface. At first they are those
- * of P's tangent at the smooth hit, of the sign that they must have. */
+/* Lanes whose places are searched, side by side. The ends of their brackets move, with the gaps there, positive above
+ * the rough surface. */
 typedef struct search {
+    int n;
+    int32_t place[LANES]; /* index in `places` */
+    real sn[LANES], a[LANES], b[LANES], curvature[LANES], u[LANES], w[LANES], pixels[LANES];
+    real start[LANES], length[LANES], steps[LANES]; /* so many, of length `length` from `start` */
     real front[LANES], back[LANES], above[LANES], below[LANES];
-    real steps[LANES];
-    int32_t done[LANES];
-    real at[LANES], u[LANES], w[LANES]; /* the place that is looked up */
+    real tau[LANES];                                   /* the best place so far */
+    int32_t stepping[LANES], side[LANES], open[LANES]; /* side: the end that moved last, 1 the back, -1 the front */
+
+    real at[LANES], at_u[LANES], at_w[LANES]; /* the place that is looked up */
     bump_values h;
 } search;
+
+static void copy_lane(search *s, int to, int from)
+{
+    s->place[to] = s->place[from];
+    s->sn[to] = s->sn[from];
+    s->a[to] = s->a[from];
+    s->b[to] = s->b[from];
+    s->curvature[to] = s->curvature[from];
+    s->u[to] = s->u[from];
+    s->w[to] = s->w[from];
+    s->pixels[to] = s->pixels[from];
+    s->start[to] = s->start[from];
+    s->length[to] = s->length[from];
+    s->steps[to] = s->steps[from];
+    s->front[to] = s->front[from];
+    s->back[to] = s->back[from];
+    s->above[to] = s->above[from];
+    s->below[to] = s->below[from];
+    s->tau[to] = s->tau[from];
+    s->stepping[to] = s->stepping[from];
+    s->side[to] = s->side[from];
+    s->open[to] = 1;
+}
 
 static inline real above_at(bs_view v, real curvature, real tau, real P)
 {
@@ -155,193 +177,116 @@ static inline real above_at(bs_view v, real curvature, real tau, real P)
     return v.sn < 0 ? gap : -gap;
 }
 
+/* All places. The gaps at the ends are those of P's tangent at the smooth hit, with the sign that they must have. */
 STAGE static void search_begin(const places *restrict p, real per_step, search *restrict s)
 {
     const brackets *k = &p->k;
     for (int i = 0; i < k->n; i++) {
         bs_view v = view(k, i);
-        real front = k->front[i], back = k->back[i], width = back - front;
+        real front = k->front[i], back = k->back[i], width = back - front, curvature = k->curvature[i], u = p->u[i],
+             w = p->w[i], pixels = p->pixels[i], tau = p->tau[i];
         real least = real_abs(v.sn) * width * R(LEAST_GAP), rise = p->Pu[i] * v.a + p->Pw[i] * v.b;
-        real steps = real_floor(width * p->pixels[i] / per_step) + 1;
-        s->steps[i] = real_min(steps, STEPS_MAX);
+        real steps = real_min(real_floor(width * pixels / per_step) + 1, STEPS_MAX);
+        s->sn[i] = v.sn;
+        s->a[i] = v.a;
+        s->b[i] = v.b;
+        s->curvature[i] = curvature;
+        s->u[i] = u;
+        s->w[i] = w;
+        s->pixels[i] = pixels;
+        s->start[i] = front;
+        s->length[i] = width / steps;
+        s->steps[i] = steps;
         s->front[i] = front;
         s->back[i] = back;
-        s->above[i] = real_max(above_at(v, k->curvature[i], front, p->P[i] + rise * front), least);
-        s->below[i] = real_min(above_at(v, k->curvature[i], back, p->P[i] + rise * back), -least);
-        s->done[i] = width <= 0;
+        s->above[i] = real_max(above_at(v, curvature, front, p->P[i] + rise * front), least);
+        s->below[i] = real_min(above_at(v, curvature, back, p->P[i] + rise * back), -least);
+        s->tau[i] = tau;
+        s->place[i] = i;
+        s->stepping[i] = steps > 1;
+        s->side[i] = 0;
+        s->open[i] = width > 0;
     }
 }
 
-/* Lanes that still take steps, side by side. */
-typedef struct walk {
-    int n;
-    int32_t place[LANES];
-    real sn[LANES], a[LANES], b[LANES], curvature[LANES], u[LANES], w[LANES];
-    real from[LANES], length[LANES], steps[LANES];
-    real front[LANES], back[LANES], above[LANES], below[LANES];
-    int32_t found[LANES];
-    real at[LANES], pu[LANES], pw[LANES];
-    bump_values h;
-} walk;
-
-static void walk_begin(const places *p, const search *s, walk *x)
+/* The next step, or else the secant's place. */
+STAGE static void search_place(real step, search *restrict s)
 {
-    const brackets *k = &p->k;
-    int n = 0;
-    for (int i = 0; i < k->n; i++) {
-        if (!(s->steps[i] > 1))
-            continue;
-        x->place[n] = i;
-        x->sn[n] = k->sn[i];
-        x->a[n] = k->a[i];
-        x->b[n] = k->b[i];
-        x->curvature[n] = k->curvature[i];
-        x->u[n] = p->u[i];
-        x->w[n] = p->w[i];
-        x->from[n] = k->front[i];
-        x->length[n] = (k->back[i] - k->front[i]) / s->steps[i];
-        x->steps[n] = s->steps[i];
-        x->front[n] = s->front[i];
-        x->back[n] = s->back[i];
-        x->above[n] = s->above[i];
-        x->below[n] = s->below[i];
-        x->found[n] = 0;
-        n++;
-    }
-    x->n = n;
-}
-
-/* Let those end that have found a crossing or have but the last step left, to the bracket's back. */
-static void walk_compact(walk *x, real step, search *s)
-{
-    int n = 0;
-    for (int i = 0; i < x->n; i++) {
-        if (x->found[i] || step + 1 >= x->steps[i]) {
-            const int j = x->place[i];
-            s->front[j] = x->front[i];
-            s->back[j] = x->back[i];
-            s->above[j] = x->above[i];
-            s->below[j] = x->below[i];
-            continue;
-        }
-        x->place[n] = x->place[i];
-        x->sn[n] = x->sn[i];
-        x->a[n] = x->a[i];
-        x->b[n] = x->b[i];
-        x->curvature[n] = x->curvature[i];
-        x->u[n] = x->u[i];
-        x->w[n] = x->w[i];
-        x->from[n] = x->from[i];
-        x->length[n] = x->length[i];
-        x->steps[n] = x->steps[i];
-        x->front[n] = x->front[i];
-        x->back[n] = x->back[i];
-        x->above[n] = x->above[i];
-        x->below[n] = x->below[i];
-        x->found[n] = 0;
-        n++;
-    }
-    x->n = n;
-}
-
-STAGE static void walk_place(walk *restrict x, real step)
-{
-    for (int i = 0; i < x->n; i++) {
-        real at = x->from[i] + x->length[i] * step;
-        x->at[i] = at;
-        x->pu[i] = x->u[i] + x->a[i] * at;
-        x->pw[i] = x->w[i] + x->b[i] * at;
-    }
-}
-
-STAGE static void walk_step(walk *restrict x, real step)
-{
-    for (int i = 0; i < x->n; i++) {
-        bs_view v = {x->sn[i], x->a[i], x->b[i]};
-        real at = x->at[i], above = above_at(v, x->curvature[i], at, x->h.P[i]);
-        real front = x->front[i], back = x->back[i], high = x->above[i], low = x->below[i];
-        int looking = (x->found[i] == 0) & (step < x->steps[i]), hit = looking & (above <= 0),
-            pass = looking & (above > 0);
-        x->front[i] = pass ? at : front;
-        x->above[i] = pass ? above : high;
-        x->back[i] = hit ? at : back;
-        x->below[i] = hit ? above : low;
-        x->found[i] |= hit;
-    }
-}
-
-static long take_steps(const places *p, const bump *P, search *s)
-{
-    walk x;
-    long looks = 0;
-    walk_begin(p, s, &x);
-    for (int step = 1; x.n > 0; step++) {
-        walk_place(&x, (real)step);
-        P->ops->eval(P, x.n, x.pu, x.pw, 0, &x.h);
-        walk_step(&x, (real)step);
-        looks += x.n;
-        if (step % COMPACT == 0)
-            walk_compact(&x, (real)step, s);
-    }
-    return looks;
-}
-
-STAGE static void secant_place(const places *restrict p, search *restrict s)
-{
-    for (int i = 0; i < p->k.n; i++) {
-        real rise = s->above[i] - s->below[i], part = rise > 0 ? s->above[i] / rise : 0;
-        real at = s->front[i] + (s->back[i] - s->front[i]) * part;
-        s->at[i] = at;
-        s->u[i] = p->u[i] + p->k.a[i] * at;
-        s->w[i] = p->w[i] + p->k.b[i] * at;
-    }
-}
-
-/* Take the place in, unless the lane is done, and as tau the next. The end that stays counts half, so that both ends
- * move (Illinois). */
-STAGE static void secant_step(places *restrict p, real error, search *restrict s)
-{
-    const brackets *k = &p->k;
-    for (int i = 0; i < k->n; i++) {
-        bs_view v = view(k, i);
-        real above = above_at(v, k->curvature[i], s->at[i], s->h.P[i]), at = s->at[i];
+    for (int i = 0; i < s->n; i++) {
         real front = s->front[i], back = s->back[i], high = s->above[i], low = s->below[i];
-        real rise = high - low, left = real_abs(above) * (back - front), tau = p->tau[i];
-        int open = s->done[i] == 0, hit = above <= 0;
+        real next = s->start[i] + s->length[i] * step, secant = front + (back - front) * (high / (high - low));
+        real at = s->stepping[i] ? next : secant;
+        s->at[i] = at;
+        s->at_u[i] = s->u[i] + s->a[i] * at;
+        s->at_w[i] = s->w[i] + s->b[i] * at;
+    }
+}
+
+/* Take it in. Steps end at the first that is below the rough surface, and with the last but one, as the bracket's back
+ * is below. Secants end where the error left is small; tau is the next secant's place. An end that stays twice in a row
+ * counts half, so that both ends move (Illinois). */
+STAGE static void search_take(real step, real error, search *restrict s)
+{
+    for (int i = 0; i < s->n; i++) {
+        bs_view v = {s->sn[i], s->a[i], s->b[i]};
+        real at = s->at[i], above = above_at(v, s->curvature[i], at, s->h.P[i]), tau = s->tau[i];
+        real front = s->front[i], back = s->back[i], high = s->above[i], low = s->below[i];
+        real left = real_abs(above) * (back - front) * s->pixels[i], rise = high - low;
+        int stepping = s->stepping[i], side = s->side[i], hit = above <= 0,
+            ended = (stepping == 0) & (left <= error * rise);
+        int again = hit ? side == 1 : side == -1;
         front = hit ? front : at;
         back = hit ? at : back;
         high = hit ? high : above;
         low = hit ? above : low;
-        p->tau[i] = open ? front + (back - front) * (high > low ? high / (high - low) : 0) : tau;
+        s->tau[i] = s->open[i] ? front + (back - front) * (high / (high - low)) : tau;
         s->front[i] = front;
-        s->above[i] = hit ? high * R(0.5) : high;
         s->back[i] = back;
-        s->below[i] = hit ? low : low * R(0.5);
-        s->done[i] |= left * p->pixels[i] <= error * rise;
+        s->above[i] = hit & again ? high * R(0.5) : high;
+        s->below[i] = (hit == 0) & again ? low * R(0.5) : low;
+        s->stepping[i] = stepping & (hit == 0) & (step + 1 < s->steps[i]);
+        s->side[i] = stepping ? 0 : hit ? 1 : -1;
+        s->open[i] = ended ? 0 : s->open[i];
     }
 }
 
-static bool all(int n, const int32_t *x)
+STAGE static int count(int n, const int32_t *x)
 {
     int m = 0;
     for (int i = 0; i < n; i++)
-        m += x[i] != 0;
-    return m == n;
+        m += x[i];
+    return m;
 }
 
-long places_search(places *p, const bump *P, real error)
+/* Put the places of lanes that have ended, and drop these. */
+static void search_put(search *s, places *p)
 {
-    const int n = p->k.n;
+    int n = 0;
+    for (int i = 0; i < s->n; i++)
+        if (s->open[i])
+            copy_lane(s, n++, i);
+        else
+            p->tau[s->place[i]] = s->tau[i];
+    s->n = n;
+}
+
+long places_search(places *p, const bump *P, real error, real per_step)
+{
     search s;
-    search_begin(p, STEP_ERRORS * error, &s);
-    for (int i = 0; i < n; i++)
-        p->order[i] = s.done[i] ? p->order[i] : method_code((method){METHOD_MARCH, 1});
-    long looks = take_steps(p, P, &s);
-    for (int secant = 0; secant < SECANTS_MAX && !all(n, s.done); secant++) {
-        secant_place(p, &s);
-        P->ops->eval(P, n, s.u, s.w, 0, &s.h);
-        secant_step(p, error, &s);
-        looks += n;
+    long looks = 0;
+    s.n = p->k.n;
+    search_begin(p, per_step, &s);
+    for (int i = 0; i < s.n; i++)
+        p->order[i] = s.open[i] ? method_code((method){METHOD_MARCH, 1}) : p->order[i];
+    for (int step = 1; step <= STEPS_MAX + SECANTS_MAX && s.n > 0; step++) {
+        search_place((real)step, &s);
+        P->ops->eval(P, s.n, s.at_u, s.at_w, 0, &s.h);
+        search_take((real)step, error, &s);
+        looks += s.n;
+        if (2 * count(s.n, s.open) <= s.n)
+            search_put(&s, p);
     }
+    for (int i = 0; i < s.n; i++)
+        p->tau[s.place[i]] = s.tau[i];
     return looks;
 }

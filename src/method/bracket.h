@@ -15,7 +15,6 @@
 /* Each lane's ray relative to the surface (bs_view), and its bracket. */
 typedef struct brackets {
     int n;
-    bool flat; /* curvature is 0 everywhere */
     real sn[LANES], a[LANES], b[LANES], curvature[LANES];
     real front[LANES], back[LANES]; /* as tau; front is the viewer's side. Both are tau where there is no bracket. */
 } brackets;
@@ -28,21 +27,22 @@ typedef struct places {
     real t[LANES];           /* t_hit */
     real u[LANES], w[LANES]; /* of the smooth hit */
     real P[LANES], Pu[LANES], Pw[LANES];
-    real tau[LANES];         /* the place, in the bracket */
-    real pixels[LANES];      /* so many is an error of 1 in tau on the screen */
-    int32_t order[LANES];    /* the method that found it, as method_code has it */
+    real tau[LANES];      /* the place, in the bracket */
+    real pixels[LANES];   /* so many is an error of 1 in tau on the screen */
+    int32_t order[LANES]; /* the method that found it, as method_code has it */
 } places;
 
 /* g->tau and g->order by order 0, and the brackets. There is no bracket where the surface is not regular, or where P
- * has no bounds. flat: the surface is, and its second derivatives need not be set; a, b and curvature are not then. */
+ * has no bounds. flat: the surface is, and its second derivatives need not be set. */
 void bracket_begin(hit_group *g, const bump *P, bool flat, brackets *k);
 
 /* Pick lanes lane[0..n-1] of a group, with g's places; `pixels` is 0. And put their places back. */
 void places_pick(const hit_group *g, const brackets *k, int n, const int32_t *lane, places *p);
 void places_put(const places *p, hit_group *g);
 
-/* Find the places to `error` pixels: steps through each bracket to the first crossing, then secant steps. Returns how
- * often P was looked up. */
-long places_search(places *p, const bump *P, real error);
+/* Find the places to `error` pixels: steps of `per_step` pixels at most, but not more than 16, through each bracket to
+ * the first crossing, then secant steps. A bump that is narrower than a step may be missed. Returns how often P was
+ * looked up. */
+long places_search(places *p, const bump *P, real error, real per_step);
 
 #endif

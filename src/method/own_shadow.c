@@ -3,6 +3,8 @@
 
 #include "wave/lane.h"
 
+#define AIR (64 * R(REAL_ROUNDING)) /* relative */
+
 STAGE static void places(const hit_group *restrict g, vec3s *restrict X)
 {
     for (int i = 0; i < g->n; i++) {
@@ -19,7 +21,7 @@ void own_places(const hit_group *g, vec3s *X) { places(g, X); }
 /* Where the surface is not regular the way has no length: it is seen. */
 STAGE static void ways(const hit_group *restrict g, real Pmin, real Pmax, own_ways *restrict y)
 {
-    const real top = real_max(Pmax, 0) + (Pmax - Pmin), bottom = real_max(-Pmin, 0) + (Pmax - Pmin);
+    const real top = 2 * real_max(Pmax, 0) - real_min(Pmin, 0), bottom = real_max(Pmax, 0) - 2 * real_min(Pmin, 0);
     for (int i = 0; i < g->n; i++) {
         bs_vec3 n = lane_get(&g->n_smooth, i), Qu = lane_get(&g->q.Qu, i), Qw = lane_get(&g->q.Qw, i);
         bs_vec3 Quu = lane_get(&g->q.Quu, i), Quw = lane_get(&g->q.Quw, i), Qww = lane_get(&g->q.Qww, i);
@@ -27,9 +29,11 @@ STAGE static void ways(const hit_group *restrict g, real Pmin, real Pmax, own_wa
         bs_view d = bs_view_of(lane_get(&g->to_light.s, i), bs_normal(o.Qu, o.Qw), o.Qu, o.Qw);
         bs_turn turn = bs_turn_of(d, n, Qu, Qw, Quu, Quw, Qww);
         real P = g->bump.P[i], side = bs_dot(n, lane_get(&g->x.s, i)) < 0 ? R(1) : R(-1);
+        /* more than the rounding of places: the smooth surface is tested from there */
+        real air = AIR * real_sqrt(bs_dot(lane_get(&g->rough, i), lane_get(&g->rough, i)));
         real curvature = bs_curvature(d, n, Quu, Quw, Qww);
         bs_way w = bs_way_of(side, d, curvature, P, Pmin, Pmax);
-        real leave = bs_way_to(w.d, w.curvature, side > 0 ? top - P : bottom + P);
+        real leave = bs_way_to(w.d, w.curvature, (side > 0 ? top - P : bottom + P) + air);
         int regular = bs_regular(n, Qu, Qw);
         y->side[i] = side;
         y->sn[i] = regular ? w.d.sn : 0;
@@ -51,7 +55,29 @@ STAGE static void turned_away(hit_group *restrict g, const real *restrict side)
     }
 }
 
-void own_begin(const hit_group *g, const bump *P, own_ways *y) { ways(g, P->Pmin, P->Pmax, y); }
+/* The t at which x + a t is at an end of lo..hi. */
+static inline real reach(real x, real a, real lo, real hi)
+{
+    real to = a > 0 ? hi - x : lo - x, t = to / a;
+    real way = t > 0 ? t : 0;
+    return a != 0 ? way : REAL_FAR;
+}
+
+STAGE static void end_at_edges(const hit_group *restrict g, const real *restrict ends, own_ways *restrict y)
+{
+    const real u0 = ends[0], u1 = ends[1], w0 = ends[2], w1 = ends[3];
+    for (int i = 0; i < g->n; i++) {
+        real u = reach(g->u[i], y->a[i], u0, u1), w = reach(g->w[i], y->b[i], w0, w1);
+        y->end[i] = real_min(y->end[i], real_min(u, w));
+    }
+}
+
+void own_begin(const hit_group *g, const bump *P, const double u[2], const double w[2], own_ways *y)
+{
+    const real ends[4] = {(real)u[0], (real)u[1], (real)w[0], (real)w[1]};
+    ways(g, P->Pmin, P->Pmax, y);
+    end_at_edges(g, ends, y);
+}
 
 void own_turned_away(hit_group *g, const own_ways *y) { turned_away(g, y->side); }
 
@@ -85,7 +111,7 @@ STAGE static void sink(hit_group *restrict g, const real *restrict side, const r
 {
     for (int i = 0; i < g->n; i++) {
         real lit = g->lit[i];
-        g->lit[i] = (side[i] < 0) | (above[i] > 0) ? lit : 0;
+        g->lit[i] = ((side[i] < 0) | (above[i] > 0)) ? lit : 0;
     }
 }
 

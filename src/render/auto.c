@@ -15,6 +15,9 @@
 #include "render/shadow.h"
 #include "wave/lane.h"
 
+/* The steps of the search, in errors. Where only a shadow depends on the place, few lanes are searched. */
+enum { STEP_SHADOW = 16, STEP_PLACE = 48 };
+
 STAGE static int any(int n, const int32_t *x)
 {
     int some = 0;
@@ -319,9 +322,8 @@ STAGE static void measure_shadow(int n, const rays *restrict x, const real *rest
                                  pixel_size size, real *restrict pixels)
 {
     for (int i = 0; i < n; i++) {
-        bs_vec3 s = lane_get(&x->s, i), d = lane_get(&to_light->s, i), c = bs_cross(s, d);
-        real across = real_sqrt(bs_dot(c, c) / bs_dot(d, d));
-        pixels[i] = real_max(pixels[i], across / (size.fixed + size.spread * t[i]));
+        bs_vec3 s = lane_get(&x->s, i), d = lane_get(&to_light->s, i);
+        pixels[i] = real_max(pixels[i], bs_pixels(s, d, size.fixed + size.spread * t[i], 1));
     }
 }
 
@@ -367,6 +369,7 @@ static int all_lanes(int n, int32_t *lane)
 void auto_shift(const tracer *tr, int32_t id, workspace *v)
 {
     const bump *P = tr->scene->object[id].bump;
+    const real error = (real)tr->shadow.n / METHOD_PIXEL;
     const bool everywhere = needs_place(tr, id, v);
     hit_group *g = &v->g;
     brackets k;
@@ -382,6 +385,6 @@ void auto_shift(const tracer *tr, int32_t id, workspace *v)
         return;
     places_pick(g, &k, n, lane, &p);
     measure(tr->scene, everywhere, &p);
-    v->stats->evaluations += places_search(&p, P, (real)tr->shadow.n / METHOD_PIXEL);
+    v->stats->evaluations += places_search(&p, P, error, error * (everywhere ? R(STEP_PLACE) : R(STEP_SHADOW)));
     places_put(&p, g);
 }

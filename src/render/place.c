@@ -15,7 +15,9 @@
 #include "method/shift.h"
 #include "wave/lane.h"
 
-enum { STEPS = 5 }; /* of Newton's iteration; the first is (a,b) tau, each further one squares the error */
+/* Of Newton's iteration without second partials. The first is (a,b) tau; each further one leaves of the error the share
+ * that the height is of the radius of curvature (tests/unit/method/relief_cases.h). */
+enum { STEPS = 5 };
 
 void place_smooth(bool own, hit_group *g)
 {

@@ -185,15 +185,20 @@ enum { STEPS = 24 }; /* of the march where there is no horizon map */
 
 bool shadow_is_own(const tracer *tr, int32_t id, const workspace *v)
 {
-    return tr->bump_shadow.kind != BUMP_SHADOW_NONE && tr->self_shadow && tr->scene->object[id].bump &&
+    const bump *P = tr->scene->object[id].bump;
+    return tr->bump_shadow.kind != BUMP_SHADOW_NONE && tr->self_shadow && P && P->Pmin < P->Pmax &&
            !displaced_is(v->surface[id]);
 }
 
 /* The ways from X to a light at one point. */
 static void begin_ways(const tracer *tr, int32_t id, const light *l, workspace *v, own_ways *y)
 {
+    const surface *f = v->surface[id];
+    double u[2] = {-REAL_FAR, REAL_FAR}, w[2] = {-REAL_FAR, REAL_FAR};
+    if (f->ops->flat) /* all of its parts have the same extent */
+        f->ops->extent(f, 0, u, w);
     lighting_aim_from(l, &v->g.rough, &v->g);
-    own_begin(&v->g, tr->scene->object[id].bump, y);
+    own_begin(&v->g, tr->scene->object[id].bump, u, w, y);
 }
 
 /* The rise of the ways over the horizons. False: some part of the surface has none. */

@@ -108,7 +108,7 @@ static horizon *over_extent(const object *o, int part, const double u[2], const 
     for (int j = 0; j <= g.rows; j++)
         curvature_of_row(f, part, &g, j, L + (size_t)j * row, M + (size_t)j * row, N + (size_t)j * row);
     const horizon_curvature c = {L, M, N};
-    horizon *h = horizon_new(o->bump, &g, &c, threads);
+    horizon *h = horizon_new(o->bump, &g, f->ops->flat, &c, threads);
     free(all);
     return h;
 }
@@ -117,16 +117,17 @@ static horizon *over_extent(const object *o, int part, const double u[2], const 
 static bool build(const object *o, horizon **of, int threads)
 {
     const surface *f = o->shape;
-    if (!o->bump || !(o->bump->Pmax - o->bump->Pmin < REAL_FAR) || f->ops->parts > PARTS)
+    if (!o->bump || o->shape_spec.kind == SHAPE_MESH || !(o->bump->Pmax - o->bump->Pmin < REAL_FAR) ||
+        f->ops->parts > PARTS)
         return true;
     for (int part = 0; part < f->ops->parts; part++) {
         double u[2], w[2];
         table_grid g;
         f->ops->extent(f, part, u, w);
-        const bool flat = o->shape_spec.kind == SHAPE_MESH || !is_finite(u) || !is_finite(w);
-        if (flat && !lay_period(o, &g))
+        const bool endless = !is_finite(u) || !is_finite(w);
+        if (endless && !lay_period(o, &g))
             continue;
-        of[part] = flat ? horizon_new(o->bump, &g, NULL, threads) : over_extent(o, part, u, w, threads);
+        of[part] = endless ? horizon_new(o->bump, &g, false, NULL, threads) : over_extent(o, part, u, w, threads);
         if (!of[part])
             return false;
     }
@@ -161,12 +162,3 @@ void horizons_free(horizons *h)
 }
 
 const horizon *horizons_of(const horizons *h, int id, int part) { return part < PARTS ? h->of[id][part] : NULL; }
-
-size_t horizons_bytes(const horizons *h)
-{
-    size_t n = 0;
-    for (int k = 0; k < h->objects; k++)
-        for (int part = 0; part < PARTS; part++)
-            n += h->of[k][part] ? horizon_bytes(h->of[k][part]) : 0;
-    return n;
-}

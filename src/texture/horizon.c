@@ -30,6 +30,7 @@ enum {
 typedef struct walk {
     real du, dw;             /* a step of one sample's width */
     real Pmax, range, least; /* a rise of `least` more does not matter */
+    real u[2], w[2];         /* where there are bumps */
 } walk;
 
 /* Walks from samples of one row, side by side. */
@@ -57,13 +58,15 @@ STAGE static void step_to(const walks *restrict s, const walk *k, real way, real
 
 /* Raise the horizons. A walk is open if a higher bump farther on could raise its own again. Where the surface itself
  * has risen by more than the bumps' range, that is its own shadow and no longer the bumps'. */
-STAGE static void raise(walks *restrict s, const walk *k, real way, const real *restrict P)
+STAGE static void raise(walks *restrict s, const walk *k, real way, const real *restrict u, const real *restrict w,
+                        const real *restrict P)
 {
     const real share = 1 / way, top = k->Pmax, range = k->range, least = k->least;
+    const real u0 = k->u[0], u1 = k->u[1], w0 = k->w[0], w1 = k->w[1];
     for (int i = 0; i < s->n; i++) {
         real drop = s->half_bend[i] * way, rise = (P[i] - s->P[i]) * share + drop, so_far = s->best[i];
-        int near = drop * way <= range;
-        real best = near & (rise > so_far) ? rise : so_far;
+        int near = (drop * way <= range) & (u[i] >= u0) & (u[i] <= u1) & (w[i] >= w0) & (w[i] <= w1);
+        real best = (near & (rise > so_far)) ? rise : so_far;
         s->best[i] = best;
         s->open[i] = near & ((top - s->P[i]) * share + drop > best + least);
     }
@@ -95,7 +98,7 @@ static void walk_far(const bump *P, const table_grid *g, const walk *k, walks *s
         way += real_max(1, real_floor(way / NEAR));
         step_to(s, k, way, u, w);
         P->ops->eval(P, s->n, u, w, 0, &h);
-        raise(s, k, way, h.P);
+        raise(s, k, way, u, w, h.P);
         if (step % COMPACT == 0)
             compact(s, best);
     }
@@ -128,8 +131,18 @@ static void start_walks(const bump *P, const table_grid *g, int row, int column,
     memcpy(s->P, h.P, sizeof s->P);
 }
 
+static void set_ends(const table_grid *g, bool ends, walk *k)
+{
+    const real u[2] = {-g->ou / g->ku, ((real)g->columns - g->ou) / g->ku},
+               w[2] = {-g->ow / g->kw, ((real)g->rows - g->ow) / g->kw};
+    k->u[0] = ends ? real_min(u[0], u[1]) : -REAL_FAR;
+    k->u[1] = ends ? real_max(u[0], u[1]) : REAL_FAR;
+    k->w[0] = ends ? real_min(w[0], w[1]) : -REAL_FAR;
+    k->w[1] = ends ? real_max(w[0], w[1]) : REAL_FAR;
+}
+
 /* The horizons of up to LANES samples of a row. */
-static void build_block(horizon *h, const bump *P, const horizon_curvature *c, int row, int column)
+static void build_block(horizon *h, const bump *P, bool ends, const horizon_curvature *c, int row, int column)
 {
     const table_grid *g = &h->grid;
     const size_t at = (size_t)row * (size_t)(g->columns + 1) + (size_t)column;
@@ -141,6 +154,7 @@ static void build_block(horizon *h, const bump *P, const horizon_curvature *c, i
         direction(k, &x, &y);
         walk way = {.du = x / g->ku, .dw = y / g->kw, .Pmax = P->Pmax, .range = P->Pmax - P->Pmin};
         way.least = R(LEAST) * (P->Pu_max * real_abs(way.du) + P->Pw_max * real_abs(way.dw));
+        set_ends(g, ends, &way);
         s = all;
         bend(&s, &way, c, at);
         walk_far(P, g, &way, &s, best);
@@ -153,7 +167,7 @@ static void build_block(horizon *h, const bump *P, const horizon_curvature *c, i
 
 static size_t entries(const table_grid *g) { return (size_t)(g->columns + 1) * (size_t)(g->rows + 1) * ENTRIES; }
 
-horizon *horizon_new(const bump *P, const table_grid *grid, const horizon_curvature *c, int threads)
+horizon *horizon_new(const bump *P, const table_grid *grid, bool ends, const horizon_curvature *c, int threads)
 {
     if (entries(grid) > INT32_MAX)
         return NULL;
@@ -167,7 +181,7 @@ horizon *horizon_new(const bump *P, const table_grid *grid, const horizon_curvat
 #pragma omp parallel for schedule(dynamic) num_threads(threads_of(threads))
     for (int row = 0; row <= grid->rows; row++)
         for (int column = 0; column <= grid->columns; column += LANES)
-            build_block(h, P, c, row, column);
+            build_block(h, P, ends, c, row, column);
     return h;
 }
 
@@ -179,8 +193,6 @@ void horizon_free(horizon *h)
 }
 
 const table_grid *horizon_grid(const horizon *h) { return &h->grid; }
-
-size_t horizon_bytes(const horizon *h) { return sizeof *h + entries(&h->grid) * sizeof *h->rise; }
 
 /* Eight gathers: the corners of the cell, in two directions. */
 STAGE static void look(const horizon *h, int n, const int32_t *restrict at, const real *restrict a,

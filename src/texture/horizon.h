@@ -15,15 +15,14 @@ typedef struct horizon_curvature {
     const real *L, *M, *N;
 } horizon_curvature;
 
-/* The horizon of P at the samples of a grid. c: of the surface under P; NULL: it is flat. The result does not depend on
- * the threads. NULL: out of memory, or more than 2^31 entries. */
-horizon *horizon_new(const bump *P, const table_grid *grid, const horizon_curvature *c, int threads);
+/* The horizon of P at the samples of a grid. ends: there is nothing beyond the grid. c: of the surface under P; NULL:
+ * it is flat. The result does not depend on the threads. NULL: out of memory, or more than 2^31 entries. */
+horizon *horizon_new(const bump *P, const table_grid *grid, bool ends, const horizon_curvature *c, int threads);
 
 /* NULL is allowed. */
 void horizon_free(horizon *h);
 
 const table_grid *horizon_grid(const horizon *h);
-size_t horizon_bytes(const horizon *h);
 
 /* The horizon of n <= LANES places, each towards a bearing: bilinear in place, linear in direction. */
 void horizon_look(const horizon *h, int n, const real *u, const real *w, const real *bearing, real *rise);

@@ -7,7 +7,8 @@ of the smooth surface, the height over it, and shadows and horizons by brute for
 
     python3 -m venv venv && venv/bin/pip install mpmath && venv/bin/python tests/golden/make_relief.py
 
-`places`: viewing rays Q + s tau at a smooth hit, tau that of order 0, for bumps A, A/2, A/4, ... high.
+`places`: viewing rays Q + s tau at a smooth hit, tau that of order 0, for bumps A, A/2, A/4, ... high; `across`: how
+far apart the ways to a light are that start 1 apart in tau.
 `ways`: ways to a light from a place X of the rough surface; `dark` by 400 heights of the way, until it is above all
 bumps, or, where a hollow surface rises more than the way and it never gets there, until it is highest.
 `horizons`: how much P rises from a place in the directions of a horizon map, and towards lights between these.
@@ -201,8 +202,11 @@ def place(kind, inward, behind, rng):
     if None in rows:
         return None
     sn, a, b = tangent(q, s)
+    light = [mpf(x) for x in (3, -2, 4)]
+    across = add(s, light, -dot(s, light) / dot(light, light))
     return {"surface": kind, "inward": int(inward), "bumps": bumps.numbers(), "u": u0, "w": w0, **q, "s": s, "sn": sn,
-            "a": a, "b": b, "curvature": curvature(q, a, b), "rows": rows}
+            "a": a, "b": b, "curvature": curvature(q, a, b), "light": light, "across": mp.sqrt(dot(across, across)),
+            "rows": rows}
 
 
 # The way to a light ---------------------------------------------------------------------------------

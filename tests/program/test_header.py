@@ -32,7 +32,9 @@ static void relief(bs_view v, bs_slab slab, bs_vec3 n, bs_vec3 Qu, bs_vec3 Qw)
 {
     bs_place q = bs_place_of(v, (bs_real).5, (bs_real).25, slab.front);
     bs_view d = bs_view_of(vec(-.3, 1, .6), n, Qu, Qw);
-    printf("%a %a\n", (double)q.u, (double)q.w);
+    bs_bump there = {(bs_real).03, (bs_real).1, (bs_real)-.2, 0, 0, 0};
+    bs_real left = bs_residual(v, (bs_real).3, slab.front, there);
+    printf("%a %a %a\n", (double)q.u, (double)q.w, (double)bs_pixels(Qu, vec(-.3, 1, .6), (bs_real).01, left));
     for (int side = -1; side <= 1; side += 2) {
         bs_way y = bs_way_of((bs_real)side, d, (bs_real)-.2, (bs_real).04, (bs_real)-.1, (bs_real).2);
         int dark = 0;

@@ -8,7 +8,7 @@ static void lane_over(hit_group *g, int i, double x)
 {
     lane_set(&g->x.r, i, (bs_vec3){(real)x, 8, 0});
     lane_set(&g->x.s, i, (bs_vec3){0, -4, 0});
-    g->t[i] = 2;
+    g->t[i] = g->t_shade[i] = 2;
     g->t0[i] = R(1.5);
     g->lit[i] = 1;
 }

@@ -23,15 +23,15 @@ static void random_group(hit_group *g)
         lane_set(&g->n_bump, i, lane_unit((bs_vec3){n.x + lean.x, n.y + lean.y, n.z + lean.z}));
         lane_set(&g->color, i, (bs_vec3){(real)random_in(0, 1), (real)random_in(0, 1), (real)random_in(0, 1)});
         lane_set(&g->tint, i, (bs_vec3){(real)random_in(0, 1), (real)random_in(0, 1), (real)random_in(0, 1)});
-        g->t[i] = (real)random_in(0.5, 2);
+        g->t_shade[i] = (real)random_in(0.5, 2);
         g->lit[i] = i % 4 == 0 ? 0 : R(0.75);
     }
 }
 
 /* What lane i sends to the eye, in red. */
-static double red(const hit_group *g, int i, const material *m, const light *l, bool tinted)
+static double red(const hit_group *g, int i, const material *m, const light *l, bool tinted, bool front)
 {
-    const vec3 s = vec3_unit(wide(lane_get(&g->x.s, i))), p = wide(lane_at(&g->x, i, g->t[i]));
+    const vec3 s = vec3_unit(wide(lane_get(&g->x.s, i))), p = wide(lane_at(&g->x, i, g->t_shade[i]));
     const vec3 L = vec3_unit(l->kind == LIGHT_PARALLEL ? vec3_scale(l->axis, -1) : vec3_sub(l->at, p));
     vec3 smooth = wide(lane_get(&g->n_smooth, i)), n = wide(lane_get(&g->n_bump, i));
     const double color = m->pattern ? (double)g->color.x[i] : m->color.x, tint = tinted ? (double)g->tint.x[i] : 1;
@@ -41,7 +41,7 @@ static double red(const hit_group *g, int i, const material *m, const light *l, 
         smooth = vec3_scale(smooth, -1);
         n = vec3_scale(n, -1);
     }
-    if (vec3_dot(smooth, L) <= 0)
+    if (front && vec3_dot(smooth, L) <= 0)
         return sum;
     const vec3 mirrored = vec3_sub(s, vec3_scale(n, 2 * vec3_dot(s, n))), h = vec3_unit(vec3_sub(L, s));
     sum += lit * m->diffuse * opacity * color * fmax(vec3_dot(n, L), 0);
@@ -50,20 +50,27 @@ static double red(const hit_group *g, int i, const material *m, const light *l, 
     return sum;
 }
 
-static void as_by_hand(material m, light_kind kind, bool tinted)
+static void as_by_hand_if(material m, light_kind kind, bool tinted, bool front)
 {
     static hit_group g;
     const light l = {.kind = kind, .at = {3, 9, -4}, .axis = {0.6, -0.8, 0}, .color = {0.9, 0.5, 0.2}};
     int bright = 0;
     random_group(&g);
     shade_ambient(&g, &m);
-    shade_light(&g, &m, &l, tinted, true);
+    shade_light(&g, &m, &l, tinted, front);
     for (int i = 0; i < LANES; i++) {
-        const double want = red(&g, i, &m, &l, tinted);
+        const double want = red(&g, i, &m, &l, tinted, front);
         NEAR(g.rgb.x[i], want, 400 * EPS);
         bright += want > m.ambient;
     }
     CHECK(bright, >, LANES / 16);
+}
+
+/* Whether or not light from behind the smooth surface counts. */
+static void as_by_hand(material m, light_kind kind, bool tinted)
+{
+    as_by_hand_if(m, kind, tinted, true);
+    as_by_hand_if(m, kind, tinted, false);
 }
 
 static const material matt = {.color = {0.8, 0.6, 0.4}, .ambient = 0.1, .diffuse = 0.7, .roughness = 1};

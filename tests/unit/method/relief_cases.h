@@ -148,15 +148,20 @@ static found_place place_row(int i, const ray *r, double u0, double w0, const do
     near(i, (double)two.u, x[U2], 1);
     near(i, (double)two.w, x[W2], 1);
 
-    const bs_real gap = bs_gap(r->v, r->curvature, tau, (bs_real)x[P1]);
-    near(i, (double)gap, x[GAP],
-         fabs((double)(tau * r->v.sn)) + fabs(x[P1]) + fabs((double)(r->curvature * tau * tau)));
+    const bs_bump there = {(bs_real)x[P1], (bs_real)x[PU1], (bs_real)x[PW1], 0, 0, 0};
+    const double bend = (double)(r->curvature * tau), rise = (double)r->v.sn;
+    const double uphill = x[PU1] * (double)r->v.a, along = x[PW1] * (double)r->v.b,
+                 slope = rise - bend - uphill - along;
+    const double gap_size = fabs(x[TAU] * rise) + fabs(x[P1]) + fabs(bend * x[TAU]);
+    const double slope_size = fabs(rise) + fabs(bend) + fabs(uphill) + fabs(along);
+    const bs_real gap = bs_gap(r->v, r->curvature, tau, there.P),
+                  residual = bs_residual(r->v, r->curvature, tau, there);
+    near(i, (double)gap, x[GAP], gap_size);
+    near(i, (double)residual, -x[GAP] / slope, (gap_size + fabs(x[GAP] / slope) * slope_size) / fabs(slope));
 
-    const bs_bump p = {(bs_real)x[P1], (bs_real)x[PU1], (bs_real)x[PW1], 0, 0, 0};
-    const double slope = (double)bs_slope(r->v, p);
     const found_place f = {hypot((double)one.u - x[U_TRUE], (double)one.w - x[W_TRUE]),
                            hypot((double)two.u - x[U_TRUE], (double)two.w - x[W_TRUE]), fabs((double)gap - x[TRUE_GAP]),
-                           fabs(x[TAU] - x[TRUE_TAU]), fabs(x[TAU] + (double)gap / slope - x[TRUE_TAU])};
+                           fabs(x[TAU] - x[TRUE_TAU]), fabs(x[TAU] + (double)residual - x[TRUE_TAU])};
     return f;
 }
 
@@ -174,7 +179,8 @@ static void places(void **state)
         struct fy_node *c = fy_node_sequence_get_by_index(cases, i);
         const bumps b = bumps_of(c);
         const ray r = ray_of(i, c, "s");
-        const double u0 = golden_double(c, "u"), w0 = golden_double(c, "w");
+        const double u0 = golden_double(c, "u"), w0 = golden_double(c, "w"), across = golden_double(c, "across");
+        near(i, (double)bs_pixels(vector(c, "s"), vector(c, "light"), (bs_real)0.25, -2), 8 * across, 16);
         double x[ROWS][COLUMNS];
         found_place f[ROWS];
         rows_of(c, COLUMNS, x);
