@@ -111,7 +111,7 @@ STAGE static void sink(hit_group *restrict g, const real *restrict side, const r
 {
     for (int i = 0; i < g->n; i++) {
         real lit = g->lit[i];
-        g->lit[i] = (side[i] < 0) | (above[i] > 0) ? lit : 0;
+        g->lit[i] = ((side[i] < 0) | (above[i] > 0)) ? lit : 0;
     }
 }
 

@@ -162,12 +162,3 @@ void horizons_free(horizons *h)
 }
 
 const horizon *horizons_of(const horizons *h, int id, int part) { return part < PARTS ? h->of[id][part] : NULL; }
-
-size_t horizons_bytes(const horizons *h)
-{
-    size_t n = 0;
-    for (int k = 0; k < h->objects; k++)
-        for (int part = 0; part < PARTS; part++)
-            n += h->of[k][part] ? horizon_bytes(h->of[k][part]) : 0;
-    return n;
-}

@@ -18,7 +18,4 @@ void horizons_free(horizons *h);
 /* NULL: it has none. */
 const horizon *horizons_of(const horizons *h, int id, int part);
 
-/* The memory of all of them. */
-size_t horizons_bytes(const horizons *h);
-
 #endif

@@ -66,7 +66,7 @@ STAGE static void raise(walks *restrict s, const walk *k, real way, const real *
     for (int i = 0; i < s->n; i++) {
         real drop = s->half_bend[i] * way, rise = (P[i] - s->P[i]) * share + drop, so_far = s->best[i];
         int near = (drop * way <= range) & (u[i] >= u0) & (u[i] <= u1) & (w[i] >= w0) & (w[i] <= w1);
-        real best = near & (rise > so_far) ? rise : so_far;
+        real best = (near & (rise > so_far)) ? rise : so_far;
         s->best[i] = best;
         s->open[i] = near & ((top - s->P[i]) * share + drop > best + least);
     }
@@ -193,8 +193,6 @@ void horizon_free(horizon *h)
 }
 
 const table_grid *horizon_grid(const horizon *h) { return &h->grid; }
-
-size_t horizon_bytes(const horizon *h) { return sizeof *h + entries(&h->grid) * sizeof *h->rise; }
 
 /* Eight gathers: the corners of the cell, in two directions. */
 STAGE static void look(const horizon *h, int n, const int32_t *restrict at, const real *restrict a,

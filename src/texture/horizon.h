@@ -23,7 +23,6 @@ horizon *horizon_new(const bump *P, const table_grid *grid, bool ends, const hor
 void horizon_free(horizon *h);
 
 const table_grid *horizon_grid(const horizon *h);
-size_t horizon_bytes(const horizon *h);
 
 /* The horizon of n <= LANES places, each towards a bearing: bilinear in place, linear in direction. */
 void horizon_look(const horizon *h, int n, const real *u, const real *w, const real *bearing, real *rise);

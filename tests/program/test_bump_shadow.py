@@ -51,7 +51,7 @@ def test_a_flat_bump_shadows_nothing(kage: Kage, how: str) -> None:
 
 
 def test_an_area_light_is_seen_in_shares(kage: Kage) -> None:
-    """A horizon tells the share that is above it: near that of 8 x 8 samples, each marched to, on average and mostly."""
+    """A horizon tells the share that is above it: near that of 8 x 8 samples with a march each."""
     path = scene(kage, "rectangle")
     area = ("--set", "lights.lamp.area={u: [1.5, 0, 0], w: [0, 1.5, 0], samples: [8, 8]}", *LOW, *EXACT)
     march, horizon = (picture(kage, path, *area, "--bump-shadow", how)["visibility.lamp"]
