@@ -236,7 +236,7 @@ class Claim(TypedDict):
     """A claim and what the numbers say of it (bench/claims.py)."""
 
     id: str
-    who: str  # paper, kage, or bound: what kage demands of its version 7
+    who: str  # paper, kage, or bound: what kage demands of itself
     sentence: str
     source: str
     test: str

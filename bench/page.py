@@ -219,7 +219,7 @@ def sections(report: Report, sheets: list[Sheet]) -> list[tuple[str, str]]:
     """Ids and titles of the parts that have something to show."""
     parts: tuple[tuple[str, str, object], ...] = (
         ("answer", "The answer", report.get("answer")),
-        ("bounds", "What it had to show", [c for c in report.get("claims") or [] if c["who"] == "bound"]),
+        ("bounds", "The bounds", [c for c in report.get("claims") or [] if c["who"] == "bound"]),
         ("whole", "The whole picture", data.wholes(report)),
         ("own", "The bumps' own shadows", whole_tables.own_table(report)),
         ("table", "All methods", True),

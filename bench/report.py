@@ -158,6 +158,7 @@ def md_whole(report: Report) -> Iterator[str]:
         yield md_table(own)
     if "auto" in report["methods"]:
         yield "## What auto costs and needs"
+        yield md_escape(whole_tables.PARETO_ABOUT)
         for scene in report["scenes"]:
             table = whole_tables.pareto_table(report, scene)
             yield f"### {md_escape(table.title)}"

@@ -168,7 +168,7 @@ def pareto_table(report: Report, scene: str) -> Table:
              Cell(short(wrong[name]), marks=(BEST if name in good[:1] else "") + (FRONT if name in front else ""))]
             for name in names]
     return Table(scene_title(report, scene), [Column("method", words=True), Column("cost, times none"),
-                                              Column("wrong, %")], rows, PARETO_ABOUT)
+                                              Column("wrong, %")], rows)
 
 
 def order_table(report: Report) -> Table | None:

@@ -51,7 +51,6 @@ static void gather_open(const hit_group *g, const own_ways *y, const int32_t *op
             continue;
         const int k = o->n++;
         o->lane[k] = i;
-        o->below[k] = 0;
         o->side[k] = y->side[i];
         o->sn[k] = y->sn[i];
         o->a[k] = y->a[i];
@@ -66,75 +65,36 @@ static void gather_open(const hit_group *g, const own_ways *y, const int32_t *op
     }
 }
 
-/* A rectangle of (u,w) that a way is over. */
-STAGE static void rectangles(const open_ways *restrict o, real *restrict u0, real *restrict u1, real *restrict w0,
-                             real *restrict w1)
+/* All lanes, where most are open. The settled ones get no way, so they stay where they are, and do not come below P. */
+STAGE static void copy_all(const hit_group *restrict g, const own_ways *restrict y, const int32_t *restrict open,
+                           open_ways *restrict o)
 {
-    for (int i = 0; i < o->n; i++) {
-        real e = o->end[i], u = o->a[i] * e, w = o->b[i] * e;
-        real more_u = real_abs(o->A[i]) * e * e, more_w = real_abs(o->B[i]) * e * e;
-        u0[i] = o->u[i] + real_min(u, 0) - more_u;
-        u1[i] = o->u[i] + real_max(u, 0) + more_u;
-        w0[i] = o->w[i] + real_min(w, 0) - more_w;
-        w1[i] = o->w[i] + real_max(w, 0) + more_w;
+    o->n = g->n;
+    for (int i = 0; i < g->n; i++) {
+        real end = y->end[i];
+        o->lane[i] = i;
+        o->side[i] = y->side[i];
+        o->sn[i] = y->sn[i];
+        o->a[i] = y->a[i];
+        o->b[i] = y->b[i];
+        o->A[i] = y->A[i];
+        o->B[i] = y->B[i];
+        o->curvature[i] = y->curvature[i];
+        o->end[i] = open[i] ? end : 0;
+        o->u[i] = g->u[i];
+        o->w[i] = g->w[i];
+        o->P[i] = g->bump.P[i];
     }
 }
 
-/* End the ways where they have risen above the P of their rectangles. */
-STAGE static void shorten(open_ways *restrict o, const bump_ranges *restrict k)
-{
-    for (int i = 0; i < o->n; i++) {
-        bs_view d = {o->sn[i], o->a[i], o->b[i]};
-        real above = o->side[i] > 0 ? k->hi[i] - o->P[i] : o->P[i] - k->lo[i];
-        o->end[i] = real_min(bs_way_to(d, o->curvature[i], real_max(above, 0)), o->end[i]);
-    }
-}
-
-STAGE static void still_open(const open_ways *restrict o, const bump_ranges *restrict k, int32_t *restrict open)
-{
-    for (int i = 0; i < o->n; i++) {
-        real end = o->end[i], a = fastest(o->a[i], o->A[i], end), b = fastest(o->b[i], o->B[i], end);
-        open[i] = !rises_faster(o->sn[i], a, b, o->curvature[i], end, k->Pu[i], k->Pw[i]);
-    }
-}
-
-static void drop_settled(open_ways *o, const int32_t *open)
+static void take_open(const hit_group *g, const own_ways *y, const int32_t *open, open_ways *o)
 {
     int n = 0;
-    for (int i = 0; i < o->n; i++) {
-        if (!open[i])
-            continue;
-        o->lane[n] = o->lane[i];
-        o->side[n] = o->side[i];
-        o->sn[n] = o->sn[i];
-        o->a[n] = o->a[i];
-        o->b[n] = o->b[i];
-        o->A[n] = o->A[i];
-        o->B[n] = o->B[i];
-        o->curvature[n] = o->curvature[i];
-        o->end[n] = o->end[i];
-        o->u[n] = o->u[i];
-        o->w[n] = o->w[i];
-        o->P[n] = o->P[i];
-        n++;
-    }
-    o->n = n;
-}
-
-/* By bounds of P over the rectangles of the ways. */
-static void settle_by_ranges(const bump *P, open_ways *o)
-{
-    enum { TIMES = 2 };
-    real u0[LANES], u1[LANES], w0[LANES], w1[LANES];
-    int32_t open[LANES];
-    bump_ranges k;
-    for (int time = 0; time < TIMES && o->n; time++) {
-        rectangles(o, u0, u1, w0, w1);
-        P->ops->range(P, o->n, u0, u1, w0, w1, &k);
-        shorten(o, &k);
-        still_open(o, &k, open);
-        drop_settled(o, open);
-    }
+    for (int i = 0; i < g->n; i++)
+        n += open[i];
+    (2 * n > g->n ? copy_all : gather_open)(g, y, open, o);
+    for (int i = 0; i < o->n; i++)
+        o->below[i] = 0;
 }
 
 STAGE static void step_places(const open_ways *restrict o, int step, int steps, real *restrict u, real *restrict w)
@@ -163,9 +123,7 @@ long own_march(hit_group *g, const bump *P, const own_ways *y, int steps, int se
     open_ways o;
     bump_values h;
     find_open(g, P, y, (real)seen_from, open);
-    gather_open(g, y, open, &o);
-    if (P->pyramid)
-        settle_by_ranges(P, &o);
+    take_open(g, y, open, &o);
     for (int step = 1; step <= steps && o.n; step++) {
         step_places(&o, step, steps, u, w);
         P->ops->eval(P, o.n, u, w, 0, &h);
