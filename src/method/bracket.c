@@ -7,10 +7,9 @@
 #include "wave/lane.h"
 
 enum {
-    STEPS_MAX = 16,
     SECANTS_MAX = 8, /* after them */
 };
-#define LEAST_GAP 0.1 /* of an end, of what the ray sinks in its bracket */
+#define LEAST_GAP 0.02 /* of an end, of what the ray sinks in its bracket */
 
 static inline bs_view view(const brackets *k, int i) { return (bs_view){k->sn[i], k->a[i], k->b[i]}; }
 
@@ -34,16 +33,18 @@ static inline real reaches(bs_view v, real curvature, real P)
 }
 
 /* Both ends, not before the ray's start; tau where there is no bracket. Where the smooth hit is below the rough surface
- * the ray has met it before. */
-static inline void set_ends(const hit_group *restrict g, int i, real sn, real x, real y, brackets *restrict k)
+ * the ray has met it before. Order 0's tau is kept within, as it may be far off where the ray grazes a curved surface.
+ */
+static inline void set_ends(hit_group *restrict g, int i, real sn, real x, real y, brackets *restrict k)
 {
     real tau = g->tau[i], start = -g->t[i], P = g->bump.P[i], front = real_max(real_min(x, y), start);
     real back = real_max(x, y), above = sn < 0 ? -P : P;
-    back = (above <= 0) & (back > 0) ? 0 : back;
-    int good = (g->order[i] >= 0) & (back - front < REAL_FAR);
+    back = ((above <= 0) & (back > 0)) ? 0 : back;
+    int good = (g->order[i] >= 0) & (real_abs(y - x) < REAL_FAR);
     back = real_max(back, front);
     k->front[i] = good ? front : tau;
     k->back[i] = good ? back : tau;
+    g->tau[i] = good ? real_min(real_max(tau, front), back) : tau;
 }
 
 STAGE static void begin_flat(hit_group *restrict g, real Pmin, real Pmax, brackets *restrict k)
@@ -178,7 +179,7 @@ static inline real above_at(bs_view v, real curvature, real tau, real P)
 }
 
 /* All places. The gaps at the ends are those of P's tangent at the smooth hit, with the sign that they must have. */
-STAGE static void search_begin(const places *restrict p, real per_step, search *restrict s)
+STAGE static void search_begin(const places *restrict p, search_steps asked, search *restrict s)
 {
     const brackets *k = &p->k;
     for (int i = 0; i < k->n; i++) {
@@ -186,7 +187,8 @@ STAGE static void search_begin(const places *restrict p, real per_step, search *
         real front = k->front[i], back = k->back[i], width = back - front, curvature = k->curvature[i], u = p->u[i],
              w = p->w[i], pixels = p->pixels[i], tau = p->tau[i];
         real least = real_abs(v.sn) * width * R(LEAST_GAP), rise = p->Pu[i] * v.a + p->Pw[i] * v.b;
-        real steps = real_min(real_floor(width * pixels / per_step) + 1, STEPS_MAX);
+        real steps = real_floor(width * pixels / asked.pixels) + 1;
+        steps = real_min(real_max(steps, asked.least), asked.most);
         s->sn[i] = v.sn;
         s->a[i] = v.a;
         s->b[i] = v.b;
@@ -223,7 +225,7 @@ STAGE static void search_place(real step, search *restrict s)
 }
 
 /* Take it in. Steps end at the first that is below the rough surface, and with the last but one, as the bracket's back
- * is below. Secants end where the error left is small; tau is the next secant's place. An end that stays twice in a row
+ * is below. Secants end where twice the error left is small; tau is the next place. An end that stays twice in a row
  * counts half, so that both ends move (Illinois). */
 STAGE static void search_take(real step, real error, search *restrict s)
 {
@@ -231,22 +233,22 @@ STAGE static void search_take(real step, real error, search *restrict s)
         bs_view v = {s->sn[i], s->a[i], s->b[i]};
         real at = s->at[i], above = above_at(v, s->curvature[i], at, s->h.P[i]), tau = s->tau[i];
         real front = s->front[i], back = s->back[i], high = s->above[i], low = s->below[i];
-        real left = real_abs(above) * (back - front) * s->pixels[i], rise = high - low;
-        int stepping = s->stepping[i], side = s->side[i], hit = above <= 0,
-            ended = (stepping == 0) & (left <= error * rise);
-        int again = hit ? side == 1 : side == -1;
+        int stepping = s->stepping[i], side = s->side[i], hit = above <= 0, again = hit ? side == 1 : side == -1;
         front = hit ? front : at;
         back = hit ? at : back;
         high = hit ? high : above;
         low = hit ? above : low;
-        s->tau[i] = s->open[i] ? front + (back - front) * (high / (high - low)) : tau;
+        real width = back - front, next = front + width * (high / (high - low));
+        real slope = real_min(high - low, real_abs(v.sn) * width); /* times width; an end's gap may be a guess */
+        real left = 2 * real_abs(above) * width * s->pixels[i];
+        s->tau[i] = s->open[i] ? next : tau;
         s->front[i] = front;
         s->back[i] = back;
-        s->above[i] = hit & again ? high * R(0.5) : high;
-        s->below[i] = (hit == 0) & again ? low * R(0.5) : low;
+        s->above[i] = (hit & again) ? high * R(0.5) : high;
+        s->below[i] = ((hit == 0) & again) ? low * R(0.5) : low;
         s->stepping[i] = stepping & (hit == 0) & (step + 1 < s->steps[i]);
         s->side[i] = stepping ? 0 : hit ? 1 : -1;
-        s->open[i] = ended ? 0 : s->open[i];
+        s->open[i] &= (stepping != 0) | (left > error * slope);
     }
 }
 
@@ -270,15 +272,15 @@ static void search_put(search *s, places *p)
     s->n = n;
 }
 
-long places_search(places *p, const bump *P, real error, real per_step)
+long places_search(places *p, const bump *P, real error, search_steps steps)
 {
     search s;
     long looks = 0;
     s.n = p->k.n;
-    search_begin(p, per_step, &s);
+    search_begin(p, steps, &s);
     for (int i = 0; i < s.n; i++)
         p->order[i] = s.open[i] ? method_code((method){METHOD_MARCH, 1}) : p->order[i];
-    for (int step = 1; step <= STEPS_MAX + SECANTS_MAX && s.n > 0; step++) {
+    for (int step = 1; step <= (int)steps.most + SECANTS_MAX && s.n > 0; step++) {
         search_place((real)step, &s);
         P->ops->eval(P, s.n, s.at_u, s.at_w, 0, &s.h);
         search_take((real)step, error, &s);

@@ -32,17 +32,21 @@ typedef struct places {
     int32_t order[LANES]; /* the method that found it, as method_code has it */
 } places;
 
-/* g->tau and g->order by order 0, and the brackets. There is no bracket where the surface is not regular, or where P
- * has no bounds. flat: the surface is, and its second derivatives need not be set. */
+/* g->tau and g->order by order 0, kept within the bracket, and the brackets. There is no bracket where the surface is
+ * not regular, or where P has no bounds. flat: the surface is, and its second derivatives need not be set. */
 void bracket_begin(hit_group *g, const bump *P, bool flat, brackets *k);
 
 /* Pick lanes lane[0..n-1] of a group, with g's places; `pixels` is 0. And put their places back. */
 void places_pick(const hit_group *g, const brackets *k, int n, const int32_t *lane, places *p);
 void places_put(const places *p, hit_group *g);
 
-/* Find the places to `error` pixels: steps of `per_step` pixels at most, but not more than 16, through each bracket to
- * the first crossing, then secant steps. A bump that is narrower than a step may be missed. Returns how often P was
- * looked up. */
-long places_search(places *p, const bump *P, real error, real per_step);
+/* The steps through a bracket: as many as there are stretches of so many pixels, from `least` to `most`. */
+typedef struct search_steps {
+    real pixels, least, most;
+} search_steps;
+
+/* Find the places to `error` pixels, by an estimate of the first order: steps through each bracket to the first
+ * crossing, then secants. A bump that is narrower than a step may be missed. Returns how often P was looked up. */
+long places_search(places *p, const bump *P, real error, search_steps steps);
 
 #endif

@@ -15,9 +15,6 @@
 #include "render/shadow.h"
 #include "wave/lane.h"
 
-/* The steps of the search, in errors. Where only a shadow depends on the place, few lanes are searched. */
-enum { STEP_SHADOW = 16, STEP_PLACE = 48 };
-
 STAGE static int any(int n, const int32_t *x)
 {
     int some = 0;
@@ -93,7 +90,8 @@ STAGE static void near_box(int n, const rays *restrict to_light, const vec3s *re
 static inline int parts(real vy, real vz, real cy, real cz, real ey, real ez, real hy, real hz)
 {
     real c = vy * cz - vz * cy, e = vy * ez - vz * ey, reach = real_abs(vz) * hy + real_abs(vy) * hz;
-    return (c - reach > real_max(e, 0)) | (c + reach < real_min(e, 0));
+    int above = c - reach > real_max(e, 0), below = c + reach < real_min(e, 0);
+    return above | below;
 }
 
 static inline int any_parts(bs_vec3 v, bs_vec3 c, bs_vec3 e, bs_vec3 h)
@@ -316,8 +314,7 @@ static pixel_size pixel_of(const scene *s)
     return s->camera.orthographic ? (pixel_size){size, 0} : (pixel_size){0, size};
 }
 
-/* pixels = the larger of itself and what an error of 1 in tau moves a shadow of this light: |s| times the sine between
- * view and light. */
+/* pixels = the larger of itself and what an error of 1 in tau moves a shadow of this light. */
 STAGE static void measure_shadow(int n, const rays *restrict x, const real *restrict t, const rays *restrict to_light,
                                  pixel_size size, real *restrict pixels)
 {
@@ -359,6 +356,12 @@ static bool needs_place(const tracer *tr, int32_t id, const workspace *v)
     return tr->shifted || (v->left > 0 && material_sends(&s->material[s->object[id].material]));
 }
 
+/* Where only a shadow depends on the place, few lanes are searched, and all the better. The lengths are in errors. */
+static search_steps steps_of(bool everywhere, real error)
+{
+    return everywhere ? (search_steps){48 * error, 1, 16} : (search_steps){16 * error, 8, 16};
+}
+
 static int all_lanes(int n, int32_t *lane)
 {
     for (int i = 0; i < n; i++)
@@ -385,6 +388,6 @@ void auto_shift(const tracer *tr, int32_t id, workspace *v)
         return;
     places_pick(g, &k, n, lane, &p);
     measure(tr->scene, everywhere, &p);
-    v->stats->evaluations += places_search(&p, P, error, error * (everywhere ? R(STEP_PLACE) : R(STEP_SHADOW)));
+    v->stats->evaluations += places_search(&p, P, error, steps_of(everywhere, error));
     places_put(&p, g);
 }

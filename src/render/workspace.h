@@ -15,8 +15,8 @@
 typedef struct tracer {
     const scene *scene;
     method shadow;
-    bool guard;       /* orders fall back where their result is outside the slab */
-    bool shifted;     /* shade at r + s t0 */
+    bool guard;   /* orders fall back where their result is outside the slab */
+    bool shifted; /* shade at r + s t0 */
     bump_shadow bump_shadow;
     bool displaced;   /* rays meet the displaced surfaces of bumped objects; no method is used */
     bool self_shadow; /* bumped objects cast shadows, on themselves and on others */
