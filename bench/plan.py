@@ -17,7 +17,7 @@ FEWER = ("none", "0", "1", "2", "2+", "march:4", "march:8", "auto", "exact", "di
 # A method, and perhaps where it shades and how bumps shadow each other: judged by the whole picture.
 VARIANTS = ("none", "0", "march:8", "0 shifted", "march:8 shifted", "0 shifted, own 8", "march:8 shifted, own 8",
             "march:8 shifted, own 24", "march:8 shifted, own horizon", "auto shifted", "auto shifted, own 8",
-            "exact shifted, own exact", "relief")
+            "auto shifted, own 24", "auto:0.1 shifted, own 8", "exact shifted, own exact", "relief")
 FEWER_VARIANTS = ("none", "0", "march:8 shifted", "march:8 shifted, own 8", "relief")
 
 # How bumps shadow each other, each at the true place, so that nothing else is wrong.
