@@ -11,8 +11,9 @@
 
 #include "light/lighting.h"
 #include "method/bracket.h"
-#include "render/intersect.h"
 #include "render/shadow.h"
+#include "render/transparent.h"
+#include "scene/object_bvh.h"
 #include "wave/lane.h"
 
 STAGE static int any(int n, const int32_t *x)
@@ -234,8 +235,6 @@ static void sweep_caster(sweep *w, const surface *f, bool clear, const int32_t *
     join(n, near, front, back, w->some, w->dark);
 }
 
-static bool is_clear(const scene *s, int32_t id) { return material_clear(&s->material[s->object[id].material]); }
-
 /* Many objects: each lane has those that the hierarchy finds on one of three rays, from both ends and from tau. */
 static void sweep_candidates(const tracer *tr, int32_t id, workspace *v, const real *tau, sweep *w)
 {
@@ -259,7 +258,7 @@ static void sweep_candidates(const tracer *tr, int32_t id, workspace *v, const r
                 continue;
             for (int i = 0; i < some; i++)
                 only[lane[i]] = 1;
-            sweep_caster(w, v->surface[j], is_clear(s, j), only);
+            sweep_caster(w, v->surface[j], transparent_is(s, j), only);
         }
     }
 }
@@ -279,7 +278,7 @@ static bool see(const tracer *tr, int32_t id, workspace *v, const real *tau, swe
     else
         for (int32_t j = 0; j < s->objects; j++)
             if (j != id && shadow_casts(tr, j))
-                sweep_caster(w, v->surface[j], is_clear(s, j), NULL);
+                sweep_caster(w, v->surface[j], transparent_is(s, j), NULL);
     if (w->met)
         add_open(w->k->n, w->some, w->dark, differs);
     return w->met || v->candidates; /* others than the candidates may be near */
