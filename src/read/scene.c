@@ -37,7 +37,7 @@ scene *scene_read(const scene_source *from, errors *e)
                 note_secondary(r.s);
                 bool good = true;
                 r.s->object_bvh = object_bvh_new(r.s, &good);
-                if (r.s->bump_shadow.kind == BUMP_SHADOW_HORIZON)
+                if (scene_wants_horizons(r.s))
                     good = (r.s->horizons = horizons_new(r.s, from->threads)) && good;
                 if (!good)
                     errors_add(e, "out of memory");

@@ -107,7 +107,7 @@ typedef struct scene {
     int materials;
     object *object;
     int objects;
-    struct horizons *horizons;     /* for bump_shadow horizon; otherwise NULL */
+    struct horizons *horizons;     /* NULL unless scene_wants_horizons */
     struct object_bvh *object_bvh; /* of many objects; NULL: few, all are tested */
 } scene;
 
@@ -121,6 +121,12 @@ static inline bool scene_wants_truth(const scene *s)
 static inline const char *scene_truth_name(const scene *s)
 {
     return s->displaced ? "surface displaced" : s->shadow.kind == METHOD_EXACT ? "shadow exact" : "bump_shadow exact";
+}
+
+/* Whether bumped objects need horizon maps. Displaced surfaces do not: their bumps are real. */
+static inline bool scene_wants_horizons(const scene *s)
+{
+    return s->bump_shadow.kind == BUMP_SHADOW_HORIZON && !s->displaced;
 }
 
 /* Limits: pixels along a side; lights, materials, objects; samples along a pixel's side; rays in a row. */

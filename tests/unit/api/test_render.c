@@ -93,6 +93,26 @@ static void a_scene_can_be_both_surfaces(void **state)
     kage_scene_free(rough);
 }
 
+/* Displaced surfaces need no horizon maps; the same scene as bump mapping does. */
+static void horizons_are_built_when_they_are_needed(void **state)
+{
+    (void)state;
+    static const char text[] = HEAD "  ground:\n    rectangle: {origin: [-2, 0, -2], u: [0, 0, 4], w: [4, 0, 0]}\n"
+                                    "    material: clay\n    bump: {function: 0.2*sin(40*u)}\n";
+    const char *const sets[] = {"render.bump_shadow=horizon", "render.surface=displaced", "lights.lamp.at=[-4, 1, -2]"};
+    const kage_load_options low = {.sets = sets + 2, .set_count = 1}, all = {.sets = sets, .set_count = 3};
+    const kage_render_options smooth = {.displaced = KAGE_NO}, horizon = {.bump_shadow = "horizon"};
+    kage_scene *plain = parse_with(text, NULL, &low), *rough = parse_with(text, NULL, &all);
+    kage_film *a = render_with(plain, &horizon), *b = render_with(rough, &smooth), *c = render_with(plain, NULL);
+    assert_true(same_films(a, b));
+    assert_false(same_films(a, c));
+    kage_film_free(a);
+    kage_film_free(b);
+    kage_film_free(c);
+    kage_scene_free(plain);
+    kage_scene_free(rough);
+}
+
 static void what_can_not_be_displaced_is_an_error_then(void **state)
 {
     (void)state;
@@ -361,6 +381,7 @@ int main(void)
         cmocka_unit_test(layers_are_planes),
         cmocka_unit_test(options_are_as_changes),
         cmocka_unit_test(a_scene_can_be_both_surfaces),
+        cmocka_unit_test(horizons_are_built_when_they_are_needed),
         cmocka_unit_test(what_can_not_be_displaced_is_an_error_then),
         cmocka_unit_test(threads_and_crops_change_no_pixel),
         cmocka_unit_test(wrong_options_are_named),
