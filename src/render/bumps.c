@@ -21,7 +21,8 @@ bool bumps_cast(const tracer *tr, int32_t id, const workspace *v)
 static void begin_ways(const tracer *tr, int32_t id, const light *l, workspace *v, own_ways *y)
 {
     const surface *f = v->surface[id];
-    double u[2] = {-REAL_FAR, REAL_FAR}, w[2] = {-REAL_FAR, REAL_FAR};
+    const double far = (double)REAL_FAR;
+    double u[2] = {-far, far}, w[2] = {-far, far};
     if (f->ops->flat) /* all of its parts have the same extent */
         f->ops->extent(f, 0, u, w);
     lighting_aim_from(l, &v->g.rough, &v->g);

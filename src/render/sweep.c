@@ -95,12 +95,12 @@ static inline int any_parts(bs_vec3 v, bs_vec3 c, bs_vec3 e, bs_vec3 h)
            parts(v.x, v.y, c.x, c.y, e.x, e.y, h.x, h.y);
 }
 
-/* Whether the triangle meets the box, where it may: planes that may part them are tried, the triangle's own, and those
- * along its two sides and an axis. With D half the bracket, M its middle and d from there to the light, the sides run
- * along D + d and D - d; those of a parallel light along d (apex 0). */
+/* Whether the triangle meets the box, where it may and both ends are lit: planes that may part them are tried, the
+ * triangle's own, and those along its two sides and an axis. With D half the bracket, M its middle and d from there to
+ * the light, the sides run along D + d and D - d; those of a parallel light along d (apex 0). */
 STAGE static void near_triangle(int n, const rays *restrict to_light, const vec3s *restrict s,
                                 const real *restrict half, real apex, const real *restrict lo, const real *restrict hi,
-                                int32_t *restrict near)
+                                const real *restrict lit_front, const real *restrict lit_back, int32_t *restrict near)
 {
     const bs_vec3 middle = {R(0.5) * (lo[0] + hi[0]), R(0.5) * (lo[1] + hi[1]), R(0.5) * (lo[2] + hi[2])};
     const bs_vec3 h = {R(0.5) * (hi[0] - lo[0]), R(0.5) * (hi[1] - lo[1]), R(0.5) * (hi[2] - lo[2])};
@@ -115,7 +115,7 @@ STAGE static void near_triangle(int n, const rays *restrict to_light, const vec3
         real reach = real_abs(across.x) * h.x + real_abs(across.y) * h.y + real_abs(across.z) * h.z;
         int parted = (real_abs(bs_dot(across, c)) > reach) | any_parts(front, from_front, whole, h) |
                      any_parts(back, from_back, back_to_front, h);
-        near[i] &= parted == 0;
+        near[i] &= (parted == 0) | (lit_front[i] + lit_back[i] <= 1);
     }
 }
 
@@ -175,12 +175,15 @@ STAGE static int both_lit(int n, const real *restrict front, const real *restric
     return some;
 }
 
-STAGE static void join(int n, const int32_t *restrict near, const real *restrict front, const real *restrict back,
-                       int32_t *restrict some, int32_t *restrict dark)
+/* boxed: it is dark by a caster that is near alone. So a lane's result does not depend on the other lanes, for which
+ * the caster is tested, not even by rounding. */
+STAGE static void join(int n, int32_t boxed, const int32_t *restrict near, const real *restrict front,
+                       const real *restrict back, int32_t *restrict some, int32_t *restrict dark)
 {
     for (int i = 0; i < n; i++) {
+        int32_t hidden = front[i] + back[i] == 0;
         some[i] |= near[i];
-        dark[i] |= front[i] + back[i] == 0;
+        dark[i] |= hidden & (near[i] | (boxed == 0));
     }
 }
 
@@ -217,7 +220,8 @@ static void sweep_caster(sweep *w, const surface *f, bool clear, const int32_t *
     if (!boxed)
         differ(n, front, back, near);
     else if (both_lit(n, front, back, near))
-        near_triangle(n, &w->middle, &w->x->s, w->half, w->l->kind == LIGHT_PARALLEL ? 0 : 1, lo, hi, near);
+        near_triangle(n, &w->middle, &w->x->s, w->half, w->l->kind == LIGHT_PARALLEL ? 0 : 1, lo, hi, front, back,
+                      near);
     if (!hides)
         for (int i = 0; i < n; i++)
             front[i] = 1;
@@ -226,7 +230,7 @@ static void sweep_caster(sweep *w, const surface *f, bool clear, const int32_t *
         memset(w->dark, 0, sizeof w->dark);
         w->met = true;
     }
-    join(n, near, front, back, w->some, w->dark);
+    join(n, boxed, near, front, back, w->some, w->dark);
 }
 
 /* Many objects: each lane has those that the hierarchy finds on one of three rays, from both ends and from tau. */
