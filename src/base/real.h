@@ -32,7 +32,8 @@ typedef float real;
 /* Marks a stage: a static function that is one plain loop over lanes. It is compiled for any x86-64, for AVX2 and (by
  * gcc) for AVX-512, and the loader chooses one. All give the same bytes: stages use only what IEEE 754 rounds exactly
  * (+ - * / sqrt, comparisons, conversions), without contraction (-ffp-contract=off). Static, as clang 14 exports clones
- * under another name. Other processors build the same source without clones. */
+ * under another name, and with a name that no other stage of the library has, as clang 14 exports what chooses between
+ * clones. Other processors build the same source without clones. */
 #if defined(__x86_64__) && defined(__gnu_linux__) && !defined(KAGE_NO_CLONES)
 #if defined(__clang__)
 #define STAGE __attribute__((target_clones("default", "avx2")))

@@ -41,7 +41,7 @@ static inline real next(real a, real b, real above_a, real above_b, int halve)
     return out ? middle : t;
 }
 
-STAGE static void lay(crossings *restrict c, refinement *restrict r)
+STAGE static void lay_brackets(crossings *restrict c, refinement *restrict r)
 {
     const int n = c->at.n;
     for (int i = 0; i < n; i++) {
@@ -117,7 +117,7 @@ static void drop(crossings *c, refinement *r, real *t, int32_t *found)
 void crossings_refine(const domain *f, const bump *P, crossings *c, real *t, int32_t *found)
 {
     refinement r;
-    lay(c, &r);
+    lay_brackets(c, &r);
     for (int step = 0; step < MOST && c->at.n; step++) {
         paths_evaluate(f, P, 0, &c->at);
         narrow(c, &r);

@@ -48,8 +48,8 @@ static void compact(search *s)
 enum { CROSSES = 1, ENDS = 2 };
 
 /* Take the rays with their stretches; open: that are not empty. */
-STAGE static void lay(int n, const rays *restrict x, const real *restrict t0, const real *restrict t1, int32_t steps,
-                      real high, search *restrict s)
+STAGE static void lay_search(int n, const rays *restrict x, const real *restrict t0, const real *restrict t1,
+                             int32_t steps, real high, search *restrict s)
 {
     const real share = 1 / (real)steps;
     for (int i = 0; i < n; i++) {
@@ -88,7 +88,7 @@ static void begin(const domain *f, const bump *P, int n, const rays *x, const re
     f->bound(f, n, x, end, P->Pmin, P->Pmax, t0, t1);
     s->at.n = n;
     s->at.evaluations = 0;
-    lay(n, x, t0, t1, f->steps, real_abs(P->Pmax - P->Pmin), s);
+    lay_search(n, x, t0, t1, f->steps, real_abs(P->Pmax - P->Pmin), s);
     lay_own(n, own, s);
     compact(s);
 }

@@ -252,7 +252,7 @@ STAGE static void search_take(real step, real error, search *restrict s)
     }
 }
 
-STAGE static int count(int n, const int32_t *x)
+STAGE static int open_lanes(int n, const int32_t *x)
 {
     int m = 0;
     for (int i = 0; i < n; i++)
@@ -285,7 +285,7 @@ long places_search(places *p, const bump *P, real error, search_steps steps)
         P->ops->eval(P, s.n, s.at_u, s.at_w, 0, &s.h);
         search_take((real)step, error, &s);
         looks += s.n;
-        if (2 * count(s.n, s.open) <= s.n)
+        if (2 * open_lanes(s.n, s.open) <= s.n)
             search_put(&s, p);
     }
     for (int i = 0; i < s.n; i++)

@@ -5,7 +5,7 @@
 
 #define AIR (64 * R(REAL_ROUNDING)) /* relative */
 
-STAGE static void places(const hit_group *restrict g, vec3s *restrict X)
+STAGE static void rough_places(const hit_group *restrict g, vec3s *restrict X)
 {
     for (int i = 0; i < g->n; i++) {
         bs_vec3 n = lane_get(&g->n_smooth, i), Q = lane_get(&g->q.Q, i);
@@ -16,7 +16,7 @@ STAGE static void places(const hit_group *restrict g, vec3s *restrict X)
     }
 }
 
-void own_places(const hit_group *g, vec3s *X) { places(g, X); }
+void own_places(const hit_group *g, vec3s *X) { rough_places(g, X); }
 
 /* Where the surface is not regular the way has no length: it is seen. */
 STAGE static void ways(const hit_group *restrict g, real Pmin, real Pmax, own_ways *restrict y)

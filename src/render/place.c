@@ -35,7 +35,7 @@ STAGE static void choose(int n, const real *restrict t, const real *restrict t0,
 }
 
 /* Move (u,w) by the part of r + s t - Q that is in the tangent plane. */
-STAGE static void newton_step(hit_group *restrict g, const partials *restrict q)
+STAGE static void foot_step(hit_group *restrict g, const partials *restrict q)
 {
     for (int i = 0; i < g->n; i++) {
         bs_vec3 x = lane_at(&g->x, i, g->t_shade[i]), Q = lane_get(&q->Q, i), Qu = lane_get(&q->Qu, i),
@@ -52,11 +52,11 @@ static void foot_by_steps(const surface *f, hit_group *g)
     partials q;
     for (int k = 0; k < STEPS; k++) {
         f->ops->eval(f, g->n, g->shade_part, g->u, g->w, 1, &q);
-        newton_step(g, &q);
+        foot_step(g, &q);
     }
 }
 
-STAGE static void places(hit_group *restrict g)
+STAGE static void put_places(hit_group *restrict g)
 {
     for (int i = 0; i < g->n; i++)
         lane_set(&g->q.Q, i, lane_at(&g->x, i, g->t_shade[i]));
@@ -95,7 +95,7 @@ static void place_shifted(const surface *f, const bump *P, bool own, hit_group *
         bend_normals(g);
     if (own)
         own_places(g, &g->rough);
-    places(g);
+    put_places(g);
 }
 
 void place_find(const tracer *tr, int32_t id, workspace *v)

@@ -58,8 +58,8 @@ STAGE static void step_to(const walks *restrict s, const walk *k, real way, real
 
 /* Raise the horizons. A walk is open if a higher bump farther on could raise its own again. Where the surface itself
  * has risen by more than the bumps' range, that is its own shadow and no longer the bumps'. */
-STAGE static void raise(walks *restrict s, const walk *k, real way, const real *restrict u, const real *restrict w,
-                        const real *restrict P)
+STAGE static void raise_horizon(walks *restrict s, const walk *k, real way, const real *restrict u,
+                                const real *restrict w, const real *restrict P)
 {
     const real share = 1 / way, top = k->Pmax, range = k->range, least = k->least;
     const real u0 = k->u[0], u1 = k->u[1], w0 = k->w[0], w1 = k->w[1];
@@ -98,7 +98,7 @@ static void walk_far(const bump *P, const table_grid *g, const walk *k, walks *s
         way += real_max(1, real_floor(way / NEAR));
         step_to(s, k, way, u, w);
         P->ops->eval(P, s->n, u, w, 0, &h);
-        raise(s, k, way, u, w, h.P);
+        raise_horizon(s, k, way, u, w, h.P);
         if (step % COMPACT == 0)
             compact(s, best);
     }
@@ -195,8 +195,8 @@ void horizon_free(horizon *h)
 const table_grid *horizon_grid(const horizon *h) { return &h->grid; }
 
 /* Eight gathers: the corners of the cell, in two directions. */
-STAGE static void look(const horizon *h, int n, const int32_t *restrict at, const real *restrict a,
-                       const real *restrict b, const real *restrict bearing, real *restrict rise)
+STAGE static void look_up(const horizon *h, int n, const int32_t *restrict at, const real *restrict a,
+                          const real *restrict b, const real *restrict bearing, real *restrict rise)
 {
     const real *restrict v = h->rise;
     const int row = (h->grid.columns + 1) * ENTRIES;
@@ -217,5 +217,5 @@ void horizon_look(const horizon *h, int n, const real *u, const real *w, const r
     int32_t at[LANES];
     real a[LANES], b[LANES];
     table_cells(&h->grid, n, u, w, at, a, b);
-    look(h, n, at, a, b, bearing, rise);
+    look_up(h, n, at, a, b, bearing, rise);
 }

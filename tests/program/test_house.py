@@ -118,6 +118,11 @@ BROKEN: list[tuple[Rule, dict[str, str], str]] = [
     (house.functions_are_short, {"bench/a.py": "def f():\n" + "    f()\n" * 60}, "bench/a.py:1: f has 61 lines"),
     (house.files_say_what_they_are, {"src/base/a.c": "#include <math.h>\n"}, "src/base/a.c: "),
     (house.files_say_what_they_are, {"bench/a.py": "import math\n"}, "bench/a.py: "),
+    (
+        house.stages_have_names_of_their_own,
+        {"src/base/a.c": "STAGE static void f(int n)\n", "src/math/b.c": "STAGE static int f(int n)\n"},
+        "has a stage f, as has src/base/a.c",
+    ),
     (house.files_say_what_they_are, {".ci/run": "#!/bin/sh\nexec make test\n"}, ".ci/run: "),
 ]
 

@@ -246,6 +246,15 @@ def files_say_what_they_are(house: House) -> Iterator[str]:
             yield f"{path}: no comment at its head"
 
 
+def stages_have_names_of_their_own(house: House) -> Iterator[str]:
+    """clang 14 exports what chooses between a stage's clones, so two of one name can't be linked."""
+    first: dict[str, str] = {}
+    for path, text in house.sources.items():
+        for name in re.findall(r"^STAGE static \w[\w ]*[ *](\w+)\(", text, re.MULTILINE):
+            if first.setdefault(name, path) != path:
+                yield f"src/{path} has a stage {name}, as has src/{first[name]}"
+
+
 RULES: tuple[Callable[[House], Iterator[str]], ...] = (
     rooms_are_known,
     includes_go_down,
@@ -261,4 +270,5 @@ RULES: tuple[Callable[[House], Iterator[str]], ...] = (
     lines_are_short,
     functions_are_short,
     files_say_what_they_are,
+    stages_have_names_of_their_own,
 )
