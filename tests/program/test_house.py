@@ -121,7 +121,7 @@ BROKEN: list[tuple[Rule, dict[str, str], str]] = [
     (
         house.stages_have_names_of_their_own,
         {"src/base/a.c": "STAGE static void f(int n)\n", "src/math/b.c": "STAGE static int f(int n)\n"},
-        "has a stage f, as has src/base/a.c",
+        "src/math/b.c has a stage f, as has src/base/a.c",
     ),
     (house.files_say_what_they_are, {".ci/run": "#!/bin/sh\nexec make test\n"}, ".ci/run: "),
 ]
