@@ -225,7 +225,7 @@ STAGE static void search_place(real step, search *restrict s)
 }
 
 /* Take it in. Steps end at the first that is below the rough surface, and with the last but one, as the bracket's back
- * is below. Secants end where twice the error left is small; tau is the next place. An end that stays twice in a row
+ * is below. Secants end where the error left is small; tau is the next place. An end that stays twice in a row
  * counts half, so that both ends move (Illinois). */
 STAGE static void search_take(real step, real error, search *restrict s)
 {
@@ -240,7 +240,7 @@ STAGE static void search_take(real step, real error, search *restrict s)
         low = hit ? above : low;
         real width = back - front, next = front + width * (high / (high - low));
         real slope = real_min(high - low, real_abs(v.sn) * width); /* times width; an end's gap may be a guess */
-        real left = 2 * real_abs(above) * width * s->pixels[i];
+        real left = real_abs(above) * width * s->pixels[i];
         s->tau[i] = s->open[i] ? next : tau;
         s->front[i] = front;
         s->back[i] = back;

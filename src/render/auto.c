@@ -359,7 +359,7 @@ static bool needs_place(const tracer *tr, int32_t id, const workspace *v)
 /* Where only a shadow depends on the place, few lanes are searched, and all the better. The lengths are in errors. */
 static search_steps steps_of(bool everywhere, real error)
 {
-    return everywhere ? (search_steps){48 * error, 1, 16} : (search_steps){16 * error, 8, 16};
+    return everywhere ? (search_steps){48 * error, 1, 16} : (search_steps){16 * error, 6, 16};
 }
 
 static int all_lanes(int n, int32_t *lane)
