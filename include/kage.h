@@ -209,7 +209,7 @@ typedef struct kage_render_options {
 } kage_render_options;
 
 /* The best picture for its cost: options.method, options.bump_shadow, and options.shifted = KAGE_YES. */
-#define KAGE_RELIEF_METHOD "auto"
+#define KAGE_RELIEF_METHOD "auto:0.15"
 #define KAGE_RELIEF_BUMP_SHADOW "march:8"
 
 typedef struct kage_film kage_film;

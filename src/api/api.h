@@ -32,9 +32,8 @@ kage_status errors_give(errors *e, kage_status status, const watch *w, kage_erro
 /* End a call with one message. */
 kage_status error_give(kage_status status, kage_errors **to, const char *fmt, ...) KAGE_PRINTF(3, 4);
 
-/* A scene is read once for each set of what it must build: true displacement for one use or another, horizon maps,
- * bounds of P for the method auto. */
-enum { READINGS = 32 };
+/* A scene is read once for each set of what it must build: true displacement for one use or another, horizon maps. */
+enum { READINGS = 16 };
 
 struct kage_scene {
     scene *first;             /* as the caller asked for it */

@@ -7,7 +7,7 @@
 static int reading_index(reading r)
 {
     return r.displaced + 2 * (r.shadow.kind == METHOD_EXACT) + 4 * (r.bump_shadow.kind == BUMP_SHADOW_EXACT) +
-           8 * (r.bump_shadow.kind == BUMP_SHADOW_HORIZON) + 16 * (r.shadow.kind == METHOD_AUTO);
+           8 * (r.bump_shadow.kind == BUMP_SHADOW_HORIZON);
 }
 
 static char *copy(const char *text, bool *good)

@@ -23,22 +23,15 @@ static inline int rises_faster(real sn, real a, real b, real curvature, real end
     return sn - real_max(curvature, 0) * end >= Pu * a + Pw * b;
 }
 
-/* The lanes whose ways bounds of the slope of the whole P do not settle, nor the slope of P at the start with bounds of
- * its second partials: the way and P part by sn - P' per t, and come together again by at most half the curvature of
- * both. (Not so where a bound is infinite.) */
+/* The lanes whose ways bounds of P's slope do not settle. An infinite bound times 0 is NaN, and settles none. */
 STAGE static void find_open(const hit_group *restrict g, const bump *P, const own_ways *restrict y, real seen_from,
                             int32_t *restrict open)
 {
-    const real Pu_max = P->Pu_max, Pw_max = P->Pw_max, Puu = P->Puu_max, Puw = P->Puw_max, Pww = P->Pww_max;
+    const real Pu = P->Pu_max, Pw = P->Pw_max;
     for (int i = 0; i < g->n; i++) {
         real sn = y->sn[i], curvature = y->curvature[i], end = y->end[i], side = y->side[i], lit = g->lit[i];
         real a = fastest(y->a[i], y->A[i], end), b = fastest(y->b[i], y->B[i], end);
-        real Pu = g->bump.Pu[i], Pw = g->bump.Pw[i], apart = sn - side * (Pu * y->a[i] + Pw * y->b[i]);
-        real together = Puu * a * a + 2 * Puw * a * b + Pww * b * b + curvature;
-        together += 2 * real_abs(Pu * y->A[i] + Pw * y->B[i]);
-        int parts =
-            apart >= R(0.5) * real_max(0, together) * end; /* never if that is NaN, of an infinite bound times 0 */
-        int settled = parts | rises_faster(sn, a, b, curvature, end, Pu_max, Pw_max);
+        int settled = rises_faster(sn, a, b, curvature, end, Pu, Pw);
         open[i] = (lit > 0) & (end > 0) & (seen_from * side >= 0) & !settled;
     }
 }

@@ -97,8 +97,6 @@ static void read_own_bump(reader *r, node *at, object *o)
     o->map = (map_note){0};
     o->bump_spec = (bump_spec){0};
     o->bump = reader_bump(r, at, o);
-    if (o->bump && r->s->shadow.kind == METHOD_AUTO && !bump_prepare(o->bump))
-        reader_made(r, NULL);
     if (o->bump && scene_wants_truth(r->s) && !displaced_has_bounds(o->bump))
         yaml_error(r->y, at,
                    "no bounds of P or of its slope are known, expected them for %s: a function that is bounded, "

@@ -13,13 +13,14 @@
 
 #include "method/own_shadow.h"
 #include "method/shift.h"
+#include "render/bumps.h"
 #include "wave/lane.h"
 
 /* Of Newton's iteration without second partials. The first is (a,b) tau; each further one leaves of the error the share
  * that the height is of the radius of curvature (tests/unit/method/relief_cases.h). */
 enum { STEPS = 5 };
 
-void place_smooth(bool own, hit_group *g)
+static void place_smooth(bool own, hit_group *g)
 {
     memcpy(g->t_shade, g->t, sizeof g->t);
     if (own)
@@ -79,7 +80,7 @@ STAGE static void bend_normals(hit_group *restrict g)
     }
 }
 
-void place_shifted(const surface *f, const bump *P, bool own, hit_group *g)
+static void place_shifted(const surface *f, const bump *P, bool own, hit_group *g)
 {
     choose(g->n, g->t, g->t0, g->t_shade);
     memcpy(g->shade_part, g->part, sizeof g->part);
@@ -95,4 +96,17 @@ void place_shifted(const surface *f, const bump *P, bool own, hit_group *g)
     if (own)
         own_places(g, &g->rough);
     places(g);
+}
+
+void place_find(const tracer *tr, int32_t id, workspace *v)
+{
+    const bump *P = tr->scene->object[id].bump;
+    const bool own = bumps_cast(tr, id, v);
+    if (!tr->shifted || !P || displaced_is(v->surface[id])) {
+        place_smooth(own, &v->g);
+        return;
+    }
+    place_shifted(v->surface[id], P, own, &v->g);
+    v->stats->evaluations += v->g.n;
+    stats_stage(v->stats, STAGE_PLACE);
 }

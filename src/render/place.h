@@ -4,13 +4,10 @@
 
 #include "render/workspace.h"
 
-/* Shade at the smooth hit, as the paper does. */
-void place_smooth(bool own, hit_group *g);
-
-/* Shade at r + s t0 (ours): (u,w) of the group becomes the place of the smooth surface `f` whose normal leads there;
- * the bump and both normals are those of this place, and Q is r + s t0. Lanes whose t0 is before the ray's start or has
- * no value are shaded at the smooth hit. P is evaluated once a lane. own: for the bumps' own
- * shadows, see own_shadow.h: sets g->rough, too. */
-void place_shifted(const surface *f, const bump *P, bool own, hit_group *g);
+/* Set g->t_shade of the group v->g on object `id`: the smooth hit, as in the paper, or r + s t0 (ours). With r + s t0
+ * the group's (u,w) and shade_part become the place of the smooth surface whose normal leads there; the bump, q and
+ * both normals are those of this place, and q.Q is r + s t0. Lanes whose t0 is before the ray's start or has no value
+ * are shaded at the smooth hit. Sets g->rough, too, if the object's bumps cast shadows on it (bumps.h). */
+void place_find(const tracer *tr, int32_t id, workspace *v);
 
 #endif

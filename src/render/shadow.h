@@ -8,10 +8,6 @@
  * materials. */
 void shadow_light(const tracer *tr, int32_t id, const light *l, workspace *v);
 
-/* Whether light is kept from object `id` by its own bumps: then the smooth surface facing away from a light does not
- * mean that it is dark. */
-bool shadow_is_own(const tracer *tr, int32_t id, const workspace *v);
-
 /* Whether object `id` casts shadows. */
 bool shadow_casts(const tracer *tr, int32_t id);
 

@@ -2,33 +2,26 @@
  *
  *     wave -> nearest hit with the smooth surfaces -> for the lanes on each surface:
  *     Q and its partials -> P and its partials -> n' -> the shift tau (none, 0, 1, 2 ...)
- *     -> shadow rays from r + s t0 -> light at Q with n'
+ *     -> the place that is shaded, Q or r + s t0 -> shadow rays from r + s t0 -> light there with n'
  *
  * Mirrors and transparent materials send secondary waves from r + s t0 by n' (secondary.h), which are traced by the
  * same steps. For comparison, rays can meet displaced surfaces (displaced.h), which need no shift.
  */
 #include "render/trace.h"
 
-#include "method/shift.h"
-#include "render/auto.h"
-#include "render/intersect.h"
-#include "render/place.h"
 #include "light/lighting.h"
 #include "light/shade.h"
+#include "method/shift.h"
+#include "render/bumps.h"
+#include "render/intersect.h"
+#include "render/place.h"
 #include "render/shadow.h"
+#include "render/tau.h"
 #include "wave/gather.h"
 
-/* The partials of Q at the smooth hit: for its curvature the second ones, too. */
-static int partials_needed(const tracer *tr, int32_t id, const workspace *v)
-{
-    const bool flat = tr->shadow.kind == METHOD_AUTO && v->surface[id]->ops->flat; /* auto leaves zeros out */
-    const bool bends = (method_bends(tr->shadow) && !flat) || (shadow_is_own(tr, id, v) && !tr->shifted);
-    return tr->scene->object[id].bump && bends ? 2 : 1;
-}
-
 /* The smooth hit Q and its partials; P and its partials, a map's by bilinear interpolation of differences
- * (texture/bump_map.c); n' (bs_perturbed_normal); and tau (method/shift.c by bs_tau0, bs_tau1, bs_tau2). The guard
- * keeps tau within the slab of P (bs_slab_of). */
+ * (texture/bump_map.c); n' (bs_perturbed_normal); and tau (tau.h; the paper's by bs_tau0, bs_tau1 and bs_tau2). The
+ * guard keeps tau within the slab of P (bs_slab_of). */
 static void shape_and_shift(const tracer *tr, int32_t id, workspace *v)
 {
     const surface *f = v->surface[id];
@@ -36,7 +29,7 @@ static void shape_and_shift(const tracer *tr, int32_t id, workspace *v)
     hit_group *g = &v->g;
     stats *st = v->stats;
     f->ops->locate(f, g->n, &g->x, g->t, g->part, g->u, g->w);
-    f->ops->eval(f, g->n, g->part, g->u, g->w, partials_needed(tr, id, v), &g->q);
+    f->ops->eval(f, g->n, g->part, g->u, g->w, tau_partials(tr, id, v), &g->q);
     stats_stage(st, STAGE_SURFACE);
     if (P) {
         P->ops->eval(P, g->n, g->u, g->w, method_order(tr->shadow), &g->bump);
@@ -45,16 +38,8 @@ static void shape_and_shift(const tracer *tr, int32_t id, workspace *v)
     stats_stage(st, STAGE_BUMP);
     shift_normals(g, P);
     stats_stage(st, STAGE_NORMAL);
-    v->alone = false;
-    if (P && tr->shadow.kind == METHOD_AUTO)
-        auto_shift(tr, id, v);
-    else if (P && tr->shadow.kind == METHOD_EXACT)
-        displaced_shift(&v->displaced[id].base, g);
-    else
-        st->evaluations += shift_group(g, P, tr->shadow, tr->guard);
+    tau_find(tr, id, v);
     stats_stage(st, STAGE_SHIFT);
-    if (P)
-        stats_orders(st, g->n, g->order, tr->shadow.kind == METHOD_AUTO ? ORDER_ANY : method_code(tr->shadow));
 }
 
 static void shape_displaced(int32_t id, workspace *v)
@@ -65,20 +50,6 @@ static void shape_displaced(int32_t id, workspace *v)
     stats_stage(v->stats, STAGE_SURFACE);
 }
 
-/* Where it is shaded: at the smooth hit, or at r + s t0. */
-static void place(const tracer *tr, int32_t id, workspace *v)
-{
-    const bump *P = tr->scene->object[id].bump;
-    const bool own = shadow_is_own(tr, id, v);
-    if (!tr->shifted || !P || displaced_is(v->surface[id])) {
-        place_smooth(own, &v->g);
-        return;
-    }
-    place_shifted(v->surface[id], P, own, &v->g);
-    v->stats->evaluations += v->g.n;
-    stats_stage(v->stats, STAGE_PLACE);
-}
-
 /* The light that object `id` sends to the eye. */
 static void light_group(const tracer *tr, int32_t id, workspace *v)
 {
@@ -86,7 +57,7 @@ static void light_group(const tracer *tr, int32_t id, workspace *v)
     const object *o = &s->object[id];
     const material *m = &s->material[o->material];
     hit_group *g = &v->g;
-    const bool own = shadow_is_own(tr, id, v);
+    const bool own = bumps_cast(tr, id, v);
     if (o->color)
         o->color->ops->eval(o->color, g->n, g->u, g->w, &g->color);
     shade_ambient(g, m);
@@ -110,7 +81,7 @@ void trace_group(const tracer *tr, int32_t id, workspace *v)
     if (v->of)
         shift_within(&v->g);
     shift_origins(&v->g);
-    place(tr, id, v);
+    place_find(tr, id, v);
     light_group(tr, id, v);
 }
 
