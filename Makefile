@@ -147,7 +147,7 @@ out/relief.png: $(BUILD)/kage $(wildcard scenes/*.yaml scenes/data/*) scripts/re
 # Each scene of the gallery by none, and by the method that it says itself.
 out/gallery/%-none.png: scenes/gallery/%.yaml $(BUILD)/kage
 	@mkdir -p out/gallery
-	$(BUILD)/kage render $< --shadow none --aa 3 -o $@
+	$(BUILD)/kage render $< --shadow none --shade smooth --bump-shadow none --aa 3 -o $@
 
 out/gallery/%.png: scenes/gallery/%.yaml $(BUILD)/kage
 	@mkdir -p out/gallery

@@ -21,7 +21,7 @@ from typing import Any, cast
 
 import numpy as np
 
-from bench import bounds
+from bench import bounds, whole_tables
 from bench import data as reading
 from bench.data import Kept, Report
 from bench.plan import METHODS
@@ -123,7 +123,7 @@ def own_table(data: Kept) -> str:
     ways = list(dict.fromkeys(how for found in part.values() for how in found["wrong"]))
     if not ways:
         return NOT_YET
-    rows = [[f"{scene}, {height:g}°", str(found["shadow"][i] or "–"),
+    rows = [[f"{scene}, {height:g}°", whole_tables.whole_number(found["shadow"][i]),
              *(percent(found["wrong"][how][i]) for how in ways)]
             for scene, found in part.items() for i, height in enumerate(found["values"])]
     return table(["scene, height of the lamp", "shadow pixels", *(how.removeprefix("own ") for how in ways)], rows)

@@ -131,11 +131,15 @@ def series_tables(report: Report, scene: str) -> list[Table]:
     return found + ([series_table("Over the slope of the bumps (95 % are below)", slopes, "")] if slopes else [])
 
 
+def whole_number(value: int | None) -> str:
+    return MISSING if value is None else str(value)
+
+
 def own_table(report: Report) -> Table | None:
     """Scenes and heights of the lamp by ways to find the own shadow."""
     part = data.whole_part(report).get("own") or {}
     ways = list(dict.fromkeys(how for found in part.values() for how in found["wrong"]))
-    rows = [[Cell(f"{scene}, {short(height)}°"), Cell(str(found["shadow"][i] or MISSING)),
+    rows = [[Cell(f"{scene}, {short(height)}°"), Cell(whole_number(found["shadow"][i])),
              *(Cell(share(found["wrong"][how][i])) for how in ways)]
             for scene, found in part.items() for i, height in enumerate(found["values"])]
     if not rows:
@@ -143,7 +147,7 @@ def own_table(report: Report) -> Table | None:
     columns = [Column("scene, lamp", words=True), Column("shadow pixels"),
                *(Column(own_name(how), "wrong, %") for how in ways)]
     about = OWN_ABOUT.format(truth=data.truth_version(report) or "POV-Ray", missing=MISSING)
-    return Table("The bumps' own shadows", columns, rows, about)
+    return Table("Wrong pixels of the bumps' own shadows", columns, rows, about)
 
 
 def exact_wrong(report: Report, scene: str, method: str) -> float | None:

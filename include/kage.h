@@ -165,13 +165,13 @@ typedef struct kage_scene_info {
     int aa;              /* aa x aa samples a pixel */
     double aa_threshold; /* only where neighbours differ by more than this; below 0: everywhere */
     const char *method;
-    const char *bump_shadow;
-    int shifted;                       /* render.shade: shifted */
     int guard, displaced, self_shadow; /* render.guard, render.surface: displaced, render.self_shadow */
     int depth;                         /* rays in a row, with the camera's; 0: no secondary rays */
     int light_count, object_count;
     const kage_light_info *lights;
     const kage_object_info *objects;
+    const char *bump_shadow; /* render.bump_shadow */
+    int shifted;             /* render.shade: shifted */
 } kage_scene_info;
 
 /* What is in a scene. */
@@ -190,12 +190,9 @@ KAGE_API int kage_scene_has_layer(const kage_scene *scene, const char *word);
 typedef enum kage_choice { KAGE_AS_SCENE, KAGE_YES, KAGE_NO } kage_choice;
 
 typedef struct kage_render_options {
-    const char *method;  /* where shadow rays start: none 0 1 2 2+ iter:K march:N exact auto[:E]; NULL: as the scene */
-    kage_choice shifted; /* yes: shade at r + s t0; no: at the smooth hit */
-    const char
-        *bump_shadow;      /* the bumps' shadows on their own surface: none march:N horizon exact; NULL: as the scene */
-    kage_choice guard;     /* keep to the slab between the lowest and highest P */
-    kage_choice displaced; /* yes: bumped objects are truly displaced surfaces; no: bump mapping */
+    const char *method; /* where shadow rays start: none 0 1 2 2+ iter:K march:N exact auto[:E]; NULL: as the scene */
+    kage_choice guard;  /* keep to the slab between the lowest and highest P */
+    kage_choice displaced;   /* yes: bumped objects are truly displaced surfaces; no: bump mapping */
     kage_choice self_shadow; /* bumped objects cast shadows */
     int width, height;       /* in pixels, 1 to KAGE_MAX_SIDE; both 0: as the scene says */
     int crop[4];             /* x0 y0 x1 y1: only pixels x0 <= x < x1, y0 <= y < y1; all 0: the whole picture */
@@ -206,19 +203,21 @@ typedef struct kage_render_options {
     int threads;             /* 1 to KAGE_MAX_THREADS; 0: as many as there are processors */
     kage_progress *progress; /* NULL: none */
     void *user;              /* for progress */
-    void *reserved[8];
+    const char *bump_shadow; /* the bumps' own shadows: none march:N horizon exact; NULL: as the scene says */
+    kage_choice shifted;     /* yes: shade where the shadow rays start; no: at the smooth hit */
+    void *reserved[6];
 } kage_render_options;
 
 /* The best picture for its cost: options.method, options.bump_shadow, and options.shifted = KAGE_YES. */
-#define KAGE_RELIEF_METHOD "march:8"
+#define KAGE_RELIEF_METHOD "auto:0.15"
 #define KAGE_RELIEF_BUMP_SHADOW "march:8"
 
 typedef struct kage_film kage_film;
 
 /* Render the scene into a new film. options: NULL for the defaults. The bytes of a film depend neither on the threads
- * nor on the crop. The first render with another value of `displaced`, or with the method `exact`, reads the scene
- * again from its text and files, which must be unchanged; errors then are KAGE_BAD_INPUT. Several threads may render
- * one scene without a lock. The film may outlive the scene. */
+ * nor on the crop. The first render with another value of `displaced`, with `exact`, `auto` or `horizon`, reads the
+ * scene again from its text and files, which must be unchanged; errors then are KAGE_BAD_INPUT. Several threads may
+ * render one scene without a lock. The film may outlive the scene. */
 KAGE_API kage_status kage_render(kage_scene *scene, const kage_render_options *options, kage_film **film,
                                  kage_errors **errors);
 

@@ -278,8 +278,9 @@ long places_search(places *p, const bump *P, real error, search_steps steps)
     long looks = 0;
     s.n = p->k.n;
     search_begin(p, steps, &s);
+    const int32_t code = method_code((method){METHOD_MARCH, 1});
     for (int i = 0; i < s.n; i++)
-        p->order[i] = s.open[i] ? method_code((method){METHOD_MARCH, 1}) : p->order[i];
+        p->order[i] = s.open[i] ? code : p->order[i];
     for (int step = 1; step <= (int)steps.most + SECANTS_MAX && s.n > 0; step++) {
         search_place((real)step, &s);
         P->ops->eval(P, s.n, s.at_u, s.at_w, 0, &s.h);

@@ -1,6 +1,8 @@
 /* The formulas of bumpshadow.h for the bumps' own shadows, in loops over the lanes of a group. */
 #include "method/own_shadow.h"
 
+#include <string.h>
+
 #include "wave/lane.h"
 
 #define AIR (64 * R(REAL_ROUNDING)) /* relative */
@@ -47,6 +49,26 @@ STAGE static void ways(const hit_group *restrict g, real Pmin, real Pmax, own_wa
     }
 }
 
+/* The same where the surface is flat: no curvature, and Quu, Quw and Qww are not read. A light at or below the tangent
+ * plane leaves the slab at t = 1. */
+STAGE static void ways_flat(const hit_group *restrict g, real Pmin, real Pmax, own_ways *restrict y)
+{
+    const real top = 2 * real_max(Pmax, 0) - real_min(Pmin, 0), bottom = real_max(Pmax, 0) - 2 * real_min(Pmin, 0);
+    for (int i = 0; i < g->n; i++) {
+        bs_vec3 n = lane_get(&g->n_smooth, i), to = lane_get(&g->to_light.s, i), X = lane_get(&g->rough, i);
+        bs_view d = bs_view_of(to, n, lane_get(&g->q.Qu, i), lane_get(&g->q.Qw, i));
+        real P = g->bump.P[i], side = bs_dot(n, lane_get(&g->x.s, i)) < 0 ? R(1) : R(-1);
+        real above = side > 0 ? Pmax - P : P - Pmin, out = side > 0 ? top - P : bottom + P;
+        real sn = side * d.sn, rise = real_max(sn, R(1e-30));
+        y->side[i] = side;
+        y->sn[i] = sn;
+        y->a[i] = d.a;
+        y->b[i] = d.b;
+        y->end[i] = real_min((above + R(1e-30)) / rise, 1);
+        y->leave[i] = real_min((out + AIR * real_sqrt(bs_dot(X, X))) / rise, 1);
+    }
+}
+
 STAGE static void turned_away(hit_group *restrict g, const real *restrict side)
 {
     for (int i = 0; i < g->n; i++) {
@@ -72,10 +94,16 @@ STAGE static void end_at_edges(const hit_group *restrict g, const real *restrict
     }
 }
 
-void own_begin(const hit_group *g, const bump *P, const double u[2], const double w[2], own_ways *y)
+void own_begin(const hit_group *g, const bump *P, bool flat, const double u[2], const double w[2], own_ways *y)
 {
     const real ends[4] = {(real)u[0], (real)u[1], (real)w[0], (real)w[1]};
-    ways(g, P->Pmin, P->Pmax, y);
+    if (flat) {
+        ways_flat(g, P->Pmin, P->Pmax, y);
+        memset(y->A, 0, sizeof y->A);
+        memset(y->B, 0, sizeof y->B);
+        memset(y->curvature, 0, sizeof y->curvature);
+    } else
+        ways(g, P->Pmin, P->Pmax, y);
     end_at_edges(g, ends, y);
 }
 

@@ -18,9 +18,9 @@ typedef struct own_ways {
 /* The places on the rough surface, X = Q + P n/|n|, over the (u,w) that are shaded. */
 void own_places(const hit_group *g, vec3s *X);
 
-/* The ways along g->to_light, whose segments start at X. Needs Quu, Quw and Qww. u and w: beyond these the surface has
- * no bumps. */
-void own_begin(const hit_group *g, const bump *P, const double u[2], const double w[2], own_ways *y);
+/* The ways along g->to_light, whose segments start at X. Needs Quu, Quw and Qww, unless the surface is flat. u and w:
+ * beyond these the surface has no bumps. */
+void own_begin(const hit_group *g, const bump *P, bool flat, const double u[2], const double w[2], own_ways *y);
 
 /* Each sets g->lit = 0: where n' is turned away from the light; where the light is not above the horizon. */
 void own_turned_away(hit_group *g, const own_ways *y);

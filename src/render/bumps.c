@@ -26,7 +26,7 @@ static void begin_ways(const tracer *tr, int32_t id, const light *l, workspace *
     if (f->ops->flat) /* all of its parts have the same extent */
         f->ops->extent(f, 0, u, w);
     lighting_aim_from(l, &v->g.rough, &v->g);
-    own_begin(&v->g, tr->scene->object[id].bump, u, w, y);
+    own_begin(&v->g, tr->scene->object[id].bump, f->ops->flat, u, w, y);
 }
 
 /* The rise of the ways over the horizons. False: some part of the surface has none. */

@@ -88,7 +88,7 @@ static void place_shifted(const surface *f, const bump *P, bool own, hit_group *
         f->ops->foot(f, g->n, &g->x, g->t_shade, g->shade_part, g->u, g->w);
     else
         foot_by_steps(f, g);
-    f->ops->eval(f, g->n, g->shade_part, g->u, g->w, own || !f->ops->flat ? 2 : 1, &g->q);
+    f->ops->eval(f, g->n, g->shade_part, g->u, g->w, f->ops->flat ? 1 : 2, &g->q);
     P->ops->eval(P, g->n, g->u, g->w, 1, &g->bump);
     shift_normals(g, P);
     if (!f->ops->flat)

@@ -308,7 +308,8 @@ def share_close(a: dict[str, np.ndarray], b: dict[str, np.ndarray], tolerance: f
 
 @pytest.mark.parametrize("options",
                          [["--shadow", "none"], ["--shadow", "2"], ["--shadow", "march:4"], ["--shadow", "exact"],
-                                     ["--surface", "displaced"]], ids=lambda o: o[-1])
+                          ["--surface", "displaced"], ["--shade", "shifted", "--bump-shadow", "exact"],
+                          ["--shadow", "march:8", "--shade", "shifted", "--bump-shadow", "march:8"]], ids=lambda o: o[-1])
 def test_mirror_is_the_mirrored_scene(tmp_path: Path, options: list[str]) -> None:
     """What stands behind the eye, seen in a mirror, is that scene mirrored: every method works on reflected rays,
     too."""
@@ -480,16 +481,18 @@ def hashes(kage: Path, tmp_path: Path) -> dict[str, str]:
     result = {}
     made = (tmp_path / f"{name}.yaml" for name in ("function", "lit", "glass", "image", "turned"))
     for scene in [*sorted((TOP / "scenes").glob("*.yaml")), *made]:
-        for method in ["0", "2+", "march:4", "iter:3", *(["exact"] if scene.stem == "turned" else [])]:
+        bounded = scene.parent != tmp_path or scene.stem == "turned"
+        for options in [*(f"--shadow {method}" for method in ("0", "2+", "march:4", "iter:3", "auto")), "--relief",
+                        "--shade shifted --bump-shadow horizon", *(["--shadow exact"] if bounded else [])]:
             out = [tmp_path / f"{scene.stem}.exr", tmp_path / f"{scene.stem}.png"]
             subprocess.run(
-                [kage, "render", scene, "--shadow", method, "--size", "201x149", "-o", out[0], "-o", out[1]],
+                [kage, "render", scene, *options.split(), "--size", "201x149", "-o", out[0], "-o", out[1]],
                 check=True,
                 capture_output=True,
                 timeout=300,
             )
             for path in out:
-                result[f"{scene.stem} {method} {path.suffix}"] = hashlib.sha256(path.read_bytes()).hexdigest()
+                result[f"{scene.stem} {options} {path.suffix}"] = hashlib.sha256(path.read_bytes()).hexdigest()
     return result
 
 

@@ -38,6 +38,10 @@ METHODS: dict[str, tuple[str, ...]] = {
     "2-bare": ("--shadow", "2", "--no-guard"),
     "displaced": ("--surface", "displaced"),
     "displaced-cast": ("--surface", "displaced", "--no-self-shadow"),
+    "auto": ("--shadow", "auto"),
+    "relief": ("--relief",),
+    "horizon": ("--shadow", "2", "--shade", "shifted", "--bump-shadow", "horizon"),
+    "own-exact": ("--shadow", "march:4", "--bump-shadow", "exact"),
     "own": (),  # as the scene says
 }
 

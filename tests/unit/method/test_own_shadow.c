@@ -67,14 +67,14 @@ static double clearance(const bump *P, const hit_group *g, int i, double side)
     return least;
 }
 
-static void as_by_brute_force(double side)
+static void as_by_brute_force(double side, bool flat)
 {
     static hit_group g;
     bump *P = function("0.2*sin(3*u)*cos(2*w) + 0.1*sin(5*u + 4*w)");
     own_ways y;
     int dark = 0;
     places_on_plane(P, side, &g);
-    own_begin(&g, P, endless, endless, &y);
+    own_begin(&g, P, flat, endless, endless, &y);
     own_turned_away(&g, &y);
     BETWEEN(1, own_march(&g, P, &y, 1000, 0), 1000 * LANES);
     for (int i = 0; i < LANES; i++) {
@@ -92,8 +92,10 @@ static void as_by_brute_force(double side)
 static void a_fine_march_is_brute_force(void **state)
 {
     (void)state;
-    as_by_brute_force(1);
-    as_by_brute_force(-1);
+    for (int flat = 0; flat < 2; flat++) {
+        as_by_brute_force(1, flat);
+        as_by_brute_force(-1, flat);
+    }
 }
 
 /* A light above the slope of all bumps sees everything, by any number of steps. */
@@ -107,7 +109,7 @@ static void steep_light_sees_all(void **state)
         places_on_plane(P, 1, &g);
         for (int i = 0; i < LANES; i++)
             lane_set(&g.to_light.s, i, (bs_vec3){R(1), R(0.3), R(0.2)}); /* slopes are below 0.15 + 0.1 */
-        own_begin(&g, P, endless, endless, &y);
+        own_begin(&g, P, true, endless, endless, &y);
         own_turned_away(&g, &y);
         own_march(&g, P, &y, steps, 0);
         for (int i = 0; i < LANES; i++)
@@ -124,7 +126,7 @@ static void only_the_side_that_is_asked_for(void **state)
     own_ways y;
     (void)state;
     places_on_plane(P, 1, &g);
-    own_begin(&g, P, endless, endless, &y);
+    own_begin(&g, P, true, endless, endless, &y);
     own_march(&g, P, &y, 50, -1);
     for (int i = 0; i < LANES; i++)
         CHECK(g.lit[i], ==, 1);
@@ -146,7 +148,7 @@ static void edges_end_the_bumps(void **state)
             lane_set(&g.to_light.s, i, (bs_vec3){0, R(0.5), 5});
             g.bump.P[i] = g.bump.Pu[i] = g.bump.Pw[i] = 0;
         }
-        own_begin(&g, P, edge ? before : endless, endless, &y);
+        own_begin(&g, P, true, edge ? before : endless, endless, &y);
         own_march(&g, P, &y, 16, 0);
         for (int i = 0; i < LANES; i++)
             CHECK(g.lit[i], ==, edge);
@@ -181,7 +183,7 @@ static void ways_leave_a_ball(void **state)
         lane_set(&g.to_light.s, i,
                  (bs_vec3){9 * (along.x + sink * n.x), 9 * (along.y + sink * n.y), 9 * (along.z + sink * n.z)});
     }
-    own_begin(&g, P, endless, endless, &y);
+    own_begin(&g, P, false, endless, endless, &y);
     own_leave(&g, &y);
     for (int i = 0; i < LANES; i++) {
         const vec3 at = vec3s_get(&g.to_light.r, i);
