@@ -9,9 +9,10 @@
 
 int tau_partials(const tracer *tr, int32_t id, const workspace *v)
 {
-    const bool flat = tr->shadow.kind == METHOD_AUTO && v->surface[id]->ops->flat; /* auto leaves zeros out */
-    const bool bends = (method_bends(tr->shadow) && !flat) || (bumps_cast(tr, id, v) && !tr->shifted);
-    return tr->scene->object[id].bump && bends ? 2 : 1;
+    const bool flat = v->surface[id]->ops->flat; /* auto and the bumps' shadows leave its zeros out */
+    const bool shift = method_bends(tr->shadow) && !(flat && tr->shadow.kind == METHOD_AUTO);
+    const bool own = bumps_cast(tr, id, v) && !tr->shifted && !flat;
+    return tr->scene->object[id].bump && (shift || own) ? 2 : 1;
 }
 
 void tau_find(const tracer *tr, int32_t id, workspace *v)
