@@ -6,10 +6,8 @@
 #include "method/method.h"
 #include "wave/lane.h"
 
-enum {
-    SECANTS_MAX = 8, /* after them */
-};
-#define LEAST_GAP 0.02 /* of an end, of what the ray sinks in its bracket */
+enum { SECANTS_MAX = 8 }; /* after the steps */
+#define LEAST_GAP 0.02    /* of an end, of what the ray sinks in its bracket */
 
 static inline bs_view view(const brackets *k, int i) { return (bs_view){k->sn[i], k->a[i], k->b[i]}; }
 

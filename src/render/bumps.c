@@ -80,8 +80,7 @@ void bumps_shadow(const tracer *tr, int32_t id, const light *l, bool shared, wor
     if (!shared)
         own_turned_away(g, &y);
     if (tr->bump_shadow.kind == BUMP_SHADOW_EXACT) {
-        if (exact->ops->occlude_own)
-            exact->ops->occlude_own(exact, g->n, &g->to_light, tr->shifted ? g->shade_part : g->part, g->lit);
+        exact->ops->occlude_own(exact, g->n, &g->to_light, tr->shifted ? g->shade_part : g->part, g->lit);
         return;
     }
     if (tr->bump_shadow.kind == BUMP_SHADOW_MARCH)

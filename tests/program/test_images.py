@@ -309,7 +309,8 @@ def share_close(a: dict[str, np.ndarray], b: dict[str, np.ndarray], tolerance: f
 @pytest.mark.parametrize("options",
                          [["--shadow", "none"], ["--shadow", "2"], ["--shadow", "march:4"], ["--shadow", "exact"],
                           ["--surface", "displaced"], ["--shade", "shifted", "--bump-shadow", "exact"],
-                          ["--shadow", "march:8", "--shade", "shifted", "--bump-shadow", "march:8"]], ids=lambda o: o[-1])
+                          ["--shadow", "march:8", "--shade", "shifted", "--bump-shadow", "march:8"]],
+                         ids=lambda o: o[-1])
 def test_mirror_is_the_mirrored_scene(tmp_path: Path, options: list[str]) -> None:
     """What stands behind the eye, seen in a mirror, is that scene mirrored: every method works on reflected rays,
     too."""
