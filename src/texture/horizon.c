@@ -169,6 +169,8 @@ static size_t entries(const table_grid *g) { return (size_t)(g->columns + 1) * (
 
 horizon *horizon_new(const bump *P, const table_grid *grid, bool ends, const horizon_curvature *c, int threads)
 {
+    threads = threads_of(threads);
+    (void)threads; /* without OpenMP */
     if (entries(grid) > INT32_MAX)
         return NULL;
     horizon *h = calloc(1, sizeof *h);
@@ -178,7 +180,7 @@ horizon *horizon_new(const bump *P, const table_grid *grid, bool ends, const hor
         return NULL;
     }
     *h = (horizon){*grid, rise};
-#pragma omp parallel for schedule(dynamic) num_threads(threads_of(threads))
+#pragma omp parallel for schedule(dynamic) num_threads(threads)
     for (int row = 0; row <= grid->rows; row++)
         for (int column = 0; column <= grid->columns; column += LANES)
             build_block(h, P, ends, c, row, column);
