@@ -55,7 +55,7 @@ def test_help_and_version(kage: Kage) -> None:
 
 def test_methods(kage: Kage) -> None:
     names = [line.split()[0] for line in kage.good("methods").splitlines()]
-    assert names == ["none", "0", "1", "2", "2+", "iter:K", "march:N", "exact"]
+    assert names == ["none", "0", "1", "2", "2+", "iter:K", "march:N", "exact", "auto[:E]"]
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="no /dev/full on this system")
