@@ -119,13 +119,19 @@ static void mesh_extent(const surface *base, int part, double u[2], double w[2])
 static void mesh_box(const surface *base, double lo[3], double hi[3])
 {
     const mesh *f = (const mesh *)base;
+    memcpy(lo, f->lo, sizeof f->lo);
+    memcpy(hi, f->hi, sizeof f->hi);
+}
+
+static void set_box(mesh *f)
+{
     for (int a = 0; a < 3; a++) {
-        lo[a] = HUGE_VAL;
-        hi[a] = -HUGE_VAL;
+        f->lo[a] = HUGE_VAL;
+        f->hi[a] = -HUGE_VAL;
         for (int k = 0; k < 3 * f->d.n; k++) {
             const double x = (double)f->d.at[k / 3][k % 3][a];
-            lo[a] = x < lo[a] ? x : lo[a];
-            hi[a] = x > hi[a] ? x : hi[a];
+            f->lo[a] = x < f->lo[a] ? x : f->lo[a];
+            f->hi[a] = x > f->hi[a] ? x : f->hi[a];
         }
     }
 }
@@ -176,9 +182,8 @@ static surface *finish(mesh *f, const progress *w)
 {
     f->base.ops = &methods;
     f->base.free = mesh_free;
-    double lo[3], hi[3];
-    mesh_box(&f->base, lo, hi);
-    f->space = bvh_space_about(lo, hi);
+    set_box(f);
+    f->space = bvh_space_about(f->lo, f->hi);
     if (f->space.radius > 0 && (f->tree = tree_of(f, w)))
         return &f->base;
     mesh_free(&f->base);

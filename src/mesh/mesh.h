@@ -18,11 +18,12 @@
 
 typedef struct mesh {
     surface base;
-    mesh_data d;       /* owned; mesh_new counts notes.folded and notes.spread */
-    bool textured;     /* the file has texture coordinates on every triangle */
-    double u[2], w[2]; /* the range of the texture coordinates; 0..1 where there are none */
-    bvh_space space;   /* the sphere about all vertices */
-    bvh *tree;         /* over the triangles, in `space` */
+    mesh_data d;         /* owned; mesh_new counts notes.folded and notes.spread */
+    bool textured;       /* the file has texture coordinates on every triangle */
+    double u[2], w[2];   /* the range of the texture coordinates; 0..1 where there are none */
+    double lo[3], hi[3]; /* the box of all vertices */
+    bvh_space space;     /* the sphere about all vertices */
+    bvh *tree;           /* over the triangles, in `space` */
 } mesh;
 
 /* Owns *d, also on failure. *d has been through mesh_clean. w: the progress of building the hierarchy; may be NULL.
