@@ -82,18 +82,22 @@ static bool read_shadow(arguments *a, const char *name, const char *v)
                                    : usage_error("%s %s: no such method, expected %s", name, v, names);
 }
 
+/* `smooth`, or the other word that a key of render may have. */
+static bool read_smooth_or(arguments *a, const char *name, const char *key, const char *other, const char *v)
+{
+    return strcmp(v, "smooth") == 0 || strcmp(v, other) == 0
+               ? add_set(a, "render.%s=%s", key, v)
+               : usage_error("%s %s: expected smooth or %s", name, v, other);
+}
+
 static bool read_surface(arguments *a, const char *name, const char *v)
 {
-    return strcmp(v, "smooth") == 0 || strcmp(v, "displaced") == 0
-               ? add_set(a, "render.surface=%s", v)
-               : usage_error("%s %s: expected smooth or displaced", name, v);
+    return read_smooth_or(a, name, "surface", "displaced", v);
 }
 
 static bool read_shade(arguments *a, const char *name, const char *v)
 {
-    return strcmp(v, "smooth") == 0 || strcmp(v, "shifted") == 0
-               ? add_set(a, "render.shade=%s", v)
-               : usage_error("%s %s: expected smooth or shifted", name, v);
+    return read_smooth_or(a, name, "shade", "shifted", v);
 }
 
 static bool read_bump_shadow(arguments *a, const char *name, const char *v)

@@ -68,21 +68,31 @@ STAGE static void box_hit_own(const surface *base, int n, const rays *x, const r
 /* On the face across axis k, u and w go along the two next axes (cyclic) on the high side, swapped on the low side, so
  * that U x W points outward. */
 
+/* A point of a ray in the box's own coordinates: 0 and 1 at its sides. */
+typedef struct box_point {
+    real x, y, z;
+} box_point;
+
+static inline box_point box_point_of(const box *f, const rays *x, int i, real t)
+{
+    box_point p = {(x->r.x[i] + x->s.x[i] * t - f->lo[0]) / (f->hi[0] - f->lo[0]),
+                   (x->r.y[i] + x->s.y[i] * t - f->lo[1]) / (f->hi[1] - f->lo[1]),
+                   (x->r.z[i] + x->s.z[i] * t - f->lo[2]) / (f->hi[2] - f->lo[2])};
+    return p;
+}
+
 STAGE static void box_locate(const surface *base, int n, const rays *x, const real *restrict t, int32_t *restrict part,
                              real *restrict u, real *restrict w)
 {
     const box f = *(const box *)base;
-    const real dx = f.hi[0] - f.lo[0], dy = f.hi[1] - f.lo[1], dz = f.hi[2] - f.lo[2];
     for (int i = 0; i < n; i++) {
-        real px = (x->r.x[i] + x->s.x[i] * t[i] - f.lo[0]) / dx;
-        real py = (x->r.y[i] + x->s.y[i] * t[i] - f.lo[1]) / dy;
-        real pz = (x->r.z[i] + x->s.z[i] * t[i] - f.lo[2]) / dz;
+        box_point p = box_point_of(&f, x, i, t[i]);
         /* the face is the one across the axis along which the hit is farthest from the middle */
-        real ox = real_abs(px - R(0.5)), oy = real_abs(py - R(0.5)), oz = real_abs(pz - R(0.5));
+        real ox = real_abs(p.x - R(0.5)), oy = real_abs(p.y - R(0.5)), oz = real_abs(p.z - R(0.5));
         int on_x = (ox >= oy) & (ox >= oz), on_y = (oy > ox) & (oy >= oz);
-        real out = on_x ? px : on_y ? py : pz;
+        real out = on_x ? p.x : on_y ? p.y : p.z;
         int high = out > R(0.5);
-        real a = on_x ? py : on_y ? pz : px, b = on_x ? pz : on_y ? px : py;
+        real a = on_x ? p.y : on_y ? p.z : p.x, b = on_x ? p.z : on_y ? p.x : p.y;
         part[i] = (on_x ? 0 : on_y ? 2 : 4) + high;
         u[i] = high ? a : b;
         w[i] = high ? b : a;
@@ -93,14 +103,11 @@ STAGE static void box_foot(const surface *base, int n, const rays *x, const real
                            real *restrict u, real *restrict w)
 {
     const box f = *(const box *)base;
-    const real dx = f.hi[0] - f.lo[0], dy = f.hi[1] - f.lo[1], dz = f.hi[2] - f.lo[2];
     for (int i = 0; i < n; i++) {
-        real px = (x->r.x[i] + x->s.x[i] * t[i] - f.lo[0]) / dx;
-        real py = (x->r.y[i] + x->s.y[i] * t[i] - f.lo[1]) / dy;
-        real pz = (x->r.z[i] + x->s.z[i] * t[i] - f.lo[2]) / dz;
+        box_point p = box_point_of(&f, x, i, t[i]);
         /* sums with weights of 0 and 1, as choices would be branches */
         real on_x = (real)(part[i] < 2), on_z = (real)(part[i] > 3), on_y = 1 - on_x - on_z, high = (real)(part[i] & 1);
-        real a = on_x * py + on_y * pz + on_z * px, b = on_x * pz + on_y * px + on_z * py;
+        real a = on_x * p.y + on_y * p.z + on_z * p.x, b = on_x * p.z + on_y * p.x + on_z * p.y;
         u[i] = high * a + (1 - high) * b;
         w[i] = high * b + (1 - high) * a;
     }

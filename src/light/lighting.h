@@ -18,7 +18,7 @@ void lighting_aim_from(const light *l, const vec3s *from, hit_group *g);
 void lighting_add(const hit_group *g, real share, real *sum);
 void lighting_add_tint(const hit_group *g, real share, vec3s *sum);
 
-/* Scale g->lit by spot falloff and distance fading at p1 = r + s t_hit. */
+/* Scale g->lit by spot falloff and distance fading at the shaded place. */
 void lighting_fade(const light *l, hit_group *g);
 
 #endif

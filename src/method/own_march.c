@@ -36,26 +36,30 @@ STAGE static void find_open(const hit_group *restrict g, const bump *P, const ow
     }
 }
 
+/* Way i of the group as open way k, until `end`. */
+static inline void take_way(const hit_group *restrict g, const own_ways *restrict y, int i, real end,
+                            open_ways *restrict o, int k)
+{
+    o->lane[k] = i;
+    o->side[k] = y->side[i];
+    o->sn[k] = y->sn[i];
+    o->a[k] = y->a[i];
+    o->b[k] = y->b[i];
+    o->A[k] = y->A[i];
+    o->B[k] = y->B[i];
+    o->curvature[k] = y->curvature[i];
+    o->end[k] = end;
+    o->u[k] = g->u[i];
+    o->w[k] = g->w[i];
+    o->P[k] = g->bump.P[i];
+}
+
 static void gather_open(const hit_group *g, const own_ways *y, const int32_t *open, open_ways *o)
 {
     o->n = 0;
-    for (int i = 0; i < g->n; i++) {
-        if (!open[i])
-            continue;
-        const int k = o->n++;
-        o->lane[k] = i;
-        o->side[k] = y->side[i];
-        o->sn[k] = y->sn[i];
-        o->a[k] = y->a[i];
-        o->b[k] = y->b[i];
-        o->A[k] = y->A[i];
-        o->B[k] = y->B[i];
-        o->curvature[k] = y->curvature[i];
-        o->end[k] = y->end[i];
-        o->u[k] = g->u[i];
-        o->w[k] = g->w[i];
-        o->P[k] = g->bump.P[i];
-    }
+    for (int i = 0; i < g->n; i++)
+        if (open[i])
+            take_way(g, y, i, y->end[i], o, o->n++);
 }
 
 /* All lanes, where most are open. The settled ones get no way, so they stay where they are, and do not come below P. */
@@ -64,19 +68,8 @@ STAGE static void copy_all(const hit_group *restrict g, const own_ways *restrict
 {
     o->n = g->n;
     for (int i = 0; i < g->n; i++) {
-        real end = y->end[i];
-        o->lane[i] = i;
-        o->side[i] = y->side[i];
-        o->sn[i] = y->sn[i];
-        o->a[i] = y->a[i];
-        o->b[i] = y->b[i];
-        o->A[i] = y->A[i];
-        o->B[i] = y->B[i];
-        o->curvature[i] = y->curvature[i];
-        o->end[i] = open[i] ? end : 0;
-        o->u[i] = g->u[i];
-        o->w[i] = g->w[i];
-        o->P[i] = g->bump.P[i];
+        real end = y->end[i]; /* always read: a conditional read would be a branch */
+        take_way(g, y, i, open[i] ? end : 0, o, i);
     }
 }
 

@@ -77,8 +77,8 @@ static inline bool bump_is_bounded(const bump *p) { return p->Pmax - p->Pmin < R
 /* For the constructors: nothing is known of second partials. */
 static inline void bump_unknown_bends(bump *p) { p->Puu_max = p->Puw_max = p->Pww_max = (real)HUGE_VAL; }
 
-/* For `range`: the bounds over all places for each of n. */
-void bump_whole_range(const bump *p, int n, bump_ranges *out);
+/* The member `range` of maps and functions: by the pyramid, or before bump_prepare the bounds over all places. */
+void bump_range(const bump *p, int n, const real *u0, const real *u1, const real *w0, const real *w1, bump_ranges *out);
 
 /* For the constructors: slope |scale|, rounded up. */
 static inline real bump_slope(double slope, double scale)

@@ -72,15 +72,6 @@ static void function_bound(const bump *base, const double u[2], const double w[2
     scaled(p->scale, out->w);
 }
 
-static void function_range(const bump *base, int n, const real *u0, const real *u1, const real *w0, const real *w1,
-                           bump_ranges *out)
-{
-    if (base->pyramid)
-        pyramid_ranges(base->pyramid, n, u0, u1, w0, w1, out);
-    else
-        bump_whole_range(base, n, out);
-}
-
 static void function_free(bump *base)
 {
     pyramid_free(base->pyramid);
@@ -178,7 +169,7 @@ static const bump_ops function_methods = {.kind = "function",
                                           .eval = function_eval,
                                           .jets = function_jets,
                                           .bound = function_bound,
-                                          .range = function_range,
+                                          .range = bump_range,
                                           .prepare = function_prepare,
                                           .free = function_free};
 

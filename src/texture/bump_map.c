@@ -156,15 +156,6 @@ static void map_bound(const bump *base, const double u[2], const double w[2], ex
         widen(out->w, 0);
 }
 
-static void map_range(const bump *base, int n, const real *u0, const real *u1, const real *w0, const real *w1,
-                      bump_ranges *out)
-{
-    if (base->pyramid)
-        pyramid_ranges(base->pyramid, n, u0, u1, w0, w1, out);
-    else
-        bump_whole_range(base, n, out);
-}
-
 /* The partials of a bilinear P are between those along the edges of its cell. `none` is 0, or NaN by a sample that is
  * NaN or infinite. */
 static cell_range map_cell(const void *user, int row, int column)
@@ -201,7 +192,7 @@ static const bump_ops map_methods = {.kind = "map",
                                      .eval = map_eval,
                                      .jets = map_jets,
                                      .bound = map_bound,
-                                     .range = map_range,
+                                     .range = bump_range,
                                      .prepare = map_prepare,
                                      .free = map_free};
 
@@ -280,8 +271,12 @@ bump *bump_map_new(const image *samples, const map_layout *l)
 
 bool bump_prepare(bump *p) { return p->pyramid || p->ops->prepare(p); }
 
-void bump_whole_range(const bump *p, int n, bump_ranges *out)
+void bump_range(const bump *p, int n, const real *u0, const real *u1, const real *w0, const real *w1, bump_ranges *out)
 {
+    if (p->pyramid) {
+        pyramid_ranges(p->pyramid, n, u0, u1, w0, w1, out);
+        return;
+    }
     for (int i = 0; i < n; i++) {
         out->lo[i] = p->Pmin;
         out->hi[i] = p->Pmax;
