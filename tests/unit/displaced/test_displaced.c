@@ -2,18 +2,10 @@
 #include "support/check.h"
 #include "mesh/mesh.h"
 #include "support/displace.h"
+#include "support/function_bump.h"
 #include "wave/lane.h"
 
 #include <stdlib.h>
-
-static bump *function(const char *text)
-{
-    const double all[2] = {-HUGE_VAL, HUGE_VAL};
-    expr_error e;
-    bump *P = bump_function_new(expr_parse(text, &e), 1, all, all);
-    assert_non_null(P);
-    return P;
-}
 
 static surface *ground(void) { return plane_new((vec3){0, 0, 0}, (vec3){0, 0, 1}, (vec3){1, 0, 0}, false); }
 

@@ -11,22 +11,12 @@
 
 #include "wave/lane.h"
 #include "support/check.h"
+#include "support/function_bump.h"
 #include "support/random_in.h"
 #include "method/bracket.h"
 #include "method/method.h"
 #include "method/shift.h"
 #include "geometry/surface.h"
-
-static bump *function(const char *text)
-{
-    const double all[2] = {-HUGE_VAL, HUGE_VAL};
-    expr_error e;
-    expr *x = expr_parse(text, &e);
-    assert_non_null(x);
-    bump *p = bump_function_new(x, 1, all, all);
-    assert_non_null(p);
-    return p;
-}
 
 /* A wave of rays that come down (side 1), or up from behind (-1), to a surface whose top is at y = 0, and all that
  * precedes the shift. */

@@ -7,17 +7,9 @@
 #include "method/own_shadow.h"
 #include "method/shift.h"
 #include "support/check.h"
+#include "support/function_bump.h"
 #include "support/random_in.h"
 #include "wave/lane.h"
-
-static bump *function(const char *text)
-{
-    const double all[2] = {-HUGE_VAL, HUGE_VAL};
-    expr_error e;
-    bump *p = bump_function_new(expr_parse(text, &e), 1, all, all);
-    assert_non_null(p);
-    return p;
-}
 
 static const double endless[2] = {-HUGE_VAL, HUGE_VAL};
 

@@ -12,21 +12,10 @@
 
 #include "wave/lane.h"
 #include "support/check.h"
+#include "support/function_bump.h"
 #include "support/random_in.h"
 #include "method/shift.h"
 #include "geometry/surface.h"
-
-/* Distances are a few units, so a hit is known to a few of their last digits. */
-static bump *function(const char *text)
-{
-    const double all[2] = {-HUGE_VAL, HUGE_VAL};
-    expr_error e;
-    expr *x = expr_parse(text, &e);
-    assert_non_null(x);
-    bump *p = bump_function_new(x, 1, all, all);
-    assert_non_null(p);
-    return p;
-}
 
 /* A wave of rays that come down, or up from behind, onto a skewed plane near (u,w) = 0..1; all that precedes the shift.
  */
