@@ -76,6 +76,20 @@ static bool in_bands(const kage_scene *s, const arguments *a)
     return a->resume || (a->outputs == 1 && pixels_of(s, a) > LARGE);
 }
 
+/* The name of an unfinished picture is no input either. */
+static bool part_spares_inputs(const kage_scene *s, const char *output)
+{
+    const size_t room = strlen(output) + sizeof ".part";
+    char *part = malloc(room);
+    if (!part)
+        return usage_error("out of memory");
+    snprintf(part, room, "%s.part", output);
+    const char *const name[] = {part};
+    const bool good = outputs_spare_inputs(s, name, 1);
+    free(part);
+    return good;
+}
+
 /* Options that depend on the scene or on each other. */
 static bool check_options(const kage_scene *s, const arguments *a)
 {
@@ -92,7 +106,7 @@ static bool check_options(const kage_scene *s, const arguments *a)
     if (pixels_of(s, a) > most && !in_bands(s, a))
         return usage_error("-o %s: a second output of %ld pixels, expected one, or at most %ld pixels", a->output[1],
                            pixels_of(s, a), most);
-    return check_layers(a->layers, s);
+    return check_layers(a->layers, s) && (!in_bands(s, a) || part_spares_inputs(s, a->output[0]));
 }
 
 /* Errors of outputs come before the work. Special files are left alone. */

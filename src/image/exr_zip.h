@@ -5,7 +5,7 @@
 #include <openexr.h>
 
 /* The level for OpenEXR's own compression and ours: three times as fast as zlib's level 4, for half a per cent of size
- * (docs/design.md has the others). */
+ * (docs/design.md has the other levels). */
 enum { EXR_ZIP_LEVEL = 1 };
 
 /* Give a pipeline that has its routines this compression, and take it back before the pipeline is destroyed. */
