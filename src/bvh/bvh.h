@@ -37,9 +37,9 @@ bool bvh_enter(const bvh_space *p, double reach, vec3 r, vec3 s, double *from, d
 /* Called with the index of each box. */
 typedef void bvh_visit(void *user, int32_t box);
 
-/* Build the hierarchy of n boxes, which are copied. Shows "building" in w, which may be NULL and cannot stop it. The
- * caller frees it with bvh_free. NULL: out of memory. */
-bvh *bvh_new(int n, const bvh_box *box, const progress *w);
+/* Build the hierarchy of n boxes, which are copied, with several threads; 0: one for each processor. Shows "building"
+ * in w, which may be NULL and cannot stop it. The caller frees it with bvh_free. NULL: out of memory. */
+bvh *bvh_new(int n, const bvh_box *box, int threads, const progress *w);
 void bvh_free(bvh *b);
 
 /* Visit the boxes that r + s t, 0 <= t <= end, passes. Reentrant, as are bvh_toward and bvh_around. */

@@ -8,8 +8,12 @@
 #include <embree3/rtcore.h>
 #endif
 
+#include <pthread.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "base/threads.h"
 
 struct bvh {
     RTCDevice device;
@@ -61,21 +65,39 @@ static bool near_one(struct RTCPointQueryFunctionArguments *a)
     return false; /* the radius stays */
 }
 
+/* ---- making one ---- */
+
+typedef struct report {
+    const progress *to;
+    pthread_t caller;
+} report;
+
+/* Embree's threads call it, too; progress is shown in the caller's. */
 static bool report_progress(void *user, double share)
 {
-    progress_show(user, "building", share);
+    const report *r = user;
+    if (pthread_equal(r->caller, pthread_self()))
+        progress_show(r->to, "building", share);
     return true;
 }
 
-bvh *bvh_new(int n, const bvh_box *box, const progress *w)
+/* Threads cost more than they save where there are few boxes. */
+static RTCDevice device_with(int threads, int n)
 {
-    progress to = w ? *w : (progress){0};
+    enum { MANY = 1 << 14 };
+    char how[32];
+    snprintf(how, sizeof how, "threads=%d", n < MANY ? 1 : threads_of(threads));
+    return rtcNewDevice(how);
+}
+
+bvh *bvh_new(int n, const bvh_box *box, int threads, const progress *w)
+{
+    report to = {w, pthread_self()};
     bvh *b = calloc(1, sizeof *b);
     if (!b)
         return NULL;
     b->box = malloc(sizeof *box * (size_t)(n > 0 ? n : 1));
-    /* without threads of its own: kage has enough, and building takes little time */
-    b->device = b->box ? rtcNewDevice("threads=1") : NULL;
+    b->device = b->box ? device_with(threads, n) : NULL;
     b->scene = b->device ? rtcNewScene(b->device) : NULL;
     RTCGeometry g = b->scene ? rtcNewGeometry(b->device, RTC_GEOMETRY_TYPE_USER) : NULL;
     if (!g) {
@@ -115,6 +137,8 @@ void bvh_free(bvh *b)
     free(b->box);
     free(b);
 }
+
+/* ---- rays ---- */
 
 static struct RTCRay ray_of(const float r[3], const float s[3], float end)
 {

@@ -23,7 +23,7 @@ static int set_up(void **state)
             box[i].lo[k] = coordinate();
             box[i].hi[k] = box[i].lo[k] + (float)random_in(0, 0.5);
         }
-    tree = bvh_new(BOXES, box, NULL);
+    tree = bvh_new(BOXES, box, 1, NULL);
     return tree ? 0 : -1;
 }
 
@@ -170,7 +170,7 @@ static void test_no_boxes(void **state)
 {
     (void)state;
     int seen = 0;
-    bvh *none = bvh_new(0, NULL, NULL);
+    bvh *none = bvh_new(0, NULL, 1, NULL);
     assert_non_null(none);
     bvh_along(none, (float[]){0, 0, 0}, (float[]){1, 0, 0}, 1, count_visit, &seen);
     bvh_around(none, (float[]){0, 0, 0}, 1, count_visit, &seen);
