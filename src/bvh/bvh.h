@@ -50,6 +50,21 @@ void bvh_along(const bvh *b, const float r[3], const float s[3], float end, bvh_
 typedef float bvh_shorten(void *user, int32_t box, float end);
 void bvh_toward(const bvh *b, const float r[3], const float s[3], float end, bvh_shorten *visit, void *user);
 
+/* Rays at + way x, 0 <= x <= end. end < 0: there is no such ray. */
+enum { BVH_PACKET = 16 };
+typedef struct bvh_packet {
+    float at[3][BVH_PACKET], way[3][BVH_PACKET], end[BVH_PACKET];
+} bvh_packet;
+
+/* Called with a box and the rays that reach it, bit i for ray i; perhaps not with all of them at once, and perhaps with
+ * some that miss it. It may lower end[i] of these rays; a negative number stops the ray. Boxes beyond the new end may
+ * still be visited. */
+typedef void bvh_meet(void *user, int32_t box, uint32_t which, float end[BVH_PACKET]);
+
+/* As bvh_toward, for rays that go nearly the same way: they share the hierarchy's memory and the calls. x->end becomes
+ * where each ray ended. */
+void bvh_packet_toward(const bvh *b, bvh_packet *x, bvh_meet *visit, void *user);
+
 /* Visit the boxes that are within `radius` of p. */
 void bvh_around(const bvh *b, const float p[3], float radius, bvh_visit *visit, void *user);
 
