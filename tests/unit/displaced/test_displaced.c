@@ -109,7 +109,7 @@ static surface *square(void)
                 if (a < 2)
                     m.skin[k].uv[i][a] = corner[index[k][i]][2 - 2 * a];
             }
-    return mesh_new(&m, NULL);
+    return mesh_new(&m, 1, NULL);
 }
 
 /* Two bumps over one mesh: neither knows of the other. */

@@ -63,7 +63,7 @@ static mesh *mesh_from(mesh_data d, mesh_normals normals, double crease)
 {
     char why[MESH_WHY];
     assert_true(mesh_clean(&d, normals, crease, 1e6, why));
-    surface *f = mesh_new(&d, NULL);
+    surface *f = mesh_new(&d, 1, NULL);
     assert_non_null(f);
     return (mesh *)f;
 }
@@ -322,7 +322,7 @@ static void images(void **state)
                                   {{-1.2, 0.3, 0}, {-0.2, 0.9, 0.4}, {0.1, 0, 1.1}, {0.3, -0.2, 0.5}}};
     mesh *f = mesh_of(ball, 24, 12);
     for (size_t m = 0; m < 2; m++) {
-        surface *g = surface_transformed(&f->base, &maps[m]), *k = mesh_moved(&f->base, &maps[m]);
+        surface *g = surface_transformed(&f->base, &maps[m]), *k = mesh_moved(&f->base, &maps[m], 1);
         assert_true(g && k);
         static rays x;
         static hits a, b;
