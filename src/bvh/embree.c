@@ -8,8 +8,13 @@
 #include <embree3/rtcore.h>
 #endif
 
+#include <math.h>
+#include <pthread.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "base/threads.h"
 
 struct bvh {
     RTCDevice device;
@@ -26,6 +31,8 @@ typedef struct walk {
 #endif
     bvh_visit *visit;
     bvh_shorten *shorten;
+    bvh_meet *meet; /* for packets */
+    float *end;     /* of a packet's rays */
     void *user;
 } walk;
 
@@ -35,6 +42,22 @@ static void bounds(const struct RTCBoundsFunctionArguments *a)
     struct RTCBounds *o = a->bounds_o;
     o->lower_x = b->lo[0], o->lower_y = b->lo[1], o->lower_z = b->lo[2];
     o->upper_x = b->hi[0], o->upper_y = b->hi[1], o->upper_z = b->hi[2];
+}
+
+/* Some rays of a packet, N in Embree's arrays (rtcore_ray.h has functions for these, in C++ only), reach a box. */
+static void met_packet(const walk *k, unsigned box, const int *valid, unsigned N, void *rays)
+{
+    float *tfar = (float *)rays + 8 * N;
+    const unsigned *id = (const unsigned *)rays + 10 * N;
+    uint32_t which = 0;
+    for (unsigned i = 0; i < N; i++)
+        which |= valid[i] ? 1u << id[i] : 0;
+    if (!which)
+        return;
+    k->meet(k->user, (int32_t)box, which, k->end);
+    for (unsigned i = 0; i < N; i++)
+        if (valid[i])
+            tfar[i] = k->end[id[i]] < 0 ? -HUGE_VALF : k->end[id[i]];
 }
 
 /* Visits the box without reporting a hit, so that Embree continues with all others. */
@@ -50,7 +73,9 @@ static void met_toward(const struct RTCIntersectFunctionNArguments *a)
 {
     const walk *k = (const walk *)(const void *)a->context;
     struct RTCRay *x = &((struct RTCRayHit *)(void *)a->rayhit)->ray;
-    if (a->valid[0])
+    if (k->meet)
+        met_packet(k, a->primID, a->valid, a->N, a->rayhit);
+    else if (a->valid[0])
         x->tfar = k->shorten(k->user, (int32_t)a->primID, x->tfar);
 }
 
@@ -61,21 +86,39 @@ static bool near_one(struct RTCPointQueryFunctionArguments *a)
     return false; /* the radius stays */
 }
 
+/* ---- making one ---- */
+
+typedef struct report {
+    const progress *to;
+    pthread_t caller;
+} report;
+
+/* Embree's threads call it, too; progress is shown in the caller's. */
 static bool report_progress(void *user, double share)
 {
-    progress_show(user, "building", share);
+    const report *r = user;
+    if (pthread_equal(r->caller, pthread_self()))
+        progress_show(r->to, "building", share);
     return true;
 }
 
-bvh *bvh_new(int n, const bvh_box *box, const progress *w)
+/* Threads cost more than they save where there are few boxes. */
+static RTCDevice device_with(int threads, int n)
 {
-    progress to = w ? *w : (progress){0};
+    enum { MANY = 1 << 14 };
+    char how[32];
+    snprintf(how, sizeof how, "threads=%d", n < MANY ? 1 : threads_of(threads));
+    return rtcNewDevice(how);
+}
+
+bvh *bvh_new(int n, const bvh_box *box, int threads, const progress *w)
+{
+    report to = {w, pthread_self()};
     bvh *b = calloc(1, sizeof *b);
     if (!b)
         return NULL;
     b->box = malloc(sizeof *box * (size_t)(n > 0 ? n : 1));
-    /* without threads of its own: kage has enough, and building takes little time */
-    b->device = b->box ? rtcNewDevice("threads=1") : NULL;
+    b->device = b->box ? device_with(threads, n) : NULL;
     b->scene = b->device ? rtcNewScene(b->device) : NULL;
     RTCGeometry g = b->scene ? rtcNewGeometry(b->device, RTC_GEOMETRY_TYPE_USER) : NULL;
     if (!g) {
@@ -115,6 +158,8 @@ void bvh_free(bvh *b)
     free(b->box);
     free(b);
 }
+
+/* ---- rays ---- */
 
 static struct RTCRay ray_of(const float r[3], const float s[3], float end)
 {
@@ -157,6 +202,48 @@ void bvh_toward(const bvh *b, const float r[3], const float s[3], float end, bvh
 #else
     rtcInitIntersectContext(&k.context);
     rtcIntersect1(b->scene, &k.context, &x);
+#endif
+}
+
+/* ---- packets ---- */
+
+static void set_rays(const bvh_packet *x, int valid[BVH_PACKET], struct RTCRay16 *y)
+{
+    memset(y, 0, sizeof *y);
+    memcpy(y->org_x, x->at[0], sizeof y->org_x);
+    memcpy(y->org_y, x->at[1], sizeof y->org_y);
+    memcpy(y->org_z, x->at[2], sizeof y->org_z);
+    memcpy(y->dir_x, x->way[0], sizeof y->dir_x);
+    memcpy(y->dir_y, x->way[1], sizeof y->dir_y);
+    memcpy(y->dir_z, x->way[2], sizeof y->dir_z);
+    memcpy(y->tfar, x->end, sizeof y->tfar);
+    for (unsigned i = 0; i < BVH_PACKET; i++) {
+        y->mask[i] = ~0u;
+        y->id[i] = i;
+        valid[i] = x->end[i] >= 0 ? -1 : 0;
+    }
+}
+
+/* rtcOccluded16 would name three times as many rays that miss the box. */
+void bvh_packet_toward(const bvh *b, bvh_packet *x, bvh_meet *visit, void *user)
+{
+    walk k = {.meet = visit, .end = x->end, .user = user};
+    RTC_ALIGN(64) int valid[BVH_PACKET];
+    RTC_ALIGN(64) struct RTCRayHit16 y;
+    set_rays(x, valid, &y.ray);
+    memset(y.hit.geomID, 0xff, sizeof y.hit.geomID); /* no hit */
+    memset(y.hit.instID, 0xff, sizeof y.hit.instID);
+#if KAGE_EMBREE == 4
+    struct RTCIntersectArguments how;
+    rtcInitIntersectArguments(&how);
+    rtcInitRayQueryContext(&k.context);
+    how.context = &k.context;
+    how.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+    rtcIntersect16(valid, b->scene, &y, &how);
+#else
+    rtcInitIntersectContext(&k.context);
+    k.context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    rtcIntersect16(valid, b->scene, &k.context, &y);
 #endif
 }
 

@@ -19,23 +19,42 @@ typedef struct tile {
     int x0, y0, width, height;
 } tile;
 
+/* -1..1 over the picture, of n pixels in a row or column from `first` on, each at `offset` of it. */
+STAGE static void screen(int n, int first, double offset, int size, real *restrict to)
+{
+    for (int k = 0; k < n; k++)
+        to[k] = camera_screen(first + k + offset, size);
+}
+
+static inline void spread_rows(int width, int height, const real *restrict column, const real *restrict row,
+                               real *restrict x, real *restrict y)
+{
+    for (int k = 0; k < height; k++)
+        for (int c = 0; c < width; c++) {
+            x[k * width + c] = column[c];
+            y[k * width + c] = -row[k];
+        }
+}
+
+/* Most tiles have the constant width, whose rows are a few vectors. */
+STAGE static void spread(int width, int height, const real *column, const real *row, real *x, real *y)
+{
+    if (width == TILE)
+        spread_rows(TILE, height, column, row, x, y);
+    else
+        spread_rows(width, height, column, row, x, y);
+}
+
 static void tile_rays(const scene *s, const tile *b, int aa, int i, int j, workspace *v)
 {
-    real x[LANES], y[LANES], column[TILE];
-    for (int c = 0; c < b->width; c++)
-        column[c] = camera_screen(b->x0 + c + (i + 0.5) / aa, s->width);
-    for (int k = 0; k < b->height; k++) {
-        real row = -camera_screen(b->y0 + k + (j + 0.5) / aa, s->height);
-        for (int c = 0; c < b->width; c++) {
-            x[k * b->width + c] = column[c];
-            y[k * b->width + c] = row;
-        }
-    }
+    real x[LANES], y[LANES], column[TILE], row[TILE_ROWS];
+    screen(b->width, b->x0, (i + 0.5) / aa, s->width, column);
+    screen(b->height, b->y0, (j + 0.5) / aa, s->height, row);
+    spread(b->width, b->height, column, row, x, y);
     camera_rays(&s->camera, b->width * b->height, x, y, &v->x);
 }
 
-/* Store the values of a tile's lanes in a plane, or add them. Most tiles have the constant width, whose rows are a few
- * vectors. */
+/* Store the values of a tile's lanes in a plane, or add them. */
 static inline void lay_rows(float *restrict to, size_t stride, int width, int height, const real *restrict v,
                             float weight, bool add)
 {

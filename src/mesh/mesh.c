@@ -136,7 +136,7 @@ static void set_box(mesh *f)
     }
 }
 
-static bvh *tree_of(const mesh *f, const progress *w)
+static bvh *tree_of(const mesh *f, int threads, const progress *w)
 {
     bvh_box *box = malloc(sizeof *box * (size_t)f->d.n);
     for (int k = 0; box && k < f->d.n; k++) {
@@ -148,7 +148,7 @@ static bvh *tree_of(const mesh *f, const progress *w)
         }
         box[k] = bvh_box_in(&f->space, lo, hi);
     }
-    bvh *b = box ? bvh_new(f->d.n, box, w) : NULL;
+    bvh *b = box ? bvh_new(f->d.n, box, threads, w) : NULL;
     free(box);
     return b;
 }
@@ -178,19 +178,19 @@ static const surface_ops methods = {
 bool mesh_is(const surface *f) { return f->ops == &methods; }
 
 /* Set all else from the triangles and their texture coordinates. */
-static surface *finish(mesh *f, const progress *w)
+static surface *finish(mesh *f, int threads, const progress *w)
 {
     f->base.ops = &methods;
     f->base.free = mesh_free;
     set_box(f);
     f->space = bvh_space_about(f->lo, f->hi);
-    if (f->space.radius > 0 && (f->tree = tree_of(f, w)))
+    if (f->space.radius > 0 && (f->tree = tree_of(f, threads, w)))
         return &f->base;
     mesh_free(&f->base);
     return NULL;
 }
 
-surface *mesh_new(mesh_data *d, const progress *w)
+surface *mesh_new(mesh_data *d, int threads, const progress *w)
 {
     mesh *f = calloc(1, sizeof *f);
     if (!f) {
@@ -204,12 +204,12 @@ surface *mesh_new(mesh_data *d, const progress *w)
         mesh_lay_texture(f);
     else
         mesh_lay_bare(f);
-    return finish(f, w);
+    return finish(f, threads, w);
 }
 
 /* A map that mirrors swaps inside and outside. So the corners get the opposite order, and u is reflected about the
  * middle of its range. */
-surface *mesh_moved(const surface *base, const affine *m)
+surface *mesh_moved(const surface *base, const affine *m, int threads)
 {
     const mesh *from = (const mesh *)base;
     const bool mirrors = affine_volume(m) < 0;
@@ -234,7 +234,7 @@ surface *mesh_moved(const surface *base, const affine *m)
             f->d.skin[k].uv[to][1] = from->d.skin[k].uv[i][1];
         }
     if (f->d.at && f->d.skin)
-        return finish(f, NULL);
+        return finish(f, threads, NULL);
     mesh_free(&f->base);
     return NULL;
 }

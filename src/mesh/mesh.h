@@ -26,13 +26,14 @@ typedef struct mesh {
     bvh *tree;           /* over the triangles, in `space` */
 } mesh;
 
-/* Owns *d, also on failure. *d has been through mesh_clean. w: the progress of building the hierarchy; may be NULL.
+/* Owns *d, also on failure. *d has been through mesh_clean. threads: those that build the hierarchy, 0: one for each
+ * processor; w: the progress of that, may be NULL.
  * NULL: out of memory, or all vertices are in one place. */
-surface *mesh_new(mesh_data *d, const progress *w);
+surface *mesh_new(mesh_data *d, int threads, const progress *w);
 
 /* The image of a mesh by an affine map, with arrays of its own; unlike one by surface_transformed it can be displaced.
  * Where the map mirrors, u runs the other way in its range. NULL: out of memory. */
-surface *mesh_moved(const surface *base, const affine *m);
+surface *mesh_moved(const surface *base, const affine *m, int threads);
 
 /* Whether a surface is one. */
 bool mesh_is(const surface *f);

@@ -1,6 +1,7 @@
 /* The formulas of bumpshadow.h in loops over the lanes of a group. */
 #include "method/shift.h"
 
+#include "wave/fill.h"
 #include "wave/lane.h"
 
 STAGE static void normals_smooth(hit_group *restrict g)
@@ -36,7 +37,7 @@ void shift_normals(hit_group *g, const bump *P)
 
 static inline bs_view view(const hit_group *g, int i)
 {
-    return bs_view_of(lane_get(&g->x.s, i), lane_get(&g->n_smooth, i), lane_get(&g->q.Qu, i), lane_get(&g->q.Qw, i));
+    return bs_view_of(lane_get(&g->x->s, i), lane_get(&g->n_smooth, i), lane_get(&g->q.Qu, i), lane_get(&g->q.Qw, i));
 }
 
 static inline real curvature(const hit_group *g, int i, bs_view v)
@@ -218,10 +219,8 @@ long shift_group(hit_group *g, const bump *P, method m, bool guard)
 {
     long evaluations = 0;
     if (!P || m.kind == METHOD_NONE) {
-        for (int i = 0; i < g->n; i++) {
-            g->tau[i] = 0;
-            g->order[i] = -1;
-        }
+        fill(g->n, 0, g->tau);
+        fill_ids(g->n, -1, g->order);
         return 0;
     }
     if (m.kind == METHOD_ORDER)
