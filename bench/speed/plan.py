@@ -78,6 +78,8 @@ class Bound:
 
 
 GIB = 2.0**30
+EXR_SIZE = (1920, 1080)
+EXR_BYTES = 34.9  # a pixel of figure 5's scene at that size, all layers, by zlib at level 4: commit ba3bdad
 
 
 def trace_bounds() -> list[Bound]:
@@ -92,7 +94,7 @@ def trace_bounds() -> list[Bound]:
 def map_bounds(level: Level) -> list[Bound]:
     small, large = level.maps[0], level.maps[-1]
     ready = [Bound("maps", f"{size}²: ready, over decoding the PNG", f"map {size}: ready_s", f"decode {size}: s", 1.3,
-                   "times") for size in level.maps if size >= 1024]
+                   "times") for size in level.maps[2:] or [large]]
     memory = [Bound("maps", f"{large}²: memory by {method}", f"map {large}{ending}: sample_bytes", None, 6,
                     "bytes a sample") for method, ending in (("0", ""), ("march:4", ", march:4"))]
     exr = f"map {level.exr_map}"
@@ -107,10 +109,13 @@ def bounds(level: Level) -> list[Bound]:
     """In the order of issue 12."""
     few, many = level.objects[0], level.objects[-1]
     triangles = 2 * level.quads[0] * level.quads[1]
+    size = [Bound("exr", "its file", "exr, 2 threads: pixel_bytes", None, 1.01 * EXR_BYTES, "bytes a pixel")] \
+        if level.size == EXR_SIZE else []
     more = [Bound("meshes", "ten million triangles: memory", "mesh, more: memory", None, 8 * GIB, "bytes")] \
         if level.more_quads else []
     return [
         Bound("exr", "all layers to EXR, two threads", "exr, 2 threads: output_s", None, 0.35, "s"),
+        *size,
         *map_bounds(level),
         Bound("meshes", f"{triangles} triangles: read and built, two threads", "mesh: ready_s", None, 1.5, "s"),
         Bound("meshes", f"{triangles} triangles: traced, over Embree's loop", "mesh: ns", "embree mesh: ns", 2.0,
