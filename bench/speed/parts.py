@@ -65,12 +65,15 @@ def fused_once(program: Path) -> Figures:
     return programs.parse_fused(programs.run([program, "1"]))
 
 
+def fused(about: About) -> list[Job]:
+    program = programs.build_limit("fused_kernel", about.out / "limits")
+    return [Job("fused", "trace", functools.partial(fused_once, program), about.level.rounds)]
+
+
 def trace(about: About) -> list[Job]:
     level = about.level
-    program = programs.build_limit("fused_kernel", about.out / "limits")
-    jobs = [Job("fused", "trace", functools.partial(fused_once, program), level.rounds)]
-    jobs += [trace_job(about, f"kage {method}", CUBE, level.size, level.rounds, "--shadow", method)
-             for method in METHODS]
+    jobs = [trace_job(about, f"kage {method}", CUBE, level.size, level.rounds, "--shadow", method)
+            for method in METHODS]
     return [*jobs, trace_job(about, "kage 0, 2 threads", CUBE, level.size, level.rounds, "--shadow", "0", threads=2)]
 
 
@@ -86,6 +89,8 @@ def povray_once(scene: Path, size: Size, picture: Path) -> Figures:
 
 
 def povray(about: About) -> list[Job]:
+    if not programs.has_povray():
+        raise MeasureError("no povray")
     size, folder = about.level.povray_size, TOP / "bench"
     smooth = about.inputs / "smooth.pov"
     about.inputs.mkdir(parents=True, exist_ok=True)
@@ -124,19 +129,22 @@ def embree_once(program: Path, *arguments: str) -> Figures:
     return {"ns": matched(r"([0-9.]+) ns/pixel", text), "build_s": matched(r"build ([0-9.]+) ms", text) / 1e3}
 
 
-def peers(about: About) -> list[Job]:
-    level = about.level
-    jobs = povray(about) if programs.has_povray() else []
+def embree(about: About) -> list[Job]:
+    if not about.level.yardsticks:
+        return []
+    program = programs.build_limit("embree_loop", about.out / "limits")
+    return [Job(f"Embree, {name}", "peers", functools.partial(embree_once, program, cells), about.level.slow_rounds)
+            for name, cells in (("plane", "1"), ("displaced mesh", "1024"))]
+
+
+def whole(about: About) -> list[Job]:
+    """kage beside the peers, with reading the scene and writing the picture."""
+    level, jobs = about.level, []
     for method in ("none", "0", "displaced"):
         command = words(about, CUBE, level.povray_size, *programs.method_options(method), threads=1)
         jobs.append(Job(f"kage {method}, whole", "peers",
                         functools.partial(whole_once, command, level.povray_size), level.slow_rounds,
                         programs.shown(command)))
-    jobs += tachyon(about)
-    if level.yardsticks:
-        program = programs.build_limit("embree_loop", about.out / "limits")
-        jobs += [Job(f"Embree, {name}", "peers", functools.partial(embree_once, program, cells), level.slow_rounds)
-                 for name, cells in (("plane", "1"), ("displaced mesh", "1024"))]
     return jobs
 
 
@@ -197,16 +205,23 @@ def map_job(about: About, name: str, scene: Path, method: str) -> Job:
     return Job(name, "maps", functools.partial(map_once, command), about.level.slow_rounds, programs.shown(command))
 
 
-def maps(about: About) -> list[Job]:
-    level = about.level
+def decoders(about: About) -> list[Job]:
+    """libpng alone, and Pillow."""
+    level, jobs = about.level, []
     program = programs.build_limit("png_decode", about.out / "limits")
-    jobs = []
     for size in level.maps:
-        scene = inputs.map_scene(about.inputs, size, "png")
+        inputs.map_scene(about.inputs, size, "png")
         picture = about.inputs / f"map{size}.png"
         jobs += [Job(f"decode {size}", "maps", functools.partial(decode_once, program, picture), level.slow_rounds),
-                 Job(f"Pillow {size}", "maps", functools.partial(pillow_once, picture), level.slow_rounds),
-                 map_job(about, f"map {size}", scene, "0")]
+                 Job(f"Pillow {size}", "maps", functools.partial(pillow_once, picture), level.slow_rounds)]
+    return jobs
+
+
+def maps(about: About) -> list[Job]:
+    level, jobs = about.level, []
+    for size in level.maps:
+        scene = inputs.map_scene(about.inputs, size, "png")
+        jobs.append(map_job(about, f"map {size}", scene, "0"))
         if size in (level.maps[0], level.maps[-1]):
             jobs += [map_job(about, f"map {size}, {method}", scene, method) for method in MORE_METHODS]
     exr_scene = inputs.map_scene(about.inputs, level.exr_map, "exr")
@@ -228,15 +243,20 @@ def mesh_once(load: Sequence[Word], traced: Sequence[Word], size: Size) -> Figur
     return found | {"ns": milliseconds(launch(traced).text)["render"] * 1e6 / pixels(size)}
 
 
+def embree_mesh(about: About) -> list[Job]:
+    level = about.level
+    program = programs.build_limit("embree_mesh", about.out / "limits")
+    found = inputs.mesh(about.inputs, level.quads)
+    work = functools.partial(embree_once, program, str(found), *map(str, level.size))
+    return [Job("embree mesh", "meshes", work, level.slow_rounds)]
+
+
 def meshes(about: About) -> list[Job]:
     level = about.level
-    scene, found = inputs.mesh_scene(about.inputs, level.quads), inputs.mesh(about.inputs, level.quads)
+    scene = inputs.mesh_scene(about.inputs, level.quads)
     load, traced = words(about, scene, (16, 16), threads=2), words(about, scene, level.size, threads=1)
     jobs = [Job("mesh", "meshes", functools.partial(mesh_once, load, traced, level.size), level.slow_rounds,
                 programs.shown(traced))]
-    program = programs.build_limit("embree_mesh", about.out / "limits")
-    jobs.append(Job("embree mesh", "meshes", functools.partial(embree_once, program, str(found), *map(str, level.size)),
-                    level.slow_rounds))
     if level.more_quads:
         more = words(about, inputs.mesh_scene(about.inputs, level.more_quads), level.size, threads=2)
         jobs.append(Job("mesh, more", "meshes", functools.partial(load_once, more, level.size), level.once,
@@ -291,20 +311,22 @@ def start(about: About) -> list[Job]:
                 programs.shown(command)) for name, command in commands.items()]
 
 
-MAKERS: dict[str, Callable[[About], list[Job]]] = {
-    "trace": trace, "peers": peers, "exr": exr, "maps": maps, "meshes": meshes, "objects": objects, "large": large,
-    "start": start,
-}
+# kage's own and each peer's apart: where one can't be built or found, the others are still measured.
+MAKERS: tuple[tuple[str, Callable[[About], list[Job]]], ...] = (
+    ("trace", fused), ("trace", trace), ("peers", povray), ("peers", whole), ("peers", tachyon), ("peers", embree),
+    ("exr", exr), ("maps", decoders), ("maps", maps), ("meshes", embree_mesh), ("meshes", meshes), ("objects", objects),
+    ("large", large), ("start", start),
+)
 
 
 def jobs(about: About, wanted: Sequence[str]) -> tuple[list[Job], dict[str, str]]:
     """The jobs of the parts, and why parts can't be measured."""
     found: list[Job] = []
     missing: dict[str, str] = {}
-    for part, make in MAKERS.items():
+    for part, make in MAKERS:
         if part in wanted:
             try:
                 found += make(about)
             except (MeasureError, OSError, ImportError) as error:
-                missing[part] = str(error)
+                missing[f"{part}, {make.__name__}"] = str(error)
     return found, missing
