@@ -15,8 +15,10 @@ STAGE static void normals_smooth(hit_group *restrict g)
     }
 }
 
-STAGE static void normals_bump(hit_group *restrict g)
+/* Returns how many lanes are not regular. */
+STAGE static int normals_bump(hit_group *restrict g)
 {
+    int irregular = 0;
     for (int i = 0; i < g->n; i++) {
         bs_vec3 Qu = lane_get(&g->q.Qu, i), Qw = lane_get(&g->q.Qw, i), n = bs_normal(Qu, Qw);
         bs_vec3 np = bs_perturbed_normal(n, Qu, Qw, g->bump.Pu[i], g->bump.Pw[i]);
@@ -26,13 +28,15 @@ STAGE static void normals_bump(hit_group *restrict g)
         np.z = regular ? np.z : n.z;
         lane_set(&g->n_smooth, i, n);
         lane_set(&g->n_bump, i, lane_unit(np));
+        irregular += regular == 0;
     }
+    return irregular;
 }
 
 void shift_normals(hit_group *g, const bump *P)
 {
     if (P)
-        normals_bump(g);
+        g->regular = normals_bump(g) == 0;
     else
         normals_smooth(g);
 }
@@ -250,7 +254,8 @@ long shift_group(hit_group *g, const bump *P, method m, bool guard)
         by_orders[guard][m.n](g, P->Pmin, P->Pmax);
     else
         evaluations = (m.kind == METHOD_ITER ? iterate : march)(g, P, m);
-    drop_irregular(g);
+    if (!g->regular)
+        drop_irregular(g);
     return evaluations;
 }
 

@@ -29,6 +29,7 @@ typedef struct hit_group {
     bump_values bump;
     vec3s n_smooth; /* n = Qu x Qw, not normalised */
     vec3s n_bump;   /* n', unit */
+    bool regular;   /* bs_regular holds for all lanes; only with a bump */
 
     /* the method */
     real tau[LANES];      /* the shift */

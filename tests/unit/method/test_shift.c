@@ -44,7 +44,7 @@ static hit_group *wave(const bump *P, double side)
     memcpy(g.picked.t, h.t, sizeof g.picked.t);
     f->ops->locate(f, LANES, g.x, g.t, g.part, g.u, g.w);
     f->ops->eval(f, LANES, g.part, g.u, g.w, 2, &g.q);
-    P->ops->eval(P, LANES, g.u, g.w, 2, &g.bump);
+    P->ops->eval(P, LANES, g.u, g.w, 3, &g.bump);
     shift_normals(&g, P);
     surface_free(f);
     return &g;
@@ -247,7 +247,7 @@ static void pole(void **state)
     g.picked.t[0] = 3;
     f->ops->locate(f, 1, g.x, g.t, g.part, g.u, g.w);
     f->ops->eval(f, 1, g.part, g.u, g.w, 2, &g.q);
-    P->ops->eval(P, 1, g.u, g.w, 2, &g.bump);
+    P->ops->eval(P, 1, g.u, g.w, 3, &g.bump);
     shift_normals(&g, P);
     for (int k = 0; k < EVERY; k++) {
         shift_group(&g, P, every[k], true);
