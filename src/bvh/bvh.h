@@ -56,6 +56,11 @@ typedef struct bvh_packet {
     float at[3][BVH_PACKET], way[3][BVH_PACKET], end[BVH_PACKET];
 } bvh_packet;
 
+/* bvh_enter for the rays r + s t, from[i] <= t <= to[i], of a packet; x->end is -1 where a ray misses the sphere, or
+ * from > to. */
+void bvh_enter_packet(const bvh_space *p, double reach, const double r[3][BVH_PACKET], const double s[3][BVH_PACKET],
+                      double from[BVH_PACKET], double to[BVH_PACKET], bvh_packet *x);
+
 /* Called with a box and the rays that reach it, bit i for ray i; perhaps not with all of them at once, and perhaps with
  * some that miss it. It may lower end[i] of these rays; a negative number stops the ray. Boxes beyond the new end may
  * still be visited. */

@@ -136,19 +136,11 @@ static void set_box(mesh *f)
     }
 }
 
-static bvh *tree_of(const mesh *f, int threads, const progress *w)
+static bvh *tree_of(mesh *f, int threads, const progress *w)
 {
-    bvh_box *box = malloc(sizeof *box * (size_t)f->d.n);
-    for (int k = 0; box && k < f->d.n; k++) {
-        double lo[3], hi[3];
-        for (int a = 0; a < 3; a++) {
-            const double x = (double)f->d.at[k][0][a], y = (double)f->d.at[k][1][a], z = (double)f->d.at[k][2][a];
-            lo[a] = fmin(x, fmin(y, z));
-            hi[a] = fmax(x, fmax(y, z));
-        }
-        box[k] = bvh_box_in(&f->space, lo, hi);
-    }
-    bvh *b = box ? bvh_new(f->d.n, box, threads, w) : NULL;
+    bvh_box *box;
+    bvh *b = mesh_clusters_new(&f->d, &f->space, threads, &f->clusters, &box) ? bvh_new(f->clusters.n, box, threads, w)
+                                                                              : NULL;
     free(box);
     return b;
 }
@@ -157,6 +149,7 @@ static void mesh_free(surface *base)
 {
     mesh *f = (mesh *)base;
     bvh_free(f->tree);
+    mesh_clusters_free(&f->clusters);
     mesh_data_free(&f->d);
     free(f);
 }

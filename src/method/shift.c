@@ -1,6 +1,8 @@
 /* The formulas of bumpshadow.h in loops over the lanes of a group. */
 #include "method/shift.h"
 
+#include <string.h>
+
 #include "wave/fill.h"
 #include "wave/lane.h"
 
@@ -129,12 +131,6 @@ STAGE static void walk_place(const hit_group *restrict g, ray_walk *restrict wal
     }
 }
 
-static void walk_evaluate(const hit_group *g, ray_walk *walk, const bump *P)
-{
-    walk_place(g, walk);
-    P->ops->eval(P, g->n, walk->u, walk->w, 0, &walk->h);
-}
-
 STAGE static void iter_step(int n, ray_walk *restrict walk, const real *restrict P)
 {
     for (int i = 0; i < n; i++) {
@@ -149,17 +145,17 @@ static long iterate(hit_group *g, const bump *P, method m)
     walk_start(g, &walk);
     iter_step(g->n, &walk, g->bump.P); /* P at the smooth hit is known */
     for (int step = 1; step < m.n; step++) {
-        walk_evaluate(g, &walk, P);
+        walk_place(g, &walk);
+        P->ops->eval(P, g->n, walk.u, walk.w, 0, &walk.h);
         iter_step(g->n, &walk, walk.h.P);
     }
-    for (int i = 0; i < g->n; i++) {
-        g->tau[i] = walk.tau[i];
-        g->order[i] = method_code(m);
-    }
+    memcpy(g->tau, walk.tau, sizeof g->tau);
+    fill_ids(g->n, method_code(m), g->order);
     return (long)(m.n - 1) * g->n;
 }
 
 typedef struct march_lanes {
+    real front[LANES], back[LANES]; /* the slab */
     real tau[LANES], gap[LANES];
     int32_t found[LANES];
 } march_lanes;
@@ -168,23 +164,33 @@ STAGE static void march_start(int n, const ray_walk *restrict walk, real Pmin, r
 {
     for (int i = 0; i < n; i++) {
         bs_view v = {walk->sn[i], walk->a[i], walk->b[i]};
-        bs_march s = bs_march_start(bs_slab_of(v, Pmin, Pmax));
+        bs_slab slab = bs_slab_of(v, Pmin, Pmax);
+        bs_march s = bs_march_start(slab);
+        m->front[i] = slab.front;
+        m->back[i] = slab.back;
         m->tau[i] = s.tau;
         m->gap[i] = s.gap;
         m->found[i] = s.found;
     }
 }
 
-STAGE static void march_place(int n, ray_walk *restrict walk, real Pmin, real Pmax, int step, int steps)
+/* Step 0..steps through the slab, and the place of P there. */
+STAGE static void march_place(const hit_group *restrict g, const march_lanes *restrict m, int step, int steps,
+                              ray_walk *restrict walk)
 {
-    for (int i = 0; i < n; i++) {
-        bs_view v = {walk->sn[i], walk->a[i], walk->b[i]};
-        walk->tau[i] = bs_march_tau(bs_slab_of(v, Pmin, Pmax), step, steps);
+    for (int i = 0; i < g->n; i++) {
+        bs_slab slab = {m->front[i], m->back[i]};
+        real tau = bs_march_tau(slab, step, steps);
+        walk->tau[i] = tau;
+        walk->u[i] = g->u[i] + walk->a[i] * tau;
+        walk->w[i] = g->w[i] + walk->b[i] * tau;
     }
 }
 
-STAGE static void march_step(int n, const ray_walk *restrict walk, march_lanes *restrict m)
+/* Returns how many lanes are still looking. */
+STAGE static int march_step(int n, const ray_walk *restrict walk, march_lanes *restrict m)
 {
+    int looking = 0;
     for (int i = 0; i < n; i++) {
         bs_view v = {walk->sn[i], walk->a[i], walk->b[i]};
         bs_march s = {m->tau[i], m->gap[i], m->found[i]};
@@ -192,27 +198,44 @@ STAGE static void march_step(int n, const ray_walk *restrict walk, march_lanes *
         m->tau[i] = s.tau;
         m->gap[i] = s.gap;
         m->found[i] = s.found;
+        looking += s.found == 0;
+    }
+    return looking;
+}
+
+/* Order 0 where nothing is found. */
+STAGE static void march_end(const ray_walk *restrict walk, const march_lanes *restrict m, int32_t code,
+                            hit_group *restrict g)
+{
+    for (int i = 0; i < g->n; i++) {
+        bs_view v = {walk->sn[i], 0, 0};
+        int found = m->found[i];
+        real tau = m->tau[i], tau0 = bs_tau0(v, g->bump.P[i]);
+        g->tau[i] = found ? tau : tau0;
+        g->order[i] = found ? code : 0;
     }
 }
 
+/* Until all lanes have found the surface: those of a wave are next to each other, and find it at nearly the same step.
+ */
 static long march(hit_group *g, const bump *P, method m)
 {
     ray_walk walk;
     march_lanes x;
     walk_start(g, &walk);
-    walk_curvature(g, &walk);
+    if (g->flat)
+        fill(g->n, 0, walk.curvature);
+    else
+        walk_curvature(g, &walk);
     march_start(g->n, &walk, P->Pmin, P->Pmax, &x);
-    for (int step = 0; step <= m.n; step++) {
-        march_place(g->n, &walk, P->Pmin, P->Pmax, step, m.n);
-        walk_evaluate(g, &walk, P);
-        march_step(g->n, &walk, &x);
+    int step = 0;
+    for (int looking = g->n; step <= m.n && looking > 0; step++) {
+        march_place(g, &x, step, m.n, &walk);
+        P->ops->eval(P, g->n, walk.u, walk.w, 0, &walk.h);
+        looking = march_step(g->n, &walk, &x);
     }
-    for (int i = 0; i < g->n; i++) {
-        bs_view v = {walk.sn[i], 0, 0};
-        g->tau[i] = x.found[i] ? x.tau[i] : bs_tau0(v, g->bump.P[i]);
-        g->order[i] = x.found[i] ? method_code(m) : 0;
-    }
-    return (long)(m.n + 1) * g->n;
+    march_end(&walk, &x, method_code(m), g);
+    return (long)step * g->n;
 }
 
 long shift_group(hit_group *g, const bump *P, method m, bool guard)

@@ -9,8 +9,8 @@
 
 int tau_partials(const tracer *tr, int32_t id, const workspace *v)
 {
-    const bool flat = v->surface[id]->ops->flat; /* auto and the bumps' shadows leave its zeros out */
-    const bool shift = method_bends(tr->shadow) && !(flat && tr->shadow.kind == METHOD_AUTO);
+    const bool flat = v->surface[id]->ops->flat; /* all but 2+ leave its zeros out */
+    const bool shift = method_bends(tr->shadow) && !(flat && tr->shadow.kind != METHOD_ORDER);
     const bool own = bumps_cast(tr, id, v) && !tr->shifted && !flat;
     return tr->scene->object[id].bump && (shift || own) ? 2 : 1;
 }

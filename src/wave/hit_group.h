@@ -23,6 +23,7 @@ typedef struct hit_group {
     int32_t part[LANES]; /* of the surface; u and w belong to it */
     real u[LANES], w[LANES];
     partials q;
+    bool flat; /* the surface is: Quu, Quw and Qww are 0, and may not be set */
 
     /* the bump */
     bump_values bump;

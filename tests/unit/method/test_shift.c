@@ -194,7 +194,7 @@ static void counts(void **state)
     assert_int_equal(shift_group(g, P, (method){METHOD_ORDER, 2}, true), 0);
     assert_int_equal(shift_group(g, P, (method){METHOD_ITER, 1}, true), 0);
     assert_int_equal(shift_group(g, P, (method){METHOD_ITER, 4}, true), 3 * LANES);
-    assert_int_equal(shift_group(g, P, (method){METHOD_MARCH, 4}, true), 5 * LANES);
+    BETWEEN(3 * LANES, shift_group(g, P, (method){METHOD_MARCH, 4}, true), 5 * LANES); /* until all have found it */
     bump_free(P);
     /* without bounds there is no slab to march through */
     P = function("0.1*u");
