@@ -82,7 +82,7 @@ def stage_table(scene: Scene) -> Table:
              f"{row.last_misses:.4f}", "–" if row.share is None else f"{100 * row.share:.1f} %") for row in scene.rows]
     return Table(f"Stages: {scene.name}", ("stage, or library", "instructions a pixel", "reads and writes",
                                            "misses of the first cache", "of the last", named), rows,
-                 "Counts by callgrind, of the render alone. Shares by perf, of the whole process at full size"
+                 "Counts by callgrind, of the render alone. Shares by perf, of a run at full size"
                  f"{'; this machine counts no cycles' if scene.event == 'cpu-clock' else ''}." if scene.event else
                  "Counts by callgrind, of the render alone. perf is missing, or may not sample here.")
 
