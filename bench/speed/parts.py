@@ -177,8 +177,18 @@ def exr(about: About) -> list[Job]:
 def map_once(command: Sequence[Word]) -> Figures:
     found = launch(command)
     times = milliseconds(found.text)
-    return {"ready_s": without(found, times), "bump_ms": times["bump"], "render_ms": times["render"],
-            "memory": found.memory}
+    return {"ready_s": without(found, times), "memory": found.memory}
+
+
+def look_up_once(command: Sequence[Word]) -> Figures:
+    times = milliseconds(launch(command, BEST_OF).text)
+    return {"bump_ms": times["bump"], "render_ms": times["render"]}
+
+
+def look_up_job(about: About, size: int) -> Job:
+    command = words(about, inputs.map_scene(about.inputs, size, "png"), about.level.size, threads=1)
+    return Job(f"look-ups {size}", "maps", functools.partial(look_up_once, command), about.level.slow_rounds,
+               programs.shown(command))
 
 
 def sample_bytes(level: Level, results: Results) -> None:
@@ -224,6 +234,7 @@ def maps(about: About) -> list[Job]:
         jobs.append(map_job(about, f"map {size}", scene, "0"))
         if size in (level.maps[0], level.maps[-1]):
             jobs += [map_job(about, f"map {size}, {method}", scene, method) for method in MORE_METHODS]
+            jobs.append(look_up_job(about, size))
     exr_scene = inputs.map_scene(about.inputs, level.exr_map, "exr")
     return [*jobs, map_job(about, f"map {level.exr_map} exr", exr_scene, "0")]
 

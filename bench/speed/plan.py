@@ -104,8 +104,8 @@ def map_bounds(level: Level) -> list[Bound]:
     return [*ready, *memory,
             Bound("maps", f"{level.exr_map}²: EXR over PNG, ready", f"{exr} exr: ready_s", f"{exr}: ready_s", 1.0,
                   "times"),
-            Bound("maps", f"look-ups of {large}² over {small}²", f"map {large}: bump_ms", f"map {small}: bump_ms", 1.5,
-                  "times")]
+            Bound("maps", f"look-ups of {large}² over {small}²", f"look-ups {large}: bump_ms",
+                  f"look-ups {small}: bump_ms", 1.5, "times")]
 
 
 def bounds(level: Level) -> list[Bound]:
