@@ -64,6 +64,27 @@ def bounds_table(judged: Sequence[Judged]) -> Table:
                  "Medians, with bootstrap 95 % intervals; met or missed where the whole interval says so.")
 
 
+# A peer, what of kage is nearest to it, and the figure that both have.
+PEERS = (
+    ("POV-Ray bump_map", "kage 0, whole", "ns"), ("POV-Ray bump_map", "kage 0, whole", "whole_s"),
+    ("POV-Ray smooth", "kage none, whole", "ns"), ("POV-Ray smooth", "kage none, whole", "whole_s"),
+    ("POV-Ray height_field", "kage displaced, whole", "ns"),
+    ("POV-Ray height_field", "kage displaced, whole", "whole_s"),
+    ("Tachyon, smooth", "kage none, whole", "ns"), ("Embree, plane", "kage none, whole", "ns"),
+    ("Embree, displaced mesh", "kage displaced, whole", "ns"), ("embree mesh", "mesh", "ns"),
+)
+
+
+def peers_table(results: Results) -> Table:
+    """In times kage's time, round by round; those that were not measured are left out."""
+    rows = []
+    for peer, own, figure in PEERS:
+        found = results.ratio(f"{peer}: {figure}", f"{own}: {figure}")
+        if found:
+            rows.append((peer, FIGURES[figure][0], own.removesuffix(", whole"), scaled(found, 1)))
+    return Table("Peers", ("peer", "what", "kage's", "times kage's time"), rows)
+
+
 def figure_table(part: str, jobs: Sequence[Job], results: Results) -> Table:
     rows = []
     for job in jobs:
@@ -88,7 +109,7 @@ def stage_table(scene: Scene) -> Table:
 
 
 def tables(judged: Sequence[Judged], jobs: Sequence[Job], results: Results, scenes: Sequence[Scene]) -> list[Table]:
-    found = [bounds_table(judged)]
+    found = [one for one in (bounds_table(judged), peers_table(results)) if one.rows]
     for part in PARTS:
         mine = [job for job in jobs if job.part == part]
         if mine:

@@ -215,6 +215,11 @@ def test_pages() -> None:
     assert "large: memory & more  1 (1 to 1.5)  at most 2 GiB  met" in list(pages.columns(found[0]))
 
 
+def test_peers_are_compared_round_by_round() -> None:
+    values = {"POV-Ray smooth: ns": [100.0, 900.0], "kage none, whole: ns": [10.0, 90.0], "embree mesh: ns": [1.0]}
+    assert pages.peers_table(Results(values)).rows == [("POV-Ray smooth", "trace", "kage none", "10")]
+
+
 def test_docs_get_the_bounds() -> None:
     text = "a\n<!-- bench:speed -->\nold\n<!-- /bench:speed -->\nb\n"
     new = pages.docs(text, "machine, date.", [judged("missed")])
