@@ -59,7 +59,7 @@ def test_a_command_is_measured() -> None:
     assert found.memory > 60_000_000
     assert found.text.count("out") == found.text.count("err") == 2
     if Path("/proc/self/io").exists():
-        assert found.moved["written"] >= len("out\nerr\n")
+        assert found.moved["written_bytes"] >= len("out\nerr\n")
 
 
 @pytest.mark.parametrize(("command", "message"), [
