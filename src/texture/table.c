@@ -15,8 +15,8 @@ static inline int cell_of(real x, int n, int repeat, real *fraction)
 }
 
 /* Called with a constant `repeat`, as a choice in the loop would prevent SIMD. */
-static inline void cells(const table_grid *t, int repeat, int n, const real *restrict u, const real *restrict w,
-                         int32_t *restrict at, real *restrict a, real *restrict b)
+static inline void cells(const table_grid *t, int repeat, int pitch, int n, const real *restrict u,
+                         const real *restrict w, int32_t *restrict at, real *restrict a, real *restrict b)
 {
     const int columns = t->columns, rows = t->rows;
     const real ku = t->ku, kw = t->kw, ou = t->ou, ow = t->ow;
@@ -24,32 +24,20 @@ static inline void cells(const table_grid *t, int repeat, int n, const real *res
     for (int i = 0; i < n; i++) {
         int c = cell_of(u[i] * ku + ou, columns, repeat, &a[i]);
         int r = cell_of(w[i] * kw + ow, rows, repeat, &b[i]);
-        at[i] = r * (columns + 1) + c;
+        at[i] = r * pitch + c;
     }
 }
 
-STAGE static void cells_repeat(const table_grid *t, int n, const real *u, const real *w, int32_t *at, real *a, real *b)
+STAGE static void cells_repeat(const table_grid *t, int pitch, int n, const real *u, const real *w, int32_t *at,
+                               real *a, real *b)
 {
-    cells(t, 1, n, u, w, at, a, b);
+    cells(t, 1, pitch, n, u, w, at, a, b);
 }
 
-STAGE static void cells_clamp(const table_grid *t, int n, const real *u, const real *w, int32_t *at, real *a, real *b)
+STAGE static void cells_clamp(const table_grid *t, int pitch, int n, const real *u, const real *w, int32_t *at, real *a,
+                              real *b)
 {
-    cells(t, 0, n, u, w, at, a, b);
-}
-
-/* One value: a gather. */
-STAGE static void map_one(const table_grid *t, const real *restrict v, int n, const int32_t *restrict at,
-                          const real *restrict a, const real *restrict b, real *restrict out)
-{
-    const int row = (t->columns + 1) * TABLE_VALUES;
-#pragma omp simd
-    for (int i = 0; i < n; i++) {
-        int p = at[i] * TABLE_VALUES, q = p + row;
-        real left = v[p] + (v[q] - v[p]) * b[i];
-        real right = v[p + TABLE_VALUES] + (v[q + TABLE_VALUES] - v[p + TABLE_VALUES]) * b[i];
-        out[i] = left + (right - left) * a[i];
-    }
+    cells(t, 0, pitch, n, u, w, at, a, b);
 }
 
 /* All three values: the two upper corners of a cell are one vector of 8, and so are the lower ones. Twelve gathers
@@ -79,14 +67,9 @@ STAGE static void map_unpack(int n, const real (*restrict from)[TABLE_VALUES], r
     }
 }
 
-void table_cells(const table_grid *t, int n, const real *u, const real *w, int32_t *at, real *a, real *b)
+void table_cells(const table_grid *t, int pitch, int n, const real *u, const real *w, int32_t *at, real *a, real *b)
 {
-    (t->repeat ? cells_repeat : cells_clamp)(t, n, u, w, at, a, b);
-}
-
-void table_one(const table_grid *t, const real *v, int n, const int32_t *at, const real *a, const real *b, real *x)
-{
-    map_one(t, v, n, at, a, b, x);
+    (t->repeat ? cells_repeat : cells_clamp)(t, pitch, n, u, w, at, a, b);
 }
 
 void table_three(const table_grid *t, const real *v, int n, const int32_t *at, const real *a, const real *b, real *x,
