@@ -16,6 +16,7 @@ typedef struct heights {
     map_layout layout;
     int width, height; /* of the map, in samples */
     int pitch;         /* numbers from row to row of the table */
+    bool large;        /* more than the caches hold */
     real *v;           /* (grid.rows + HEIGHTS_BEFORE + HEIGHTS_BEHIND) x pitch */
 } heights;
 
