@@ -44,7 +44,7 @@ surface *reader_mesh(reader *r, node *at, shape_spec *spec)
         mesh_data_free(&d);
         return NULL;
     }
-    surface *f = reader_made(r, mesh_new(&d, r->from->progress));
+    surface *f = reader_made(r, mesh_new(&d, r->from->threads, r->from->progress));
     if (!f)
         return NULL;
     *spec = (shape_spec){

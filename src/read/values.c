@@ -145,14 +145,14 @@ char *reader_name(reader *r, node *map, node *key)
     return NULL;
 }
 
-node *reader_named(reader *r, const char *key, size_t size, void *array, int *count)
+node *reader_named(reader *r, const char *key, int most, size_t size, void *array, int *count)
 {
     node *at = yaml_need(r->y, yaml_root(r->y), key, "the scene");
     if (!at || !yaml_map(r->y, at, key, NULL))
         return NULL;
     int n = yaml_size(at);
-    if (n > SCENE_MAX_ITEMS) {
-        yaml_error(r->y, at, "%d %s, expected at most %d", n, key, SCENE_MAX_ITEMS);
+    if (n > most) {
+        yaml_error(r->y, at, "%d %s, expected at most %d", n, key, most);
         return NULL;
     }
     void *items = reader_made(r, calloc((size_t)(n ? n : 1), size));

@@ -46,7 +46,7 @@ static inline bs_vec3 mirrored(bs_vec3 s, bs_vec3 smooth, bs_vec3 bumped)
 STAGE static void mirror(const hit_group *restrict g, ways *restrict y)
 {
     for (int i = 0; i < g->n; i++)
-        lane_set(&y->mirrored, i, mirrored(lane_get(&g->x.s, i), lane_get(&g->n_smooth, i), lane_get(&g->n_bump, i)));
+        lane_set(&y->mirrored, i, mirrored(lane_get(&g->x->s, i), lane_get(&g->n_smooth, i), lane_get(&g->n_bump, i)));
 }
 
 /* Snell's law with n' on the viewer's side. A direction that stays on that side of the smooth surface is reflected at
@@ -55,7 +55,7 @@ STAGE static void mirror(const hit_group *restrict g, ways *restrict y)
 STAGE static void bend(const hit_group *restrict g, ways *restrict y)
 {
     for (int i = 0; i < g->n; i++) {
-        bs_vec3 s = lane_unit(lane_get(&g->x.s, i)), n = lane_get(&g->n_bump, i), smooth = lane_get(&g->n_smooth, i);
+        bs_vec3 s = lane_unit(lane_get(&g->x->s, i)), n = lane_get(&g->n_bump, i), smooth = lane_get(&g->n_smooth, i);
         real ratio = y->ratio[i], c = -bs_dot(s, n), k = 1 + ratio * ratio * (c * c - 1),
              root = real_sqrt(real_max(k, 0));
         real by = ratio * c - (c < 0 ? -root : root);
@@ -71,11 +71,18 @@ STAGE static void bend(const hit_group *restrict g, ways *restrict y)
 
 /* ---- the media that a ray is in ---- */
 
-/* The place of object `id` in lane i's list, or -1. */
-static int find(const media *m, int i, int id)
+/* The number among all insides of what lane i of a group on object `id` meets. */
+static int32_t inside_of(const scene *sc, int32_t id, const hit_group *g, int i)
+{
+    const object *o = &sc->object[id];
+    return o->inside + (o->crowd ? crowd_copy_of(o->crowd, g->part[i]) : 0);
+}
+
+/* The place of an inside in lane i's list, or -1. */
+static int find(const media *m, int i, int32_t inside)
 {
     int at = m->n[i] - 1;
-    while (at >= 0 && m->id[at][i] != id)
+    while (at >= 0 && m->inside[at][i] != inside)
         at--;
     return at;
 }
@@ -85,24 +92,28 @@ static double ior_of(const scene *sc, int id) { return sc->material[sc->object[i
 /* The ior of the innermost medium of lane i. */
 static double ior_in(const scene *sc, const media *m, int i) { return m->n[i] ? ior_of(sc, m->id[m->n[i] - 1][i]) : 1; }
 
-/* Lane i enters object `id`, or leaves it (out). Returns the ratio of the iors before and behind. Where objects
- * overlap, the ior is that of the one entered last, as in POV-Ray. */
-static double cross(const scene *sc, int id, bool out, media *in, int i)
+/* Lane i enters object `id`, whose inside has this number, or leaves it (out). Returns the ratio of the iors before and
+ * behind. Where objects overlap, the ior is that of the one entered last, as in POV-Ray. */
+static double cross(const scene *sc, int id, int32_t inside, bool out, media *in, int i)
 {
     const double own = ior_of(sc, id), around = ior_in(sc, in, i);
     if (!shape_has_inside(&sc->object[id].shape_spec))
         return 1;
     if (!out) {
-        if (in->n[i] < MEDIA)
+        if (in->n[i] < MEDIA) {
+            in->inside[in->n[i]][i] = inside;
             in->id[in->n[i]++][i] = id;
+        }
         return around / own;
     }
-    int at = find(in, i, id);
+    int at = find(in, i, inside);
     if (at >= 0) {
         const int last = --in->n[i];
         if (at < last) {
-            for (; at < last; at++)
+            for (; at < last; at++) {
                 in->id[at][i] = in->id[at + 1][i];
+                in->inside[at][i] = in->inside[at + 1][i];
+            }
             return 1;
         }
     }
@@ -112,8 +123,10 @@ static double cross(const scene *sc, int id, bool out, media *in, int i)
 static void copy_media(const media *from, int j, media *to, int i)
 {
     to->n[i] = from ? from->n[j] : 0;
-    for (int k = 0; k < to->n[i]; k++)
+    for (int k = 0; k < to->n[i]; k++) {
         to->id[k][i] = from->id[k][j];
+        to->inside[k][i] = from->inside[k][j];
+    }
 }
 
 /* ---- sending ---- */
@@ -134,11 +147,11 @@ static void send(const hit_group *g, int i, int id, real t0, bs_vec3 s, bs_vec3 
     const int to = b->n++;
     b->lane[to] = hit_group_place(g, i);
     lane_set(&b->weight, to, weight);
-    lane_set(&b->x.r, to, lane_at(&g->x, i, t0));
+    lane_set(&b->x.r, to, lane_at(g->x, i, t0));
     lane_set(&b->x.s, to, s);
     b->from.id[to] = id;
     b->from.part[to] = g->part[i];
-    lane_set(&b->from.at, to, lane_at(&g->x, i, g->t[i]));
+    lane_set(&b->from.at, to, lane_at(g->x, i, g->t[i]));
     copy_media(in, j, &b->in, to);
 }
 
@@ -162,8 +175,9 @@ static void send_clear(const scene *sc, int32_t id, workspace *v, ways *y)
         copy_media(before, hit_group_place(g, i), &in, i);
         /* an object that was entered is left, as in POV-Ray, also at a gap between displaced parts; an object that
          * contains the camera is left without having been entered */
-        bool out = find(&in, i, id) >= 0 || bs_dot(lane_get(&g->x.s, i), lane_get(&g->n_smooth, i)) > 0;
-        y->ratio[i] = (real)cross(sc, id, out, &in, i);
+        const int32_t inside = inside_of(sc, id, g, i);
+        bool out = find(&in, i, inside) >= 0 || bs_dot(lane_get(&g->x->s, i), lane_get(&g->n_smooth, i)) > 0;
+        y->ratio[i] = (real)cross(sc, id, inside, out, &in, i);
     }
     bend(g, y);
     if (m->pattern)
@@ -179,7 +193,7 @@ static void send_clear(const scene *sc, int32_t id, workspace *v, ways *y)
         else if (is_zero(through))
             ;
         else if (y->ratio[i] == 1) /* the same ray: from the smooth hit, as all before that was tested */
-            send(g, i, id, g->t[i], lane_get(&g->x.s, i), through, &in, i, &v->straight);
+            send(g, i, id, g->t[i], lane_get(&g->x->s, i), through, &in, i, &v->straight);
         else
             send(g, i, id, g->t0[i], lane_get(&y->bent, i), through, &in, i, &v->refracted);
         if (!total && !is_zero(mirror_weight))

@@ -11,6 +11,7 @@
 #include "render/bumps.h"
 #include "render/intersect.h"
 #include "render/transparent.h"
+#include "wave/fill.h"
 #include "wave/gather.h"
 #include "wave/lane.h"
 
@@ -23,7 +24,7 @@ static void darken_facing_away(hit_group *g)
 {
     for (int i = 0; i < g->n; i++) {
         bs_vec3 n = lane_get(&g->n_smooth, i);
-        bool lit = bs_dot(n, lane_get(&g->to_light.s, i)) * bs_dot(n, lane_get(&g->x.s, i)) < 0;
+        bool lit = bs_dot(n, lane_get(&g->to_light.s, i)) * bs_dot(n, lane_get(&g->x->s, i)) < 0;
         g->lit[i] = lit ? g->lit[i] : 0;
     }
 }
@@ -62,6 +63,14 @@ static void find_candidates(const object_bvh *c, const hit_group *g, candidates 
     object_bvh_find(c, g->n, &g->to_light, end, NULL, m);
 }
 
+/* The shadows of the other copies on a copy. Transparent ones are all crossed in cast_own. */
+static void cast_other_copies(const tracer *tr, int32_t id, workspace *v)
+{
+    hit_group *g = &v->g;
+    if (!transparent_is(tr->scene, id))
+        crowd_occlude_others(tr->scene->object[id].crowd, g->n, &g->to_light, g->part, g->lit);
+}
+
 static void cast_others(const tracer *tr, int32_t id, workspace *v)
 {
     const scene *s = tr->scene;
@@ -71,9 +80,11 @@ static void cast_others(const tracer *tr, int32_t id, workspace *v)
         find_candidates(s->object_bvh, g, v->candidates);
     for (int32_t j = intersect_next(s, v->candidates, -1); j >= 0; j = intersect_next(s, v->candidates, j)) {
         const surface *f = v->surface[j];
-        if (j == id || !shadow_casts(tr, j))
+        if (!shadow_casts(tr, j) || (j == id && !s->object[id].crowd))
             continue;
-        if (transparent_is(s, j))
+        if (j == s->object[id].first)
+            cast_other_copies(tr, id, v);
+        else if (transparent_is(s, j))
             transparent_cast(s, j, false, v);
         else if (v->candidates)
             occlude_some(f, candidates_rays(v->candidates, j, lane), lane, g);
@@ -88,10 +99,9 @@ static void cast_others(const tracer *tr, int32_t id, workspace *v)
 static void shadow_place(const tracer *tr, int32_t id, const light *l, bool shared, workspace *v)
 {
     hit_group *g = &v->g;
-    for (int i = 0; i < g->n; i++)
-        g->lit[i] = 1;
+    fill(g->n, 1, g->lit);
     if (tr->scene->clear)
-        vec3s_fill(&g->tint, g->n, 1, 1, 1);
+        fill_vec3s(g->n, 1, 1, 1, &g->tint);
     if (bumps_cast(tr, id, v))
         bumps_shadow(tr, id, l, shared, v);
     else if (shadow_casts(tr, id) && (v->surface[id]->ops->occlude_own || transparent_is(tr->scene, id))) {

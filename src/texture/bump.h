@@ -16,7 +16,8 @@ typedef struct bump bump;
 typedef struct bump_ops {
     const char *kind; /* as in the scene file: "map" or "function" */
 
-    /* P at n <= LANES places; order 1: also Pu and Pw; order 2: also Puu, Puw and Pww. Reentrant, no allocation. */
+    /* P at n <= LANES places; order 1: also Pu and Pw; order 2: also Puu and Pww; order 3 (2+): also Puw. Reentrant, no
+     * allocation. */
     void (*eval)(const bump *p, int n, const real *u, const real *w, int order, bump_values *h);
 
     /* P, Pu and Pw at n <= EXPR_BATCH places, in double. Here a map's partials are the derivatives of its bilinear

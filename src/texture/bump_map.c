@@ -33,8 +33,8 @@ STAGE static void level_beyond(int n, real k, real o, int last, const real *rest
 
 static void clamp_derivatives(const table_grid *g, int n, const real *u, const real *w, int order, bump_values *h)
 {
-    real *const along_u[] = {h->Pu, h->Puu, h->Puw}, *const along_w[] = {h->Pw, h->Puw, h->Pww};
-    for (int k = 0; k < (order == 2 ? 3 : 1); k++) {
+    real *const along_u[] = {h->Pu, h->Puu, h->Puw}, *const along_w[] = {h->Pw, h->Pww, h->Puw};
+    for (int k = 0; k < order; k++) {
         level_beyond(n, g->ku, g->ou, g->columns, u, along_u[k]);
         level_beyond(n, g->kw, g->ow, g->rows, w, along_w[k]);
     }

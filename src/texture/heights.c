@@ -85,14 +85,37 @@ STAGE static void heights_bend_across(int n, real ku, real kw, const real *restr
                                       const real (*restrict d)[AROUND], const real (*restrict e)[AROUND],
                                       bump_values *restrict h)
 {
-    const real uu = ku * ku, uw = ku * kw / 4, ww = kw * kw;
+    const real hu = ku / 2, hw = kw / 2, uu = ku * ku, ww = kw * kw;
     for (int i = 0; i < n; i++) {
         const real left = P[i][1] - P[i][0], here = P[i][2] - P[i][1], right = P[i][3] - P[i][2];
-        const real twist = d[i][2] - d[i][0], next = d[i][3] - d[i][1];
+        h->P[i] = P[i][1] + here * a[i];
+        h->Pu[i] = ((left + here) + (right - left) * a[i]) * hu;
+        h->Pw[i] = (d[i][1] + (d[i][2] - d[i][1]) * a[i]) * hw;
         h->Puu[i] = ((here - left) + ((right - here) - (here - left)) * a[i]) * uu;
-        h->Puw[i] = (twist + (next - twist) * a[i]) * uw;
         h->Pww[i] = (e[i][1] + (e[i][2] - e[i][1]) * a[i]) * ww;
     }
+}
+
+STAGE static void heights_twist_across(int n, real ku, real kw, const real *restrict a,
+                                       const real (*restrict d)[AROUND], real *restrict Puw)
+{
+    const real uw = ku * kw / 4;
+    for (int i = 0; i < n; i++) {
+        const real twist = d[i][2] - d[i][0], next = d[i][3] - d[i][1];
+        Puw[i] = (twist + (next - twist) * a[i]) * uw;
+    }
+}
+
+static void look_bent(const heights *h, int n, const int32_t *at, const real *a, const real *b, bool twist,
+                      bump_values *out)
+{
+    const table_grid *g = &h->grid;
+    columns c;
+    heights_bend_down(h->v, (size_t)h->pitch, n, at, b, c.P, c.d, c.e);
+    heights_bend_across(n, g->ku, g->kw, a, (const real(*)[AROUND])c.P, (const real(*)[AROUND])c.d,
+                        (const real(*)[AROUND])c.e, out);
+    if (twist)
+        heights_twist_across(n, g->ku, g->kw, a, (const real(*)[AROUND])c.d, out->Puw);
 }
 
 /* Ask for the rows around each cell before the first is needed, as a large map's are in lines of memory of their own.
@@ -110,7 +133,6 @@ void heights_look(const heights *h, int n, const real *u, const real *w, int ord
     const size_t pitch = (size_t)h->pitch;
     int32_t at[LANES];
     real a[LANES], b[LANES];
-    columns c;
     table_cells(g, h->pitch, n, u, w, at, a, b);
     if (h->large)
         fetch(h, n, at, order == 0, order == 0 ? 2 : AROUND);
@@ -118,16 +140,12 @@ void heights_look(const heights *h, int n, const real *u, const real *w, int ord
         real pair[LANES][2];
         heights_pair_down(h->v, pitch, n, at, b, pair);
         heights_pair_across(n, a, (const real(*)[2])pair, out->P);
-        return;
-    }
-    if (order == 1)
+    } else if (order == 1) {
+        columns c;
         heights_down(h->v, pitch, n, at, b, c.P, c.d);
-    else
-        heights_bend_down(h->v, pitch, n, at, b, c.P, c.d, c.e);
-    heights_across(n, g->ku, g->kw, a, (const real(*)[AROUND])c.P, (const real(*)[AROUND])c.d, out);
-    if (order == 2)
-        heights_bend_across(n, g->ku, g->kw, a, (const real(*)[AROUND])c.P, (const real(*)[AROUND])c.d,
-                            (const real(*)[AROUND])c.e, out);
+        heights_across(n, g->ku, g->kw, a, (const real(*)[AROUND])c.P, (const real(*)[AROUND])c.d, out);
+    } else
+        look_bent(h, n, at, a, b, order == 3, out);
 }
 
 /* ---- filling ---- */

@@ -37,8 +37,8 @@ void heights_put(heights *h, int x, int y, int n, const float *samples);
 /* Once all samples are in: lay out what is around them. The bounds do not depend on the threads. */
 heights_bounds heights_wrap(heights *h, int threads);
 
-/* P; order 1: also Pu and Pw; order 2: also Puu, Puw and Pww. As bump_ops.eval, but derivatives are not level beyond a
- * clamped map's ends. */
+/* P; order 1: also Pu and Pw; order 2: also Puu and Pww; order 3: also Puw. As bump_ops.eval, but derivatives are not
+ * level beyond a clamped map's ends. */
 void heights_look(const heights *h, int n, const real *u, const real *w, int order, bump_values *out);
 
 /* The height at the upper left corner of a cell; the next ones are to the right, and `pitch` below. */

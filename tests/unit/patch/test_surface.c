@@ -706,7 +706,7 @@ static double error_of(surface *f, double A, int order, const rays *x, const hit
     f->ops->extent(f, 0, U, W);
     bump *P = bumps(A, U, W);
     surface *d = displace(f, P, &c);
-    P->ops->eval(P, LANES, u, w, 2, &p);
+    P->ops->eval(P, LANES, u, w, 3, &p);
     no_hits(&rough, LANES);
     d->ops->hit(d, LANES, x, 0, &rough);
     int n = 0;

@@ -34,7 +34,7 @@ static void look(const bump *p, double u, double w, double out[6])
 {
     static bump_values h;
     real U[1] = {(real)u}, V[1] = {(real)w};
-    p->ops->eval(p, 1, U, V, 2, &h);
+    p->ops->eval(p, 1, U, V, 3, &h);
     const real v[6] = {h.P[0], h.Pu[0], h.Pw[0], h.Puu[0], h.Puw[0], h.Pww[0]};
     for (int k = 0; k < 6; k++)
         out[k] = (double)v[k];
@@ -297,7 +297,7 @@ static void orders(void **state)
         w[i] = (real)(i * 0.021 - 1);
     }
     for (int k = 0; k < 2; k++) {
-        ps[k]->ops->eval(ps[k], LANES, u, w, 2, &all);
+        ps[k]->ops->eval(ps[k], LANES, u, w, 3, &all);
         for (int order = 0; order < 3; order++) {
             for (int i = 0; i < LANES; i++)
                 some.Pu[i] = some.Pw[i] = some.Puu[i] = some.Puw[i] = some.Pww[i] = 77;
@@ -306,9 +306,8 @@ static void orders(void **state)
                 CHECK(some.P[i], ==, all.P[i]);
                 assert_true(order >= 1 ? some.Pu[i] == all.Pu[i] && some.Pw[i] == all.Pw[i]
                                        : some.Pu[i] == 77 && some.Pw[i] == 77);
-                assert_true(order == 2
-                                ? some.Puu[i] == all.Puu[i] && some.Puw[i] == all.Puw[i] && some.Pww[i] == all.Pww[i]
-                                : some.Puu[i] == 77 && some.Puw[i] == 77 && some.Pww[i] == 77);
+                assert_true(order == 2 ? some.Puu[i] == all.Puu[i] && some.Pww[i] == all.Pww[i]
+                                       : some.Puu[i] == 77 && some.Puw[i] == 77 && some.Pww[i] == 77);
             }
         }
         bump_free(ps[k]);
