@@ -151,26 +151,27 @@ static float area_of(const bvh_box *b)
 enum { CHUNK = 1 << 13 }; /* boxes that are cut by themselves, each chunk by one thread */
 
 /* Cut the n boxes into groups of up to CLUSTER so that the sum of the groups' areas is least: the number of rays that
- * reach a box is as its area, and a group takes the same time whether it is full or not. A group's box takes time, too,
- * which counts as the area of one of its boxes. size: of the group that ends behind each box, by the best cut of what
- * is before it. start: 1 where a group starts. */
+ * reach a box is as its area, and a group takes the same time whether it is full or not. A group's box is tested as
+ * often as that of what is around it is reached; that costs a quarter of the area of CLUSTER boxes. size: of the group
+ * that ends behind each box, by the best cut of what is before it. start: 1 where a group starts. */
 static void cut(int n, const bvh_box *box, unsigned char *size, unsigned char *start)
 {
     float sum[CHUNK + 1]; /* of the best cut of what is before */
     sum[0] = 0;
     for (int i = 0; i < n; i++) {
         bvh_box all = box[i];
-        const float own = area_of(&all);
-        float best = HUGE_VALF;
-        for (int j = i; j >= 0 && j > i - CLUSTER; j--) {
-            add_box(&all, &box[j]);
-            const float now = sum[j] + area_of(&all) + own;
-            if (now <= best) {
-                best = now;
-                size[i] = (unsigned char)(i - j + 1);
-            }
+        float area[CLUSTER], best = HUGE_VALF; /* of the last 1, 2 .. boxes */
+        int most = 0;
+        for (; most < CLUSTER && most <= i; most++) {
+            add_box(&all, &box[i - most]);
+            area[most] = area_of(&all);
         }
-        sum[i + 1] = best;
+        for (int k = 0; k < most; k++)
+            if (sum[i - k] + area[k] <= best) {
+                best = sum[i - k] + area[k];
+                size[i] = (unsigned char)(k + 1);
+            }
+        sum[i + 1] = best + 0.25f * area[most - 1];
     }
     for (int i = n - 1; i >= 0; i -= size[i])
         start[i - size[i] + 1] = 1;
