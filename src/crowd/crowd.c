@@ -105,6 +105,14 @@ const crowd *crowd_of(const surface *f) { return f->ops->locate == crowd_locate 
 
 size_t crowd_size(const crowd *f) { return sizeof *f + sizeof *f->copy * (size_t)f->n + wide_size(f->tree); }
 
+int32_t crowd_count(const crowd *f, int32_t kind)
+{
+    int32_t n = 0;
+    for (int32_t k = 0; k < f->n; k++)
+        n += f->copy[k].kind == kind;
+    return n;
+}
+
 affine crowd_map(const crowd *f, int32_t k)
 {
     const crowd_copy *c = &f->copy[k];
