@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { TILE = 16, TILE_ROWS = LANES / TILE, TIMED_TILES = 8 };
+enum { TILE = 16, TILE_ROWS = LANES / TILE, TIMED_TILES = 8, CHUNK = 4 /* tiles that a thread takes at once */ };
 
 /* Pictures of at most so many tiles may be done before another thread would have started. */
 enum { SMALL = 64 };
@@ -59,6 +59,7 @@ static inline void lay_rows(float *restrict to, size_t stride, int width, int he
                             float weight, bool add)
 {
     for (int k = 0; k < height; k++)
+#pragma omp simd
         for (int c = 0; c < width; c++) {
             float x = (float)v[k * width + c] * weight, *p = &to[(size_t)k * stride + (size_t)c];
             *p = add ? *p + x : x;
@@ -213,11 +214,15 @@ static void show(const render_options *o, pass *p, long done)
     }
 }
 
-static void note_tile(const render_options *o, pass *p)
+/* Tile n of `count` is done. They are noted by chunks: before an atomic addition the processor waits until all that was
+ * stored is in the cache, here the tile's rows. */
+static void note_tile(const render_options *o, pass *p, long n, long count)
 {
     long done;
+    if (n % CHUNK < CHUNK - 1 && n < count - 1)
+        return;
 #pragma omp atomic capture
-    done = ++p->done;
+    done = p->done += n % CHUNK + 1;
     show(o, p, done);
 }
 
@@ -235,7 +240,7 @@ static void render_nth(const tracer *tr, const render_options *o, pass *p, film 
         refine_tile(tr, p->aa, &b, p->marked, f, v);
     else
         render_tile(tr, p->aa, &b, f, v);
-    note_tile(o, p);
+    note_tile(o, p, n, tiles(part));
 }
 
 static workspace *tile_workspace(const tracer *tr)
@@ -277,7 +282,7 @@ static bool run(const tracer *tr, const render_options *o, pass *p, film *f, sta
 #pragma omp atomic write
             good = false;
         }
-#pragma omp for schedule(dynamic, 4)
+#pragma omp for schedule(dynamic, CHUNK)
         for (long n = first; n < count; n++) {
             bool stop;
 #pragma omp atomic read
