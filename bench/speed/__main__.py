@@ -98,7 +98,7 @@ def measure(options: argparse.Namespace) -> int:
     wanted = [bound for bound in plan.bounds(about.level) if bound.part in options.parts]
     judged = verdicts.judge(results, wanted)
     found = keep(options, circumstances(options.level, time.monotonic() - begin), judged, jobs, results, scenes)
-    for line in pages.columns(found[0]):
+    for line in pages.columns(found[0]) if found else ():
         print(line)
     print(options.out / "index.html")
     for name, why in results.missing.items():

@@ -166,6 +166,7 @@ def mesh_scene(folder: Path, quads: tuple[int, int]) -> Path:
 
 # Objects ------------------------------------------------------------------------------------------
 
+MOST_LISTED = 1000
 OBJECTS_HEAD = f"""\
 camera: {{from: [0, 9, -9], at: [0, 0, 0], fov: 40}}
 image: {{size: [640, 360]}}
@@ -180,17 +181,30 @@ def spheres(count: int) -> np.ndarray:
     """x, y, z and radius of spheres in a layer that fills the picture; the more there are, the smaller they are."""
     random = np.random.default_rng(1990)
     places = random.random((count, 3)) * (16, 1, 12) - (8, 0.5, 6)
-    return np.column_stack([places, np.full(count, 5 / count**0.5)])
+    return np.column_stack([places, np.full(count, 9 / count**0.5)])
 
 
-def write_spheres(path: Path, count: int) -> None:
-    """Each as an object of its own: any version of kage reads that."""
-    with path.open("w") as file:
-        file.write(OBJECTS_HEAD)
-        for k, (x, y, z, radius) in enumerate(spheres(count)):
-            file.write(f"  s{k}: {{sphere: {{center: [{x:.5f}, {y:.5f}, {z:.5f}], radius: {radius:.5f}}}, "
-                       "material: clay}\n")
+def listed(count: int) -> str:
+    """Each as an object of its own."""
+    lines = [f"  s{k}: {{sphere: {{center: [{x:.5f}, {y:.5f}, {z:.5f}], radius: {radius:.5f}}}, material: clay}}\n"
+             for k, (x, y, z, radius) in enumerate(spheres(count))]
+    return OBJECTS_HEAD + "".join(lines)
+
+
+def write_csv(path: Path, count: int) -> None:
+    np.savetxt(path, spheres(count), fmt="%.6f", delimiter=",", header="x,y,z,scale", comments="")
+
+
+COPIES = """\
+  one: {sphere: {center: [0, 0, 0], radius: 1}, material: clay, hidden: true}
+  all: {copies: {of: one, file: FILE}}
+"""
 
 
 def objects_scene(folder: Path, count: int) -> Path:
-    return made(folder / f"spheres{count}.yaml", lambda to: write_spheres(to, count))
+    """Spheres, each an object up to MOST_LISTED, above that a list of copies."""
+    path = folder / f"spheres{count}.yaml"
+    if count <= MOST_LISTED:
+        return text_file(path, listed(count))
+    places = made(folder / f"spheres{count}.csv", lambda to: write_csv(to, count))
+    return text_file(path, OBJECTS_HEAD + COPIES.replace("FILE", places.name))

@@ -64,6 +64,27 @@ def bounds_table(judged: Sequence[Judged]) -> Table:
                  "Medians, with bootstrap 95 % intervals; met or missed where the whole interval says so.")
 
 
+# A peer, what of kage is nearest to it, and the figure that both have.
+PEERS = (
+    ("POV-Ray bump_map", "kage 0, whole", "ns"), ("POV-Ray bump_map", "kage 0, whole", "whole_s"),
+    ("POV-Ray smooth", "kage none, whole", "ns"), ("POV-Ray smooth", "kage none, whole", "whole_s"),
+    ("POV-Ray height_field", "kage displaced, whole", "ns"),
+    ("POV-Ray height_field", "kage displaced, whole", "whole_s"),
+    ("Tachyon, smooth", "kage none, whole", "ns"), ("Embree, plane", "kage none, whole", "ns"),
+    ("Embree, displaced mesh", "kage displaced, whole", "ns"), ("embree mesh", "mesh", "ns"),
+)
+
+
+def peers_table(results: Results) -> Table:
+    """In times kage's time, round by round; those that were not measured are left out."""
+    rows = []
+    for peer, own, figure in PEERS:
+        found = results.ratio(f"{peer}: {figure}", f"{own}: {figure}")
+        if found:
+            rows.append((peer, FIGURES[figure][0], own.removesuffix(", whole"), scaled(found, 1)))
+    return Table("Peers", ("peer", "what", "kage's", "times kage's time"), rows)
+
+
 def figure_table(part: str, jobs: Sequence[Job], results: Results) -> Table:
     rows = []
     for job in jobs:
@@ -82,13 +103,13 @@ def stage_table(scene: Scene) -> Table:
              f"{row.last_misses:.4f}", "–" if row.share is None else f"{100 * row.share:.1f} %") for row in scene.rows]
     return Table(f"Stages: {scene.name}", ("stage, or library", "instructions a pixel", "reads and writes",
                                            "misses of the first cache", "of the last", named), rows,
-                 "Counts by callgrind, of the render alone. Shares by perf, of the whole process at full size"
+                 "Counts by callgrind, of the render alone. Shares by perf, of a run at full size"
                  f"{'; this machine counts no cycles' if scene.event == 'cpu-clock' else ''}." if scene.event else
                  "Counts by callgrind, of the render alone. perf is missing, or may not sample here.")
 
 
 def tables(judged: Sequence[Judged], jobs: Sequence[Job], results: Results, scenes: Sequence[Scene]) -> list[Table]:
-    found = [bounds_table(judged)]
+    found = [one for one in (bounds_table(judged), peers_table(results)) if one.rows]
     for part in PARTS:
         mine = [job for job in jobs if job.part == part]
         if mine:

@@ -53,7 +53,7 @@ def matched(pattern: str, text: str) -> float:
 def trace_once(command: Sequence[Word], size: Size) -> Figures:
     found = launch(command, BEST_OF)
     times = milliseconds(found.text)
-    return {"ns": times["render"] * 1e6 / pixels(size), "memory": found.memory}
+    return {"ns": times["render"] * 1e6 / pixels(size), **found.weight}
 
 
 def trace_job(about: About, name: str, scene: Word, size: Size, rounds: int, *options: str, threads: int = 1) -> Job:
@@ -85,7 +85,7 @@ def povray_once(scene: Path, size: Size, picture: Path) -> Figures:
     command.remove("-F")
     found = launch(command)
     return {"ns": programs.parse_povray(found.text)["trace"] * 1e9 / pixels(size), "whole_s": min(found.seconds),
-            "memory": found.memory}
+            **found.weight}
 
 
 def povray(about: About) -> list[Job]:
@@ -105,14 +105,14 @@ def povray(about: About) -> list[Job]:
 def whole_once(command: Sequence[Word], size: Size) -> Figures:
     found = launch(command)
     return {"ns": milliseconds(found.text)["render"] * 1e6 / pixels(size), "whole_s": min(found.seconds),
-            "memory": found.memory}
+            **found.weight}
 
 
 def tachyon_once(program: str, scene: Path, size: Size, picture: Path) -> Figures:
     found = launch([program, scene, "-numthreads", "1", "-res", str(size[0]), str(size[1]), "-format", "PPM", "-o",
                     picture])
     seconds = matched(r"Ray Tracing Time: +([0-9.]+) seconds", found.text)
-    return {"ns": seconds * 1e9 / pixels(size), "whole_s": min(found.seconds), "memory": found.memory}
+    return {"ns": seconds * 1e9 / pixels(size), "whole_s": min(found.seconds), **found.weight}
 
 
 def tachyon(about: About) -> list[Job]:
@@ -155,8 +155,7 @@ def write_once(command: Sequence[Word], size: Size) -> Figures:
     found = launch(command)
     path = Path(command[-1])
     return {"output_s": milliseconds(found.text)["output"] / 1e3, "file_bytes": float(path.stat().st_size),
-            "pixel_bytes": path.stat().st_size / pixels(size), "memory": found.memory,
-            **{f"{name}_bytes": value for name, value in found.moved.items()}}
+            "pixel_bytes": path.stat().st_size / pixels(size), **found.weight}
 
 
 def exr(about: About) -> list[Job]:
@@ -177,8 +176,18 @@ def exr(about: About) -> list[Job]:
 def map_once(command: Sequence[Word]) -> Figures:
     found = launch(command)
     times = milliseconds(found.text)
-    return {"ready_s": without(found, times), "bump_ms": times["bump"], "render_ms": times["render"],
-            "memory": found.memory}
+    return {"ready_s": without(found, times), **found.weight}
+
+
+def look_up_once(command: Sequence[Word]) -> Figures:
+    times = milliseconds(launch(command, BEST_OF).text)
+    return {"bump_ms": times["bump"], "render_ms": times["render"]}
+
+
+def look_up_job(about: About, size: int) -> Job:
+    command = words(about, inputs.map_scene(about.inputs, size, "png"), about.level.size, threads=1)
+    return Job(f"look-ups {size}", "maps", functools.partial(look_up_once, command), about.level.slow_rounds,
+               programs.shown(command))
 
 
 def sample_bytes(level: Level, results: Results) -> None:
@@ -224,6 +233,7 @@ def maps(about: About) -> list[Job]:
         jobs.append(map_job(about, f"map {size}", scene, "0"))
         if size in (level.maps[0], level.maps[-1]):
             jobs += [map_job(about, f"map {size}, {method}", scene, method) for method in MORE_METHODS]
+            jobs.append(look_up_job(about, size))
     exr_scene = inputs.map_scene(about.inputs, level.exr_map, "exr")
     return [*jobs, map_job(about, f"map {level.exr_map} exr", exr_scene, "0")]
 
@@ -234,7 +244,7 @@ def maps(about: About) -> list[Job]:
 def load_once(command: Sequence[Word], size: Size) -> Figures:
     found = launch(command)
     times = milliseconds(found.text)
-    return {"ready_s": without(found, times), "memory": found.memory, "ns": times["render"] * 1e6 / pixels(size)}
+    return {"ready_s": without(found, times), **found.weight, "ns": times["render"] * 1e6 / pixels(size)}
 
 
 def mesh_once(load: Sequence[Word], traced: Sequence[Word], size: Size) -> Figures:
@@ -279,7 +289,7 @@ def objects(about: About) -> list[Job]:
 def whole_picture_once(command: Sequence[Word], size: Size) -> Figures:
     found = launch(command)
     path = Path(command[-1])
-    result = {"pixel_ns": min(found.seconds) * 1e9 / pixels(size), "memory": found.memory,
+    result: Figures = {"pixel_ns": min(found.seconds) * 1e9 / pixels(size), **found.weight,
               "file_bytes": float(path.stat().st_size)}
     path.unlink()
     return result
@@ -298,7 +308,7 @@ def large(about: About) -> list[Job]:
 def start_once(command: Sequence[Word], times: int) -> Figures:
     found = launch(command, times)
     return {"ms": 1e3 * statistics.median(found.seconds), "cpu_ms": 1e3 * statistics.median(found.cpu),
-            "memory": found.memory}
+            **found.weight}
 
 
 def start(about: About) -> list[Job]:

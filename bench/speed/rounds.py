@@ -63,7 +63,11 @@ class Ran:
     seconds: list[float]
     cpu: list[float]  # seconds of processor time, in the same order
     memory: float  # the most of all runs, bytes
-    moved: dict[str, float]  # bytes read and written by the last run
+    moved: Figures  # bytes read and written by the last run, memory maps apart; empty where the system has no count
+
+    @property
+    def weight(self) -> Figures:
+        return {"memory": self.memory, **self.moved}
 
 
 def launch(command: Sequence[Word], times: int = 1) -> Ran:
@@ -79,7 +83,7 @@ def launch(command: Sequence[Word], times: int = 1) -> Ran:
         if run["status"]:
             last = done.stderr.strip().splitlines()[-1:]
             raise MeasureError(f"{programs.shown(command)}: status {run['status']}: {''.join(last)}")
-    moved = {name: float(runs[-1][name]) for name in ("read", "written") if name in runs[-1]}
+    moved = {f"{name}_bytes": float(runs[-1][name]) for name in ("read", "written") if name in runs[-1]}
     return Ran(done.stderr, [run["seconds"] for run in runs], [run["cpu"] for run in runs],
                max(run["memory"] for run in runs), moved)
 

@@ -22,7 +22,6 @@ from bench.speed.plan import About
 
 LEAST = 0.01  # of a scene's instructions or samples: smaller stages are added up
 OTHERS = "all others"
-EVENTS = ("cycles", "cpu-clock")
 FREQUENCY = 4000
 
 
@@ -35,7 +34,7 @@ class Row:
     accesses: float  # data read and written
     first_misses: float  # of the first-level data cache
     last_misses: float  # of the last level: lines from memory
-    share: float | None  # of the samples, 0 to 1
+    share: float | None  # of the samples in all rows, 0 to 1
 
 
 @dataclass(frozen=True)
@@ -76,31 +75,29 @@ def summed(counts: dict[callgrind.Function, Counts]) -> dict[str, Counts]:
     return found
 
 
-def parse_perf(text: str) -> dict[str, float]:
-    """From `perf report`: each function's share of the samples within kage's render."""
+def parse_perf(text: str) -> tuple[str, dict[str, float]]:
+    """From `perf report`: the event, and each function's share of the samples."""
+    event = re.search(r"of event '([\w-]+)", text)
     found: dict[str, float] = {}
     for share, program, name in re.findall(r"^ *([0-9.]+)% +(\S+) +\[[.k]\] (.+?) *$", text, re.MULTILINE):
         where = place(callgrind.Function("kage" if program == "kage" else program, name))
         found[where] = found.get(where, 0) + float(share) / 100
-    return found
+    return event[1] if event and found else "", found
 
 
 def sample(command: Sequence[Word]) -> tuple[str, dict[str, float]]:
-    """The event, and the share of each function; empty where perf is not here or may not sample."""
+    """The event, and the share of each function; empty where perf is not here or may not sample. perf takes cycles, or
+    the clock where it can't count them."""
     if not shutil.which("perf"):
         return "", {}
-    for event in EVENTS:
-        with tempfile.TemporaryDirectory() as folder:
-            data = Path(folder) / "perf"
-            try:
-                programs.run(["perf", "record", "-o", data, "-e", event, "-F", str(FREQUENCY), *command])
-                text = programs.run(["perf", "report", "-i", data, "--stdio", "--no-children", "--sort", "dso,symbol"])
-            except MeasureError:
-                continue
-        found = parse_perf(text)
-        if found:
-            return event, found
-    return "", {}
+    with tempfile.TemporaryDirectory() as folder:
+        data = Path(folder) / "perf"
+        try:
+            programs.run(["perf", "record", "-o", data, "-F", str(FREQUENCY), *command])
+            text = programs.run(["perf", "report", "-i", data, "--stdio", "--no-children", "--sort", "dso,symbol"])
+        except MeasureError:
+            return "", {}
+    return parse_perf(text)
 
 
 def row(stage: str, counts: Sequence[Counts], pixels: int, share: float | None) -> Row:
@@ -113,6 +110,9 @@ def row(stage: str, counts: Sequence[Counts], pixels: int, share: float | None) 
 def table(name: str, counts: dict[str, Counts], pixels: int, event: str, shares: dict[str, float]) -> Scene:
     """The stages that cost most, first; the last row is all others."""
     total = sum(found["Ir"] for found in counts.values())
+    inside = {stage: share for stage, share in shares.items() if stage in counts}  # without reading and writing
+    event = event if any(inside.values()) else ""
+    shares = {stage: share / sum(inside.values()) for stage, share in inside.items()} if event else {}
     most = sorted((stage for stage, found in counts.items()
                    if found["Ir"] >= LEAST * total or shares.get(stage, 0) >= LEAST),
                   key=lambda stage: -counts[stage]["Ir"])

@@ -11,6 +11,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "base/real.h"
 #include "base/vec3.h"
 
 typedef struct wide_box {
@@ -40,6 +41,47 @@ typedef struct wide_walk {
     float enter[WIDE_STACK];  /* where the ray enters what is left to visit, the nearest last */
     int32_t left[WIDE_STACK]; /* a node, or ~item */
 } wide_walk;
+
+enum { WIDE_RAYS = 16 };
+
+/* Up to 16 rays side by side. Where they are close to each other, a node is tested once for all of them. */
+typedef struct wide_beam {
+    int n, top;
+    int work; /* nodes and items left to test before the beam gives up */
+    float low[3][WIDE_RAYS], high[3][WIDE_RAYS], over[3][WIDE_RAYS];
+    float end[WIDE_RAYS]; /* of each ray; negative: it is done */
+    float far;            /* the largest end */
+    /* For each axis all rays are at t within first + t slowest .. last + t fastest. So a box lo..hi is passed where t
+     * slowest <= hi - first and t fastest >= lo - last: two bounds of t, each from below or from above. As a bound from
+     * below it is (hi - first) slow[0], from above (hi - first) slow[1] + slow[2]; and so for the other. */
+    float first[3], last[3], slow[3][3], fast[3][3];
+    float enter[WIDE_STACK];
+    int32_t left[WIDE_STACK]; /* a node, or ~(8 node + child) */
+} wide_beam;
+
+/* Begin with n rays r + s t, 0 <= t <= end: lanes lane[] of the arrays. An end below 0: the ray is done. */
+void wide_beam_begin(wide_beam *k, int n, const int32_t *lane, const real *const r[3], const real *const s[3],
+                     const real *end);
+
+/* The rays have new ends. */
+void wide_beam_shorten(wide_beam *k, const int32_t *lane, const real *end);
+
+/* The next item that some rays may pass, roughly from near to far, and a bit for each of them. -1: none is left, or the
+ * rays are too far from each other: then k->work < 0. */
+int32_t wide_beam_next(const wide_bvh *w, wide_beam *k, unsigned *rays);
+
+/* The index of the lowest bit of a number that is not 0. */
+static inline int wide_lowest(unsigned bits)
+{
+#if defined(__GNUC__)
+    return __builtin_ctz(bits);
+#else
+    int k = 0;
+    for (; !(bits & 1); bits >>= 1)
+        k++;
+    return k;
+#endif
+}
 
 void wide_begin(wide_walk *k, vec3 r, vec3 s);
 

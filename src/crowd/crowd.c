@@ -8,63 +8,21 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* ---- lanes under their own maps ---- */
+/* ---- lanes ---- */
 
-void crowd_place_back(const crowd_copy *c, const vec3s *r, int i, vec3s *to, int j)
-{
-    const real rx = r->x[i] - c->o[0], ry = r->y[i] - c->o[1], rz = r->z[i] - c->o[2];
-    to->x[j] = c->back[0][0] * rx + c->back[0][1] * ry + c->back[0][2] * rz;
-    to->y[j] = c->back[1][0] * rx + c->back[1][1] * ry + c->back[1][2] * rz;
-    to->z[j] = c->back[2][0] * rx + c->back[2][1] * ry + c->back[2][2] * rz;
-}
-
-void crowd_ray_back(const crowd_copy *c, const rays *x, int i, rays *y, int j)
-{
-    const real sx = x->s.x[i], sy = x->s.y[i], sz = x->s.z[i];
-    crowd_place_back(c, &x->r, i, &y->r, j);
-    y->s.x[j] = c->back[0][0] * sx + c->back[0][1] * sy + c->back[0][2] * sz;
-    y->s.y[j] = c->back[1][0] * sx + c->back[1][1] * sy + c->back[1][2] * sz;
-    y->s.z[j] = c->back[2][0] * sx + c->back[2][1] * sy + c->back[2][2] * sz;
-}
-
-/* The rays and parts of lanes on copies. */
-static void rays_back(const crowd *f, int n, const rays *x, const int32_t *part, rays *y, int32_t *its)
+/* The copies and the originals' parts of lanes on the crowd. */
+static void split_parts(const crowd *f, int n, const int32_t *part, int32_t *at, int32_t *its)
 {
     for (int i = 0; i < n; i++) {
-        const int32_t k = crowd_copy_of(f, part[i]);
-        crowd_ray_back(&f->copy[k], x, i, y, i);
-        its[i] = part[i] - k * f->parts;
+        at[i] = crowd_copy_of(f, part[i]);
+        its[i] = part[i] - at[i] * f->parts;
     }
 }
 
-/* The crowd's parts again, where the original's may have changed. */
-static void parts_to(const crowd *f, int n, const int32_t *its, int32_t *part)
+static void join_parts(const crowd *f, int n, const int32_t *at, const int32_t *its, int32_t *part)
 {
     for (int i = 0; i < n; i++)
-        part[i] = part[i] / f->parts * f->parts + its[i];
-}
-
-/* v = k M v, by the columns of each copy's M. */
-static void vectors_to(const crowd *f, int n, const int32_t *part, real k, vec3s *v)
-{
-    for (int i = 0; i < n; i++) {
-        const crowd_copy *c = &f->copy[crowd_copy_of(f, part[i])];
-        const real x = v->x[i], y = v->y[i], z = v->z[i];
-        v->x[i] = x * (k * c->to[0][0]) + y * (k * c->to[1][0]) + z * (k * c->to[2][0]);
-        v->y[i] = x * (k * c->to[0][1]) + y * (k * c->to[1][1]) + z * (k * c->to[2][1]);
-        v->z[i] = x * (k * c->to[0][2]) + y * (k * c->to[1][2]) + z * (k * c->to[2][2]);
-    }
-}
-
-static void places_to(const crowd *f, int n, const int32_t *part, vec3s *v)
-{
-    vectors_to(f, n, part, 1, v);
-    for (int i = 0; i < n; i++) {
-        const crowd_copy *c = &f->copy[crowd_copy_of(f, part[i])];
-        v->x[i] += c->o[0];
-        v->y[i] += c->o[1];
-        v->z[i] += c->o[2];
-    }
+        part[i] = at[i] * f->parts + its[i];
 }
 
 STAGE static void crowd_mirror_u(const crowd *f, int n, const real *u, real *to)
@@ -80,22 +38,24 @@ static void crowd_locate(const surface *base, int n, const rays *x, const real *
 {
     const crowd *f = (const crowd *)base;
     rays y;
-    int32_t its[LANES];
-    rays_back(f, n, x, part, &y, its);
+    int32_t at[LANES], its[LANES];
+    split_parts(f, n, part, at, its);
+    crowd_rays_back(f, n, at, NULL, x, &y);
     f->from->ops->locate(f->from, n, &y, t, its, u, w);
     crowd_mirror_u(f, n, u, u);
-    parts_to(f, n, its, part);
+    join_parts(f, n, at, its, part);
 }
 
 static void crowd_foot(const surface *base, int n, const rays *x, const real *t, int32_t *part, real *u, real *w)
 {
     const crowd *f = (const crowd *)base;
     rays y;
-    int32_t its[LANES];
-    rays_back(f, n, x, part, &y, its);
+    int32_t at[LANES], its[LANES];
+    split_parts(f, n, part, at, its);
+    crowd_rays_back(f, n, at, NULL, x, &y);
     f->from->ops->foot(f->from, n, &y, t, its, u, w);
     crowd_mirror_u(f, n, u, u);
-    parts_to(f, n, its, part);
+    join_parts(f, n, at, its, part);
 }
 
 static void crowd_eval(const surface *base, int n, const int32_t *part, const real *u, const real *w, int order,
@@ -103,35 +63,38 @@ static void crowd_eval(const surface *base, int n, const int32_t *part, const re
 {
     const crowd *f = (const crowd *)base;
     real v[LANES];
-    int32_t its[LANES];
-    for (int i = 0; i < n; i++)
-        its[i] = part[i] % f->parts;
+    int32_t at[LANES], its[LANES];
+    crowd_maps k;
+    split_parts(f, n, part, at, its);
+    crowd_maps_to(f, n, at, &k);
     crowd_mirror_u(f, n, u, v);
     f->from->ops->eval(f->from, n, its, v, w, order, q);
-    places_to(f, n, part, &q->Q);
-    vectors_to(f, n, part, f->mirror, &q->Qu);
-    vectors_to(f, n, part, 1, &q->Qw);
+    crowd_places_to(&k, n, &q->Q);
+    crowd_vectors_to(&k, n, f->mirror, &q->Qu);
+    crowd_vectors_to(&k, n, 1, &q->Qw);
     if (order < 2)
         return;
-    vectors_to(f, n, part, 1, &q->Quu);
-    vectors_to(f, n, part, f->mirror, &q->Quw);
-    vectors_to(f, n, part, 1, &q->Qww);
+    crowd_vectors_to(&k, n, 1, &q->Quu);
+    crowd_vectors_to(&k, n, f->mirror, &q->Quw);
+    crowd_vectors_to(&k, n, 1, &q->Qww);
 }
 
 static void crowd_occlude_own(const surface *base, int n, const rays *x, const int32_t *part, real *lit)
 {
     const crowd *f = (const crowd *)base;
     rays y;
-    int32_t its[LANES];
-    rays_back(f, n, x, part, &y, its);
+    int32_t at[LANES], its[LANES];
+    split_parts(f, n, part, at, its);
+    crowd_rays_back(f, n, at, NULL, x, &y);
     f->from->ops->occlude_own(f->from, n, &y, its, lit);
 }
 
 void crowd_occlude_same(const crowd *f, int n, const rays *x, const int32_t *part, real *lit)
 {
     rays y;
-    int32_t its[LANES];
-    rays_back(f, n, x, part, &y, its);
+    int32_t at[LANES], its[LANES];
+    split_parts(f, n, part, at, its);
+    crowd_rays_back(f, n, at, NULL, x, &y);
     f->from->ops->occlude(f->from, n, &y, lit);
 }
 

@@ -49,7 +49,10 @@ const crowd *crowd_of(const surface *f);
 /* Bytes in memory. */
 size_t crowd_size(const crowd *f);
 
-static inline int32_t crowd_copy_of(const crowd *f, int32_t part) { return part / f->parts; }
+static inline int32_t crowd_copy_of(const crowd *f, int32_t part)
+{
+    return f->parts == 1 ? part : part / f->parts; /* a division costs as much as a hit */
+}
 
 /* The map of copy k < n. */
 affine crowd_map(const crowd *f, int32_t k);

@@ -132,7 +132,8 @@ typedef struct cutting {
 } cutting;
 
 /* Cut triangles a to b - 1 so that the sum of the boxes' areas is least: the number of rays that reach a box is as its
- * area, and a cluster takes the same time whether it is full or not. */
+ * area, and a cluster takes the same time whether it is full or not. A box takes time in the hierarchy, too, which
+ * counts as the area of a triangle's box. */
 static int cut(const cutting *k, int a, int b)
 {
     float sum[CHUNK + 1]; /* of the best cut of what is before */
@@ -140,10 +141,11 @@ static int cut(const cutting *k, int a, int b)
     sum[0] = 0;
     for (int i = a; i < b; i++) {
         bvh_box all = k->box[k->sorted[i].index];
+        const float own = area_of(&all);
         float best = HUGE_VALF;
         for (int j = i; j >= a && j > i - CLUSTER; j--) {
             add_box(&all, &k->box[k->sorted[j].index]);
-            const float now = sum[j - a] + area_of(&all);
+            const float now = sum[j - a] + area_of(&all) + own;
             if (now <= best) {
                 best = now;
                 k->size[i] = (unsigned char)(i - j + 1);

@@ -6,16 +6,67 @@
 #include <stdlib.h>
 #include <string.h>
 
+enum { SOME = 16 };
+
+/* The triangles of some lanes, side by side. */
+typedef struct triangles {
+    float at[3][3][SOME], normal[3][3][SOME], uv[3][2][SOME];
+} triangles;
+
+static void gather(const mesh *f, int n, const int32_t *part, bool normals, triangles *to)
+{
+    for (int i = 0; i < n; i++) {
+        const float(*at)[3] = (const float(*)[3])f->d.at[part[i]];
+        const mesh_skin *x = &f->d.skin[part[i]];
+        for (int c = 0; c < 3; c++) {
+            for (int a = 0; a < 3; a++)
+                to->at[c][a][i] = at[c][a];
+            for (int a = 0; normals && a < 3; a++)
+                to->normal[c][a][i] = x->normal[c][a];
+            to->uv[c][0][i] = x->uv[c][0];
+            to->uv[c][1][i] = x->uv[c][1];
+        }
+    }
+}
+
+static inline vec3 get(const float (*v)[SOME], int i)
+{
+    return (vec3){(double)v[0][i], (double)v[1][i], (double)v[2][i]};
+}
+
+static inline mesh_triangle triangle_of(const triangles *f, int i)
+{
+    mesh_triangle x;
+    for (int c = 0; c < 3; c++) {
+        x.at[c] = get(f->at[c], i);
+        x.normal[c] = get(f->normal[c], i);
+        x.u[c] = (double)f->uv[c][0][i];
+        x.w[c] = (double)f->uv[c][1][i];
+    }
+    return x;
+}
+
+STAGE static void triangle_places(const triangles *restrict f, int n, const vec3s *restrict r, const vec3s *restrict s,
+                                  int first, const real *restrict t, real *restrict u, real *restrict w)
+{
+    for (int i = 0; i < n; i++) {
+        const mesh_triangle a = triangle_of(f, i);
+        const int l = first + i;
+        double b, c;
+        mesh_foot_shares(&a, vec3_add(vec3s_get(r, l), vec3_scale(vec3s_get(s, l), (double)t[l])), &b, &c);
+        mesh_keep_inside(&b, &c);
+        u[l] = (real)(a.u[0] + b * (a.u[1] - a.u[0]) + c * (a.u[2] - a.u[0]));
+        w[l] = (real)(a.w[0] + b * (a.w[1] - a.w[0]) + c * (a.w[2] - a.w[0]));
+    }
+}
+
 static void mesh_locate(const surface *base, int n, const rays *x, const real *t, int32_t *part, real *u, real *w)
 {
-    const mesh *f = (const mesh *)base;
-    for (int i = 0; i < n; i++) {
-        const mesh_triangle a = mesh_triangle_of(f, part[i]);
-        double b, c;
-        mesh_foot_shares(&a, vec3_add(vec3s_get(&x->r, i), vec3_scale(vec3s_get(&x->s, i), (double)t[i])), &b, &c);
-        mesh_keep_inside(&b, &c);
-        u[i] = (real)(a.u[0] + b * (a.u[1] - a.u[0]) + c * (a.u[2] - a.u[0]));
-        w[i] = (real)(a.w[0] + b * (a.w[1] - a.w[0]) + c * (a.w[2] - a.w[0]));
+    triangles f;
+    for (int i = 0; i < n; i += SOME) {
+        const int some = n - i < SOME ? n - i : SOME;
+        gather((const mesh *)base, some, part + i, false, &f);
+        triangle_places(&f, some, &x->r, &x->s, i, t, u, w);
     }
 }
 
@@ -79,30 +130,56 @@ static vec3 along(const vec3 v[3], double b, double c)
     return vec3_add(vec3_scale(vec3_sub(v[1], v[0]), b), vec3_scale(vec3_sub(v[2], v[0]), c));
 }
 
+/* gcc finds it too long to be part of both stages. */
+#define INLINE __attribute__((always_inline)) inline
+
+/* Q and its partials at (u,w); the second partials only if `second`. */
+INLINE static void eval_one(const triangles *restrict f, int i, int l, const real *u, const real *w, bool second,
+                            partials *restrict q)
+{
+    const mesh_triangle x = triangle_of(f, i);
+    const double bu = x.u[1] - x.u[0], bw = x.w[1] - x.w[0], cu = x.u[2] - x.u[0], cw = x.w[2] - x.w[0],
+                 k = 1 / (bu * cw - cu * bw);
+    double b, c;
+    mesh_shares(&x, (double)u[l], (double)w[l], &b, &c);
+    mesh_keep_inside(&b, &c);
+    const vec3 N = mesh_mix(x.normal, b, c), n_unit = vec3_unit(N);
+    const vec3 Qu = across(along(x.at, k * cw, -k * bw), n_unit), Qw = across(along(x.at, -k * cu, k * bu), n_unit);
+    vec3s_set(&q->Q, l, mesh_mix(x.at, b, c));
+    vec3s_set(&q->Qu, l, Qu);
+    vec3s_set(&q->Qw, l, Qw);
+    if (!second)
+        return;
+    const double over = 1 / vec3_length(N);
+    const vec3 nu = vec3_scale(along(x.normal, k * cw, -k * bw), over),
+               nw = vec3_scale(along(x.normal, -k * cu, k * bu), over);
+    vec3s_set(&q->Quu, l, vec3_scale(n_unit, -vec3_dot(nu, Qu)));
+    vec3s_set(&q->Quw, l, vec3_scale(n_unit, -0.5 * (vec3_dot(nu, Qw) + vec3_dot(nw, Qu))));
+    vec3s_set(&q->Qww, l, vec3_scale(n_unit, -vec3_dot(nw, Qw)));
+}
+
+STAGE static void triangle_eval(const triangles *restrict f, int n, int first, const real *restrict u,
+                                const real *restrict w, partials *restrict q)
+{
+    for (int i = 0; i < n; i++)
+        eval_one(f, i, first + i, u, w, false, q);
+}
+
+STAGE static void triangle_bends(const triangles *restrict f, int n, int first, const real *restrict u,
+                                 const real *restrict w, partials *restrict q)
+{
+    for (int i = 0; i < n; i++)
+        eval_one(f, i, first + i, u, w, true, q);
+}
+
 static void mesh_eval(const surface *base, int n, const int32_t *part, const real *u, const real *w, int order,
                       partials *q)
 {
-    const mesh *f = (const mesh *)base;
-    for (int i = 0; i < n; i++) {
-        const mesh_triangle x = mesh_triangle_of(f, part[i]);
-        const double bu = x.u[1] - x.u[0], bw = x.w[1] - x.w[0], cu = x.u[2] - x.u[0], cw = x.w[2] - x.w[0],
-                     k = 1 / (bu * cw - cu * bw);
-        double b, c;
-        mesh_shares(&x, (double)u[i], (double)w[i], &b, &c);
-        mesh_keep_inside(&b, &c);
-        const vec3 N = mesh_mix(x.normal, b, c), n_unit = vec3_unit(N);
-        const vec3 Qu = across(along(x.at, k * cw, -k * bw), n_unit), Qw = across(along(x.at, -k * cu, k * bu), n_unit);
-        vec3s_set(&q->Q, i, mesh_mix(x.at, b, c));
-        vec3s_set(&q->Qu, i, Qu);
-        vec3s_set(&q->Qw, i, Qw);
-        if (order < 2)
-            continue;
-        const double over = 1 / vec3_length(N);
-        const vec3 nu = vec3_scale(along(x.normal, k * cw, -k * bw), over),
-                   nw = vec3_scale(along(x.normal, -k * cu, k * bu), over);
-        vec3s_set(&q->Quu, i, vec3_scale(n_unit, -vec3_dot(nu, Qu)));
-        vec3s_set(&q->Quw, i, vec3_scale(n_unit, -0.5 * (vec3_dot(nu, Qw) + vec3_dot(nw, Qu))));
-        vec3s_set(&q->Qww, i, vec3_scale(n_unit, -vec3_dot(nw, Qw)));
+    triangles f;
+    for (int i = 0; i < n; i += SOME) {
+        const int some = n - i < SOME ? n - i : SOME;
+        gather((const mesh *)base, some, part + i, true, &f);
+        (order < 2 ? triangle_eval : triangle_bends)(&f, some, i, u, w, q);
     }
 }
 

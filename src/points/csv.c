@@ -207,8 +207,7 @@ bool points_csv(points_file *f)
             p->n++;
         else if (f->e->count - before >= ERRORS_SHOWN)
             return false;
-        if (p->n % SHOW_EVERY == 0 &&
-            !progress_show(f->progress, "reading", (double)(at - f->text) / (double)f->size))
+        if (p->n % SHOW_EVERY == 0 && !progress_show(f->progress, "reading", (double)(at - f->text) / (double)f->size))
             return errors_add(f->e, "cancelled");
     }
     return f->e->count == before;

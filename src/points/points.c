@@ -158,8 +158,8 @@ static char *read_all(const char *path, const char *name, size_t *size, errors *
     return text;
 }
 
-bool points_read(const char *path, const char *name, const points_column *columns, const char *label,
-                 const progress *w, points *p, errors *e)
+bool points_read(const char *path, const char *name, const points_column *columns, const char *label, const progress *w,
+                 points *p, errors *e)
 {
     points_file f = {.name = name, .column = columns, .label = label, .progress = w, .p = p, .e = e};
     *p = (points){0};

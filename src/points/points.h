@@ -37,8 +37,8 @@ typedef struct points {
 
 /* Read the file at `path`, `name` in messages; the columns end with one without a name. label: the name of the labels'
  * column. False: all errors are in e. In either case free it. */
-bool points_read(const char *path, const char *name, const points_column *columns, const char *label,
-                 const progress *w, points *p, errors *e);
+bool points_read(const char *path, const char *name, const points_column *columns, const char *label, const progress *w,
+                 points *p, errors *e);
 void points_free(points *p);
 
 /* Add an error about a row. Always false. */

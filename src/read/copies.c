@@ -18,19 +18,19 @@ enum { X, Y, Z, SCALE, SX, SY, SZ, TURN, RX, RY, RZ, COLUMNS };
 #define SCALES SMALL, BIG, false, "a factor from 1e-6 to 1e6"
 #define ANGLES -BIG, BIG, false, "an angle in degrees"
 static const points_column columns[COLUMNS + 1] = {
-    [X] = {"x", PLACES},      [Y] = {"y", PLACES},   [Z] = {"z", PLACES},   [SCALE] = {"scale", SCALES},
-    [SX] = {"sx", SCALES},    [SY] = {"sy", SCALES}, [SZ] = {"sz", SCALES}, [TURN] = {"turn", ANGLES},
-    [RX] = {"rx", ANGLES},    [RY] = {"ry", ANGLES}, [RZ] = {"rz", ANGLES}, [COLUMNS] = {.name = NULL},
+    [X] = {"x", PLACES},   [Y] = {"y", PLACES},   [Z] = {"z", PLACES},   [SCALE] = {"scale", SCALES},
+    [SX] = {"sx", SCALES}, [SY] = {"sy", SCALES}, [SZ] = {"sz", SCALES}, [TURN] = {"turn", ANGLES},
+    [RX] = {"rx", ANGLES}, [RY] = {"ry", ANGLES}, [RZ] = {"rz", ANGLES}, [COLUMNS] = {.name = NULL},
 };
 
 /* The rows of the file, and the copies made of some of them. */
 typedef struct rows {
     points p;
-    const char *name; /* of the file */
-    affine centre;    /* from the original's space to its place before its own transform */
-    affine placed;    /* its transform */
-    affine after;     /* the list's */
-    int32_t *row;     /* of each copy */
+    const char *name;                           /* of the file */
+    affine centre;                              /* from the original's space to its place before its own transform */
+    affine placed;                              /* its transform */
+    affine after;                               /* the list's */
+    int32_t *row;                               /* of each copy */
     int materials, material[POINTS_LABELS + 1]; /* of the list */
     int of_label[POINTS_LABELS];                /* the list's material for each label */
     int kind[POINTS_LABELS + 1];                /* of each material in its crowd */
@@ -51,10 +51,8 @@ static int material_of(const rows *k, int32_t row)
 static affine map_of(const rows *k, int32_t row)
 {
     const double all = value(k, SCALE, row, 1);
-    const affine size = {{value(k, SX, row, all), 0, 0},
-                         {0, value(k, SY, row, all), 0},
-                         {0, 0, value(k, SZ, row, all)},
-                         {0, 0, 0}};
+    const affine size = {
+        {value(k, SX, row, all), 0, 0}, {0, value(k, SY, row, all), 0}, {0, 0, value(k, SZ, row, all)}, {0, 0, 0}};
     const double degrees[3] = {value(k, RX, row, 0), value(k, RY, row, value(k, TURN, row, 0)), value(k, RZ, row, 0)};
     affine m = affine_then(&k->placed, &size), step = affine_identity();
     if (degrees[0] != 0 || degrees[1] != 0 || degrees[2] != 0) {
@@ -272,7 +270,8 @@ static bool can_be_copied(reader *r, node *at, const object *o, const surface *f
     if (!(hi[0] - lo[0] < HUGE_VAL && hi[1] - lo[1] < HUGE_VAL && hi[2] - lo[2] < HUGE_VAL))
         return yaml_error(r->y, at, "a %s has no end, expected copies of an object that has", from->ops->kind);
     if (o->bump && scene_wants_truth(r->s))
-        return yaml_error(r->y, at, "a list of copies with a bump can't be displaced, expected objects with 'copy' for %s",
+        return yaml_error(r->y, at,
+                          "a list of copies with a bump can't be displaced, expected objects with 'copy' for %s",
                           scene_truth_name(r->s));
     return true;
 }

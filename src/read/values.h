@@ -70,8 +70,8 @@ bool reader_up_along(reader *r, node *map);
 /* The name that is a key of the map; owned by the caller. NULL with an error. */
 char *reader_name(reader *r, node *map, node *key);
 
-/* The map of at most `most` named things under a required key of the scene. Sets *array to one zeroed item of `size` bytes for each,
- * owned by the scene. NULL with an error; *count is then unchanged. */
+/* The map of at most `most` named things under a required key of the scene. Sets *array to one zeroed item of `size`
+ * bytes for each, owned by the scene. NULL with an error; *count is then unchanged. */
 node *reader_named(reader *r, const char *key, int most, size_t size, void *array, int *count);
 
 /* The path of a file that is given relative to the scene's folder; owned by the caller. Adds the file to those that the
@@ -80,7 +80,7 @@ char *reader_beside(reader *r, const char *file);
 
 /* Whether an image was read (if not, *e has the reason) and has at least 2 x 2 values. False with an error. Frees *e.
  */
-bool reader_usable(reader *r, node *file, const char *name, bool was_read, const image *p, const char *values,
+bool reader_usable(reader *r, node *file, const char *name, bool was_read, int width, int height, const char *values,
                    errors *e);
 
 /* A function of u and w; owned by the caller. NULL with an error. */

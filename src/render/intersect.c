@@ -32,8 +32,8 @@ static void find_own(const scene *s, int n, const ray_origins *from, const hits 
     for (int i = 0; i < n; i++) {
         const int32_t id = h->id[i];
         const crowd *f = id >= 0 ? s->object[id].crowd : NULL;
-        own[i] = id >= 0 && id == from->id[i] &&
-                 (!f || crowd_copy_of(f, h->part[i]) == crowd_copy_of(f, from->part[i]));
+        own[i] =
+            id >= 0 && id == from->id[i] && (!f || crowd_copy_of(f, h->part[i]) == crowd_copy_of(f, from->part[i]));
     }
 }
 

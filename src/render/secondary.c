@@ -92,8 +92,8 @@ static double ior_of(const scene *sc, int id) { return sc->material[sc->object[i
 /* The ior of the innermost medium of lane i. */
 static double ior_in(const scene *sc, const media *m, int i) { return m->n[i] ? ior_of(sc, m->id[m->n[i] - 1][i]) : 1; }
 
-/* Lane i enters object `id`, whose inside has this number, or leaves it (out). Returns the ratio of the iors before and behind. Where objects
- * overlap, the ior is that of the one entered last, as in POV-Ray. */
+/* Lane i enters object `id`, whose inside has this number, or leaves it (out). Returns the ratio of the iors before and
+ * behind. Where objects overlap, the ior is that of the one entered last, as in POV-Ray. */
 static double cross(const scene *sc, int id, int32_t inside, bool out, media *in, int i)
 {
     const double own = ior_of(sc, id), around = ior_in(sc, in, i);

@@ -233,8 +233,8 @@ static void sweep_caster(sweep *w, const surface *f, bool clear, const int32_t *
     join(n, boxed, near, front, back, w->some, w->dark);
 }
 
-/* Whether object j may cast a shadow on object `id`. Copies cast shadows on each other; these are taken for transparent,
- * as the copy itself is among them. */
+/* Whether object j may cast a shadow on object `id`. Copies cast shadows on each other; these are taken for
+ * transparent, as the copy itself is among them. */
 static bool casts_there(const tracer *tr, int32_t id, int32_t j)
 {
     return (j != id || tr->scene->object[id].crowd) && shadow_casts(tr, j);

@@ -114,8 +114,8 @@ typedef struct scene {
     material *material;
     int materials;
     object *object;
-    int objects; /* in the picture */
-    int kept;    /* with the hidden ones, which come last */
+    int objects;                   /* in the picture */
+    int kept;                      /* with the hidden ones, which come last */
     struct horizons *horizons;     /* NULL unless scene_wants_horizons */
     struct object_bvh *object_bvh; /* of many objects; NULL: few, all are tested */
 } scene;
@@ -138,7 +138,8 @@ static inline bool scene_wants_horizons(const scene *s)
     return s->bump_shadow.kind == BUMP_SHADOW_HORIZON && !s->displaced;
 }
 
-/* Limits: pixels along a side; lights, materials; objects in the scene file; samples along a pixel's side; rays in a row. */
+/* Limits: pixels along a side; lights, materials; objects in the scene file; samples along a pixel's side; rays in a
+ * row. */
 enum {
     SCENE_MAX_SIDE = 32768,
     SCENE_MAX_ITEMS = 4096,

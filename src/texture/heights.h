@@ -7,7 +7,6 @@
 
 #include <stddef.h>
 
-#include "image/image.h"
 #include "texture/table.h"
 
 enum { HEIGHTS_BEFORE = 1, HEIGHTS_BEHIND = 2 };

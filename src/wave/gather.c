@@ -27,7 +27,10 @@ STAGE static void start_own(int n, const ray_origins *restrict from, const int32
     }
 }
 
-void gather_move_origins(int n, const ray_origins *from, const int32_t *own, rays *x) { start_own(n, from, own, &x->r); }
+void gather_move_origins(int n, const ray_origins *from, const int32_t *own, rays *x)
+{
+    start_own(n, from, own, &x->r);
+}
 
 STAGE static void pick(const hit_group *restrict g, const real *restrict from, real *restrict to)
 {

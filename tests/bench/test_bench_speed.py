@@ -32,7 +32,7 @@ output       130.00 ms
 """
 
 PERF_TEXT = """\
-# Samples: 1K of event 'cpu-clock'
+# Samples: 1K of event 'cpu-clock:ppp'
     40.50%  kage                 [.] map_interpolate.arch_x86_64_v3
      2.50%  kage                 [.] map_interpolate.default
      7.00%  libz.so.1.2.13       [.] 0x0000000000004a26
@@ -59,7 +59,7 @@ def test_a_command_is_measured() -> None:
     assert found.memory > 60_000_000
     assert found.text.count("out") == found.text.count("err") == 2
     if Path("/proc/self/io").exists():
-        assert found.moved["written"] >= len("out\nerr\n")
+        assert found.moved["written_bytes"] >= len("out\nerr\n")
 
 
 @pytest.mark.parametrize(("command", "message"), [
@@ -173,7 +173,8 @@ def test_a_file_is_made_once_and_its_text_renewed(tmp_path: Path) -> None:
 
 
 def test_perf_is_read() -> None:
-    found = stages.parse_perf(PERF_TEXT)
+    event, found = stages.parse_perf(PERF_TEXT)
+    assert event == "cpu-clock" and stages.parse_perf("nothing") == ("", {})
     assert found == pytest.approx({"map_interpolate": 0.43, "libz.so.1.2.13": 0.08, "[kernel.kallsyms]": 0.02})
 
 
@@ -189,9 +190,11 @@ def test_stages_are_summed_and_small_ones_together() -> None:
               Function("kage", "a.avx2"): {"Ir": 490, "Dr": 1, "Dw": 0, "D1mr": 0, "D1mw": 1, "DLmr": 0, "DLmw": 0},
               Function("kage", "b"): {"Ir": 5, "Dr": 0, "Dw": 0, "D1mr": 0, "D1mw": 0, "DLmr": 0, "DLmw": 0},
               Function("libc.so.6", "c"): {"Ir": 5, "Dr": 0, "Dw": 5, "D1mr": 0, "D1mw": 0, "DLmr": 0, "DLmw": 0}}
-    found = stages.table("x", stages.summed(counts), 10, "cpu-clock", {"a": 0.9, "b": 0.004, "z": 0.1})
-    assert found.rows == [stages.Row("a", 99, 0.5, 0.2, 0.1, 0.9),
-                          stages.Row(stages.OTHERS, 1, 0.5, 0, 0, pytest.approx(0.104))]
+    found = stages.table("x", stages.summed(counts), 10, "cpu-clock", {"a": 0.45, "b": 0.05, "z": 0.5})
+    assert found.rows == [stages.Row("a", 99, 0.5, 0.2, 0.1, pytest.approx(0.9)),
+                          stages.Row("b", 0.5, 0, 0, 0, pytest.approx(0.1)),
+                          stages.Row(stages.OTHERS, 0.5, 0.5, 0, 0, 0)]
+    assert stages.table("x", stages.summed(counts), 10, "cpu-clock", {"z": 1}).event == ""
 
 
 # The report ---------------------------------------------------------------------------------------
@@ -210,6 +213,11 @@ def test_pages() -> None:
     assert '<td>large: memory &amp; more</td>' in pages.page("t", "about", found)
     assert '<td class="met">met</td>' in pages.page("t", "about", found)
     assert "large: memory & more  1 (1 to 1.5)  at most 2 GiB  met" in list(pages.columns(found[0]))
+
+
+def test_peers_are_compared_round_by_round() -> None:
+    values = {"POV-Ray smooth: ns": [100.0, 900.0], "kage none, whole: ns": [10.0, 90.0], "embree mesh: ns": [1.0]}
+    assert pages.peers_table(Results(values)).rows == [("POV-Ray smooth", "trace", "kage none", "10")]
 
 
 def test_docs_get_the_bounds() -> None:
