@@ -3,6 +3,7 @@
 
 #include "base/threads.h"
 #include "film/adaptive.h"
+#include "film/stream.h"
 #include "render/trace.h"
 
 #include <stdlib.h>
@@ -84,7 +85,11 @@ STAGE static void lay_more(float *restrict to, size_t stride, int width, int hei
 static void lay(film *f, int plane, const tile *b, const real *v, float weight, bool add)
 {
     float *to = f->plane[plane] + film_index(f, b->x0, b->y0);
-    (add ? lay_more : lay_first)(to, film_width(f), b->width, b->height, v, weight);
+    const size_t stride = film_width(f);
+    if (weight == 1 && !add && b->width == STREAM_ROW && stream_fits(to, stride))
+        stream_rows(to, stride, b->height, v); /* nothing is added later */
+    else
+        (add ? lay_more : lay_first)(to, stride, b->width, b->height, v, weight);
 }
 
 static void lay_layers(film *f, const tile *b, const workspace *v)
@@ -100,22 +105,9 @@ static void lay_layers(film *f, const tile *b, const workspace *v)
     lay(f, FILM_ORDER, b, order, 1, false);
 }
 
-/* Prefetch the rows that a tile will write; they are far apart and not in the cache. */
-static void fetch(const film *f, const tile *b)
-{
-#if defined(__GNUC__)
-    for (int p = FILM_R; p <= FILM_B; p++)
-        for (int k = 0; k < b->height; k++)
-            __builtin_prefetch(&f->plane[p][film_index(f, b->x0, b->y0 + k)], 1);
-#else
-    (void)f, (void)b;
-#endif
-}
-
 static void render_tile(const tracer *tr, int aa, const tile *b, film *f, workspace *v)
 {
     const float weight = 1.0f / (float)(aa * aa);
-    fetch(f, b);
     for (int j = 0; j < aa; j++)
         for (int i = 0; i < aa; i++) {
             const bool add = i + j > 0;
@@ -261,6 +253,7 @@ static long run_alone(const tracer *tr, const render_options *o, pass *p, film *
     long n = 0;
     while (v && n < count && !p->stop && stats_clock() < end)
         render_nth(tr, o, p, f, n++, v);
+    stream_end();
     if (v)
         stats_add(sum, v->stats);
     workspace_free(v);
@@ -290,6 +283,7 @@ static bool run(const tracer *tr, const render_options *o, pass *p, film *f, sta
             if (v && !stop)
                 render_nth(tr, o, p, f, n, v);
         }
+        stream_end();
         if (v) {
 #pragma omp critical /* without a name, which would be a global variable */
             stats_add(sum, v->stats);
