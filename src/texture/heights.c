@@ -258,7 +258,7 @@ static void join(const extremes *x, heights_bounds *b)
 
 static heights_bounds bounds_of(const heights *h, int threads)
 {
-    heights_bounds all = {REAL_FAR, -REAL_FAR, 0, 0};
+    heights_bounds all = {REAL_FAR, -REAL_FAR, 0, 0, false};
 #pragma omp parallel num_threads(threads)
     {
         extremes x;
@@ -277,6 +277,27 @@ static heights_bounds bounds_of(const heights *h, int threads)
     return all;
 }
 
+/* Whether two neighbours, one of them in the n columns of a row, are both at lo or both at hi. */
+STAGE static int heights_level(int n, real lo, real hi, const real *restrict v, const real *restrict below)
+{
+    int some = 0;
+    for (int i = 0; i < n; i++) {
+        const real most = real_max(v[i + 1], below[i]), least = real_min(v[i + 1], below[i]);
+        some |= ((v[i] >= hi) & (most >= hi)) | ((v[i] <= lo) & (least <= lo));
+    }
+    return some;
+}
+
+static bool is_peaked(const heights *h, const heights_bounds *b)
+{
+    const real rounding = R(8 * REAL_ROUNDING) * (real_abs(b->lo) + real_abs(b->hi));
+    for (int row = 0; row <= h->grid.rows; row++)
+        if (heights_level(h->grid.columns + 1, b->lo + rounding, b->hi - rounding, place(h, row, 0),
+                          place(h, row + 1, 0)))
+            return false;
+    return true;
+}
+
 heights_bounds heights_wrap(heights *h, int threads)
 {
     for (int row = 0; row < h->height; row++)
@@ -284,5 +305,7 @@ heights_bounds heights_wrap(heights *h, int threads)
     copy_row(h, -1);
     for (int row = h->height - 1; row < h->grid.rows + HEIGHTS_BEHIND; row++)
         copy_row(h, row);
-    return bounds_of(h, threads_of(threads));
+    heights_bounds b = bounds_of(h, threads_of(threads));
+    b.peaked = is_peaked(h, &b);
+    return b;
 }

@@ -21,10 +21,12 @@ typedef struct heights {
 } heights;
 
 /* Bounds of the heights, and the most that neighbours differ by along u and along w. Where a sample is NaN or infinite,
- * the differences are infinite. */
+ * the differences are infinite. peaked: no two neighbours are at one bound, so that heights are there in single points
+ * alone. */
 typedef struct heights_bounds {
     real lo, hi;
     double du, dw;
+    bool peaked;
 } heights_bounds;
 
 /* A table for a map of width x height samples, not yet filled. h->v: free(). False: out of memory, or table_lay has

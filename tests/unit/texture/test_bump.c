@@ -468,6 +468,33 @@ static void function_slopes(void **state)
     check_function("w+abs(u)", 1, -1, 1, 1, 1, ulps);
 }
 
+/* peaked: no two neighbours are both the highest or the lowest samples, also across the wrap. */
+static void peaks(void **state)
+{
+    (void)state;
+    static const struct {
+        int i, j; /* these samples become */
+        float to; /* this */
+        bool repeated, clamped;
+    } cases[] = {
+        {8, 8, 9, true, true},           /* one */
+        {8, 9, 9, false, false},         /* beside each other */
+        {8, 8 + W, -9, false, false},    /* one below the other */
+        {8, 8 + W + 1, 9, true, true},   /* across a corner: between them P is lower */
+        {W, 2 * W - 1, 9, false, false}, /* at both ends of a row */
+    };
+    for (size_t n = 0; n < sizeof cases / sizeof *cases; n++)
+        for (int clamp = 0; clamp < 2; clamp++) {
+            const map_layout l = {.size = {1, 1}, .wrap = clamp ? MAP_CLAMP : MAP_REPEAT, .scale = 0.1, .zero = 0.5};
+            image *m = data();
+            samples[2 * W + 3] = -8; /* the lowest is not at an end, beyond which a clamped P is constant */
+            samples[cases[n].i] = samples[cases[n].j] = cases[n].to;
+            bump *p = bump_of_map(m, &l);
+            assert_int_equal(p->peaked, clamp ? cases[n].clamped : cases[n].repeated);
+            bump_free(p);
+        }
+}
+
 static void too_small(void **state)
 {
     (void)state;
@@ -479,12 +506,19 @@ static void too_small(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(at_the_samples),  cmocka_unit_test(bilinear_between),
-        cmocka_unit_test(anywhere),        cmocka_unit_test(map_bounds),
-        cmocka_unit_test(orders),          cmocka_unit_test(functions),
-        cmocka_unit_test(map_slopes),      cmocka_unit_test(odd_map_slopes),
-        cmocka_unit_test(function_slopes), cmocka_unit_test(too_small),
-        cmocka_unit_test(clamped_ramp),    cmocka_unit_test(derivatives_are_differences),
+        cmocka_unit_test(at_the_samples),
+        cmocka_unit_test(bilinear_between),
+        cmocka_unit_test(anywhere),
+        cmocka_unit_test(map_bounds),
+        cmocka_unit_test(orders),
+        cmocka_unit_test(functions),
+        cmocka_unit_test(map_slopes),
+        cmocka_unit_test(odd_map_slopes),
+        cmocka_unit_test(function_slopes),
+        cmocka_unit_test(too_small),
+        cmocka_unit_test(peaks),
+        cmocka_unit_test(clamped_ramp),
+        cmocka_unit_test(derivatives_are_differences),
     };
     return cmocka_run_group_tests_name("heights", tests, NULL, NULL);
 }
