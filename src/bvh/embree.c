@@ -13,6 +13,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 
 #include "base/threads.h"
 
@@ -133,13 +134,31 @@ static bool report_progress(void *user, double share)
     return true;
 }
 
-/* Threads cost more than they save where there are few boxes. */
+/* Where Embree runs out of memory while it builds, TBB may end the process. So whether there is room is tried first:
+ * Embree takes up to 160 bytes a box, for few boxes 250. */
+static bool has_room(int n)
+{
+    void *volatile room = malloc(((size_t)16 << 20) + 256 * (size_t)n); /* volatile: else gcc leaves it out */
+    const bool good = room;
+    free(room);
+    return good;
+}
+
+/* A limit of addresses, as by ulimit -v. The C library reserves 128 MiB of them for each thread, in which Embree then
+ * does not find its own. */
+static bool is_limited(void)
+{
+    struct rlimit l;
+    return getrlimit(RLIMIT_AS, &l) == 0 && l.rlim_cur != RLIM_INFINITY;
+}
+
+/* NULL: out of memory. Threads cost more than they save where there are few boxes. */
 static RTCDevice device_with(int threads, int n)
 {
     enum { MANY = 1 << 14 };
     char how[32];
-    snprintf(how, sizeof how, "threads=%d", n < MANY ? 1 : threads_of(threads));
-    return rtcNewDevice(how);
+    snprintf(how, sizeof how, "threads=%d", n < MANY || is_limited() ? 1 : threads_of(threads));
+    return has_room(n) ? rtcNewDevice(how) : NULL;
 }
 
 bvh *bvh_new(int n, const bvh_box *box, int threads, const progress *w)
