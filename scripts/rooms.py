@@ -37,6 +37,7 @@ ROOMS = {
     "scene": (7, "camera, lights, materials, objects and the hierarchy over them"),
     "displaced": (6, "true displacement, for comparison"),
     "patch": (5, "parametric patches: pieces with proven bounds, intersection, projection"),
+    "crowd": (5, "many copies of one surface, each under a map of its own"),
     "mesh": (5, "triangle meshes: loading, repair, intersection, texture coordinates"),
     "geometry": (4, "surfaces with formulas: intersection, Q and its partials, occlusion"),
     "method": (4, "the paper: the shift by each method, over waves"),
@@ -45,7 +46,8 @@ ROOMS = {
     "math": (1, "elementary functions, gradient noise, slabs"),
     "wave": (1, "rays in waves: arrays, lanes, grouping by object"),
     "image": (1, "PNG and OpenEXR, read and written"),
-    "bvh": (1, "a hierarchy of boxes, by Embree"),
+    "bvh": (1, "hierarchies of boxes: by Embree, and one whose rays can wait"),
+    "points": (2, "lists of places with sizes, turns and labels, from CSV and PLY"),
     "yaml": (1, "YAML with positions: errors, changes by `--set`, typed values"),
     "base": (0, "numbers, vectors, errors, files"),
 }

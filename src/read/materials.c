@@ -25,8 +25,8 @@ static void read_pixels(reader *r, node *file, image_encoding encoding, material
     errors e = {0};
     if (!path)
         return;
-    const bool was_read = image_read_color(path, encoding, &pixels, &m->exr, &e);
-    if (reader_usable(r, file, name, was_read, &pixels, "pixels", &e))
+    const bool was_read = image_read_color(path, encoding, r->from->threads, &pixels, &m->exr, &e);
+    if (reader_usable(r, file, name, was_read, pixels.width, pixels.height, "pixels", &e))
         m->texels = reader_made(r, texels_new(&pixels, &m->layout));
     m->file = reader_copy(r, name);
     free(pixels.v);
@@ -89,7 +89,7 @@ void reader_materials(reader *r)
 {
     node *k;
     scene *s = r->s;
-    node *at = reader_named(r, "materials", sizeof *s->material, &s->material, &s->materials), *key;
+    node *at = reader_named(r, "materials", SCENE_MAX_ITEMS, sizeof *s->material, &s->material, &s->materials), *key;
     for (int i = 0; at && i < s->materials; i++) {
         node *v = yaml_pair(at, i, &key);
         material *m = &s->material[i];

@@ -49,6 +49,12 @@ enum { WAITING, BEGUN, DONE };
 
 static void read_object(reader *r, const queue *q, int i);
 
+int reader_material(reader *r, node *at)
+{
+    const scene *s = r->s;
+    return find(r, at, "the name of a material", "materials", s->material, sizeof *s->material, s->materials);
+}
+
 /* The object that object i copies; reads it first if need be. NULL with an error. */
 static const object *read_original(reader *r, const queue *q, node *copy, int i)
 {
@@ -74,6 +80,7 @@ static void take(object *o, const object *from)
     o->copy_of = from->copy_of ? from->copy_of : from->name;
     o->shape = from->own;
     o->centred = o->displaced = NULL;
+    o->hidden = false;
     o->shares_bump = true;
 }
 
@@ -104,6 +111,26 @@ static void read_own_bump(reader *r, node *at, object *o)
                    scene_truth_name(r->s));
 }
 
+/* Whether the object that is copied is not itself a list of copies. */
+static bool is_single(reader *r, node *at, const object *from)
+{
+    for (int k = 0; k < r->lists; k++)
+        if (&r->s->object[r->list[k].object] == from)
+            return yaml_error(r->y, at, "'%s' is a list of copies, expected an object of one shape", from->name);
+    return true;
+}
+
+/* The object's original under `copy`, or in a list of copies; NULL: neither. */
+static node *original_at(reader *r, node *v)
+{
+    node *copy = yaml_get(v, "copy"), *copies = yaml_get(v, "copies");
+    if (!copies)
+        return copy;
+    if (copy)
+        yaml_error(r->y, copies, "'copies' beside 'copy', expected one of them");
+    return yaml_map(r->y, copies, "copies", "of file materials") ? yaml_need(r->y, copies, "of", "copies") : NULL;
+}
+
 static void read_object(reader *r, const queue *q, int i)
 {
     scene *s = r->s;
@@ -112,16 +139,17 @@ static void read_object(reader *r, const queue *q, int i)
     int k;
     q->state[i] = BEGUN;
     o->placed = affine_identity();
-    if (yaml_map(r->y, v, "an object", READER_SHAPES " material bump transform copy")) {
-        if ((copy = yaml_get(v, "copy"))) {
+    if (yaml_map(r->y, v, "an object", READER_SHAPES " material bump transform copy copies hidden")) {
+        node *hidden = yaml_get(v, "hidden");
+        if ((copy = original_at(r, v))) {
             const object *from = reader_no_shape(r, v) ? read_original(r, q, copy, i) : NULL;
-            if (from)
+            if (from && is_single(r, copy, from))
                 take(o, from);
-        } else
+        } else if (!yaml_get(v, "copies"))
             o->shape = o->own = reader_shape(r, v, &o->shape_spec);
         m = copy ? yaml_get(v, "material") : yaml_need(r->y, v, "material", "an object");
         if (m && s->material) { /* without materials there is an error already */
-            k = find(r, m, "the name of a material", "materials", s->material, sizeof *s->material, s->materials);
+            k = reader_material(r, m);
             o->material = k < 0 ? 0 : k;
         }
         o->color = NULL;
@@ -129,18 +157,84 @@ static void read_object(reader *r, const queue *q, int i)
             reader_color_texture(r, m ? m : copy, o);
         if ((at_bump = yaml_get(v, "bump")) && o->own)
             read_own_bump(r, at_bump, o);
-        place(r, v, o);
-        if (o->shape && o->bump && scene_wants_truth(s) && displaced_has_form(o->shape))
+        if (hidden)
+            yaml_bool(r->y, hidden, "true or false", &o->hidden);
+        if (!yaml_get(v, "copies"))
+            place(r, v, o);
+        else if (o->own)
+            reader_copies(r, v, i);
+        if (o->shape && !o->crowd && o->bump && scene_wants_truth(s) && displaced_has_form(o->shape))
             o->displaced = reader_made(r, displaced_new(o->shape, o->bump));
     }
     q->state[i] = DONE;
 }
 
+/* Copy object i and those that its list adds to `to`, the first of which is to[at]. Returns how many. */
+static int put_object(const object *from, const copies_list *list, object *to, int at)
+{
+    int n = at;
+    to[n++] = *from;
+    for (int k = 0; list && k < list->count; k++)
+        to[n++] = list->more[k];
+    for (int k = at; k < n; k++)
+        to[k].first = to[k].crowd ? at + to[k].first : k;
+    return n - at;
+}
+
+/* Number the insides of all objects and copies. */
+static void number_insides(reader *r)
+{
+    scene *s = r->s;
+    int64_t next = s->kept;
+    for (int k = 0; k < s->kept; k++) {
+        object *o = &s->object[k];
+        o->inside = !o->crowd ? k : o->first == k ? (int32_t)next : s->object[o->first].inside;
+        next += o->crowd && o->first == k ? o->crowd->n : 0;
+        if (next > INT32_MAX) {
+            errors_add(r->e, "%s: %lld objects and copies, expected at most %d", s->path, (long long)next, INT32_MAX);
+            return;
+        }
+    }
+}
+
+/* Put the objects that lists add behind the first of their list, and hidden objects last. */
+static void arrange(reader *r)
+{
+    scene *s = r->s;
+    const int n = s->objects;
+    size_t all = (size_t)n + 1;
+    for (int k = 0; k < r->lists; k++)
+        all += (size_t)r->list[k].count;
+    object *to = reader_made(r, malloc(sizeof *to * all));
+    copies_list **list = reader_made(r, calloc((size_t)n + 1, sizeof(copies_list *)));
+    if (to && list) {
+        for (int k = 0; k < r->lists; k++)
+            list[r->list[k].object] = &r->list[k];
+        s->kept = 0;
+        for (int hidden = 0; hidden < 2; hidden++) {
+            for (int i = 0; i < n; i++)
+                if (s->object[i].hidden == hidden)
+                    s->kept += put_object(&s->object[i], list[i], to, s->kept);
+            s->objects = hidden ? s->objects : s->kept;
+        }
+        free(s->object);
+        s->object = to;
+        to = NULL;
+        number_insides(r);
+    }
+    for (int k = 0; k < r->lists; k++)
+        free(r->list[k].more);
+    free(r->list);
+    free(list);
+    free(to);
+}
+
 void reader_objects(reader *r)
 {
     scene *s = r->s;
-    queue q = {reader_named(r, "objects", sizeof *s->object, &s->object, &s->objects), NULL};
+    queue q = {reader_named(r, "objects", SCENE_MAX_OBJECTS, sizeof *s->object, &s->object, &s->objects), NULL};
     node *key;
+    s->kept = s->objects;
     if (!q.at)
         return;
     if (!(q.state = reader_made(r, calloc((size_t)s->objects + 1, 1))))
@@ -158,4 +252,5 @@ void reader_objects(reader *r)
             read_object(r, &q, i);
     }
     free(q.state);
+    arrange(r);
 }

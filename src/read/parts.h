@@ -40,9 +40,18 @@ void reader_color_texture(reader *r, node *at, object *o);
 /* Append a list of steps to *m. */
 bool reader_transform(reader *r, node *at, affine *m);
 
+/* About x, then y, then z, in degrees. With the left thumb along the axis, the fingers show the direction. */
+affine reader_rotation(const double degrees[3]);
+
 /* Make the object's shape from its own by the transform `placed`, after the bump; as a patch if true displacement needs
  * one. */
 bool reader_place(reader *r, node *at, object *o);
+
+/* The index of the material that a node names; -1 with an error. */
+int reader_material(reader *r, node *at);
+
+/* The copies of object i from the list under its key `copies`. */
+void reader_copies(reader *r, node *v, int i);
 
 /* The surface under the object's one shape key; *spec becomes what the file says about it. */
 #define READER_SHAPES CLOSED_FORM_NAMES "parametric patches mesh"

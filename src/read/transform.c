@@ -15,19 +15,24 @@ static void circle(double degrees, double *c, double *s)
     *s = k == 0 ? y : k == 1 ? x : k == 2 ? -y : -x;
 }
 
-/* About x, then y, then z. With the left thumb along the axis, the fingers show the direction. */
-static bool rotate(reader *r, node *at, affine *m)
+affine reader_rotation(const double a[3])
 {
-    double a[3], c[3], s[3];
-    if (!yaml_numbers(r->y, at, 3, -BIG, BIG, "angles in degrees about the axes, " PLACE, a))
-        return false;
+    double c[3], s[3];
     for (int k = 0; k < 3; k++)
         circle(a[k], &c[k], &s[k]);
     const affine x = {{1, 0, 0}, {0, c[0], s[0]}, {0, -s[0], c[0]}, {0, 0, 0}};
     const affine y = {{c[1], 0, -s[1]}, {0, 1, 0}, {s[1], 0, c[1]}, {0, 0, 0}};
     const affine z = {{c[2], s[2], 0}, {-s[2], c[2], 0}, {0, 0, 1}, {0, 0, 0}};
     const affine xy = affine_then(&x, &y);
-    *m = affine_then(&xy, &z);
+    return affine_then(&xy, &z);
+}
+
+static bool rotate(reader *r, node *at, affine *m)
+{
+    double a[3];
+    if (!yaml_numbers(r->y, at, 3, -BIG, BIG, "angles in degrees about the axes, " PLACE, a))
+        return false;
+    *m = reader_rotation(a);
     return true;
 }
 

@@ -145,14 +145,14 @@ char *reader_name(reader *r, node *map, node *key)
     return NULL;
 }
 
-node *reader_named(reader *r, const char *key, size_t size, void *array, int *count)
+node *reader_named(reader *r, const char *key, int most, size_t size, void *array, int *count)
 {
     node *at = yaml_need(r->y, yaml_root(r->y), key, "the scene");
     if (!at || !yaml_map(r->y, at, key, NULL))
         return NULL;
     int n = yaml_size(at);
-    if (n > SCENE_MAX_ITEMS) {
-        yaml_error(r->y, at, "%d %s, expected at most %d", n, key, SCENE_MAX_ITEMS);
+    if (n > most) {
+        yaml_error(r->y, at, "%d %s, expected at most %d", n, key, most);
         return NULL;
     }
     void *items = reader_made(r, calloc((size_t)(n ? n : 1), size));
@@ -163,15 +163,14 @@ node *reader_named(reader *r, const char *key, size_t size, void *array, int *co
     return at;
 }
 
-bool reader_usable(reader *r, node *file, const char *name, bool was_read, const image *p, const char *values,
+bool reader_usable(reader *r, node *file, const char *name, bool was_read, int width, int height, const char *values,
                    errors *e)
 {
     if (!was_read)
         yaml_error(r->y, file, "'%s' can't be used: %.*s", name, e->size ? (int)e->size - 1 : 0,
                    e->text ? e->text : "");
-    else if (p->width < 2 || p->height < 2)
-        was_read =
-            yaml_error(r->y, file, "'%s' has %d x %d %s, expected at least 2 x 2", name, p->width, p->height, values);
+    else if (width < 2 || height < 2)
+        was_read = yaml_error(r->y, file, "'%s' has %d x %d %s, expected at least 2 x 2", name, width, height, values);
     errors_free(e);
     return was_read;
 }

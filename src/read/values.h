@@ -13,11 +13,21 @@
 #define BIG 1e6
 #define SMALL SHAPE_SMALL
 
+/* A list of copies. Its first object is the scene's; copies of other materials have more. */
+typedef struct copies_list {
+    int object; /* in the scene file's order */
+    bool used;  /* the scene's object has copies */
+    int count;
+    object *more; /* owned by the list until the scene has them */
+} copies_list;
+
 typedef struct reader {
     yaml *y;
     scene *s;
     errors *e;
     const scene_source *from;
+    int lists;
+    copies_list *list;
 } reader;
 
 /* Returns p. Adds the error "out of memory" where it is NULL. */
@@ -60,9 +70,9 @@ bool reader_up_along(reader *r, node *map);
 /* The name that is a key of the map; owned by the caller. NULL with an error. */
 char *reader_name(reader *r, node *map, node *key);
 
-/* The map of named things under a required key of the scene. Sets *array to one zeroed item of `size` bytes for each,
- * owned by the scene. NULL with an error; *count is then unchanged. */
-node *reader_named(reader *r, const char *key, size_t size, void *array, int *count);
+/* The map of at most `most` named things under a required key of the scene. Sets *array to one zeroed item of `size`
+ * bytes for each, owned by the scene. NULL with an error; *count is then unchanged. */
+node *reader_named(reader *r, const char *key, int most, size_t size, void *array, int *count);
 
 /* The path of a file that is given relative to the scene's folder; owned by the caller. Adds the file to those that the
  * scene is made from. NULL: out of memory, with an error. */
@@ -70,7 +80,7 @@ char *reader_beside(reader *r, const char *file);
 
 /* Whether an image was read (if not, *e has the reason) and has at least 2 x 2 values. False with an error. Frees *e.
  */
-bool reader_usable(reader *r, node *file, const char *name, bool was_read, const image *p, const char *values,
+bool reader_usable(reader *r, node *file, const char *name, bool was_read, int width, int height, const char *values,
                    errors *e);
 
 /* A function of u and w; owned by the caller. NULL with an error. */

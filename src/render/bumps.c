@@ -92,6 +92,8 @@ void bumps_shadow(const tracer *tr, int32_t id, const light *l, bool shared, wor
     own_leave(g, &y);
     if (transparent_is(tr->scene, id))
         transparent_cast(tr->scene, id, false, v);
+    else if (tr->scene->object[id].crowd) /* others cast theirs later */
+        crowd_occlude_same(tr->scene->object[id].crowd, g->n, &g->to_light, g->part, g->lit);
     else
         f->ops->occlude(f, g->n, &g->to_light, g->lit);
 }

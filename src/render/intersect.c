@@ -26,10 +26,21 @@ static void intersect_some(const surface *f, int n, const int32_t *lane, const r
     }
 }
 
+/* Whether each ray hits the very thing that it starts on: the same object and of copies the same copy. */
+static void find_own(const scene *s, int n, const ray_origins *from, const hits *h, int32_t *own)
+{
+    for (int i = 0; i < n; i++) {
+        const int32_t id = h->id[i];
+        const crowd *f = id >= 0 ? s->object[id].crowd : NULL;
+        own[i] =
+            id >= 0 && id == from->id[i] && (!f || crowd_copy_of(f, h->part[i]) == crowd_copy_of(f, from->part[i]));
+    }
+}
+
 void intersect_nearest(const scene *s, int n, workspace *v)
 {
     const ray_origins *from = v->of ? &v->of->from : NULL;
-    int32_t lane[LANES];
+    int32_t lane[LANES], own[LANES];
     gather_begin(n, &v->nearest);
     if (v->candidates)
         object_bvh_find(s->object_bvh, n, &v->x, v->nearest.t, from ? from->id : NULL, v->candidates);
@@ -40,7 +51,9 @@ void intersect_nearest(const scene *s, int n, workspace *v)
         else
             intersect_surface(v->surface[id], n, &v->x, from, id, &v->nearest);
     }
-    if (from)
-        gather_move_origins(n, from, &v->nearest, &v->x);
+    if (from) {
+        find_own(s, n, from, &v->nearest, own);
+        gather_move_origins(n, from, own, &v->x);
+    }
     *(from ? &v->stats->secondary_rays : &v->stats->rays) += n;
 }

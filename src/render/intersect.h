@@ -22,7 +22,12 @@ static inline void intersect_surface(const surface *f, int n, const rays *x, con
 /* The next object after `after` (-1: the first) that some ray may hit; -1: none. m NULL: all objects. */
 static inline int32_t intersect_next(const scene *s, const candidates *m, int32_t after)
 {
-    return m ? candidates_next(m, after) : after + 1 < s->objects ? after + 1 : -1;
+    if (m)
+        return candidates_next(m, after);
+    for (after++; after < s->objects; after++)
+        if (s->object[after].first == after)
+            return after;
+    return -1;
 }
 
 #endif

@@ -71,11 +71,18 @@ STAGE static void bend(const hit_group *restrict g, ways *restrict y)
 
 /* ---- the media that a ray is in ---- */
 
-/* The place of object `id` in lane i's list, or -1. */
-static int find(const media *m, int i, int id)
+/* The number among all insides of what lane i of a group on object `id` meets. */
+static int32_t inside_of(const scene *sc, int32_t id, const hit_group *g, int i)
+{
+    const object *o = &sc->object[id];
+    return o->inside + (o->crowd ? crowd_copy_of(o->crowd, g->part[i]) : 0);
+}
+
+/* The place of an inside in lane i's list, or -1. */
+static int find(const media *m, int i, int32_t inside)
 {
     int at = m->n[i] - 1;
-    while (at >= 0 && m->id[at][i] != id)
+    while (at >= 0 && m->inside[at][i] != inside)
         at--;
     return at;
 }
@@ -85,24 +92,28 @@ static double ior_of(const scene *sc, int id) { return sc->material[sc->object[i
 /* The ior of the innermost medium of lane i. */
 static double ior_in(const scene *sc, const media *m, int i) { return m->n[i] ? ior_of(sc, m->id[m->n[i] - 1][i]) : 1; }
 
-/* Lane i enters object `id`, or leaves it (out). Returns the ratio of the iors before and behind. Where objects
- * overlap, the ior is that of the one entered last, as in POV-Ray. */
-static double cross(const scene *sc, int id, bool out, media *in, int i)
+/* Lane i enters object `id`, whose inside has this number, or leaves it (out). Returns the ratio of the iors before and
+ * behind. Where objects overlap, the ior is that of the one entered last, as in POV-Ray. */
+static double cross(const scene *sc, int id, int32_t inside, bool out, media *in, int i)
 {
     const double own = ior_of(sc, id), around = ior_in(sc, in, i);
     if (!shape_has_inside(&sc->object[id].shape_spec))
         return 1;
     if (!out) {
-        if (in->n[i] < MEDIA)
+        if (in->n[i] < MEDIA) {
+            in->inside[in->n[i]][i] = inside;
             in->id[in->n[i]++][i] = id;
+        }
         return around / own;
     }
-    int at = find(in, i, id);
+    int at = find(in, i, inside);
     if (at >= 0) {
         const int last = --in->n[i];
         if (at < last) {
-            for (; at < last; at++)
+            for (; at < last; at++) {
                 in->id[at][i] = in->id[at + 1][i];
+                in->inside[at][i] = in->inside[at + 1][i];
+            }
             return 1;
         }
     }
@@ -112,8 +123,10 @@ static double cross(const scene *sc, int id, bool out, media *in, int i)
 static void copy_media(const media *from, int j, media *to, int i)
 {
     to->n[i] = from ? from->n[j] : 0;
-    for (int k = 0; k < to->n[i]; k++)
+    for (int k = 0; k < to->n[i]; k++) {
         to->id[k][i] = from->id[k][j];
+        to->inside[k][i] = from->inside[k][j];
+    }
 }
 
 /* ---- sending ---- */
@@ -162,8 +175,9 @@ static void send_clear(const scene *sc, int32_t id, workspace *v, ways *y)
         copy_media(before, hit_group_place(g, i), &in, i);
         /* an object that was entered is left, as in POV-Ray, also at a gap between displaced parts; an object that
          * contains the camera is left without having been entered */
-        bool out = find(&in, i, id) >= 0 || bs_dot(lane_get(&g->x->s, i), lane_get(&g->n_smooth, i)) > 0;
-        y->ratio[i] = (real)cross(sc, id, out, &in, i);
+        const int32_t inside = inside_of(sc, id, g, i);
+        bool out = find(&in, i, inside) >= 0 || bs_dot(lane_get(&g->x->s, i), lane_get(&g->n_smooth, i)) > 0;
+        y->ratio[i] = (real)cross(sc, id, inside, out, &in, i);
     }
     bend(g, y);
     if (m->pattern)

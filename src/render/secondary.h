@@ -11,9 +11,9 @@ enum {
     STRAIGHTS = 256 /* surfaces in a row without refraction; light from beyond is lost */
 };
 
-/* The objects that each ray is inside of, the innermost last. */
+/* The objects that each ray is inside of, the innermost last. inside: object.inside, or of copies the copy's. */
 typedef struct media {
-    int32_t n[LANES], id[MEDIA][LANES];
+    int32_t n[LANES], id[MEDIA][LANES], inside[MEDIA][LANES];
 } media;
 
 /* A wave of secondary rays. */

@@ -63,6 +63,14 @@ static void find_candidates(const object_bvh *c, const hit_group *g, candidates 
     object_bvh_find(c, g->n, &g->to_light, end, NULL, m);
 }
 
+/* The shadows of the other copies on a copy. Transparent ones are all crossed in cast_own. */
+static void cast_other_copies(const tracer *tr, int32_t id, workspace *v)
+{
+    hit_group *g = &v->g;
+    if (!transparent_is(tr->scene, id))
+        crowd_occlude_others(tr->scene->object[id].crowd, g->n, &g->to_light, g->part, g->lit);
+}
+
 static void cast_others(const tracer *tr, int32_t id, workspace *v)
 {
     const scene *s = tr->scene;
@@ -72,9 +80,11 @@ static void cast_others(const tracer *tr, int32_t id, workspace *v)
         find_candidates(s->object_bvh, g, v->candidates);
     for (int32_t j = intersect_next(s, v->candidates, -1); j >= 0; j = intersect_next(s, v->candidates, j)) {
         const surface *f = v->surface[j];
-        if (j == id || !shadow_casts(tr, j))
+        if (!shadow_casts(tr, j) || (j == id && !s->object[id].crowd))
             continue;
-        if (transparent_is(s, j))
+        if (j == s->object[id].first)
+            cast_other_copies(tr, id, v);
+        else if (transparent_is(s, j))
             transparent_cast(s, j, false, v);
         else if (v->candidates)
             occlude_some(f, candidates_rays(v->candidates, j, lane), lane, g);

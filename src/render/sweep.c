@@ -7,9 +7,9 @@
 #include <string.h>
 
 #include "light/lighting.h"
+#include "render/intersect.h"
 #include "render/shadow.h"
 #include "render/transparent.h"
-#include "scene/object_bvh.h"
 #include "wave/lane.h"
 
 STAGE static int any(int n, const int32_t *x)
@@ -233,6 +233,13 @@ static void sweep_caster(sweep *w, const surface *f, bool clear, const int32_t *
     join(n, boxed, near, front, back, w->some, w->dark);
 }
 
+/* Whether object j may cast a shadow on object `id`. Copies cast shadows on each other; these are taken for
+ * transparent, as the copy itself is among them. */
+static bool casts_there(const tracer *tr, int32_t id, int32_t j)
+{
+    return (j != id || tr->scene->object[id].crowd) && shadow_casts(tr, j);
+}
+
 /* Many objects: each lane has those that the hierarchy finds on one of three rays, from both ends and from tau. */
 static void sweep_candidates(const tracer *tr, int32_t id, workspace *v, const real *tau, sweep *w)
 {
@@ -252,11 +259,11 @@ static void sweep_candidates(const tracer *tr, int32_t id, workspace *v, const r
         for (int32_t j = candidates_next(v->candidates, -1); j >= 0; j = candidates_next(v->candidates, j)) {
             int32_t only[LANES] = {0};
             const int some = candidates_rays(v->candidates, j, lane);
-            if (j == id || !shadow_casts(tr, j))
+            if (!casts_there(tr, id, j))
                 continue;
             for (int i = 0; i < some; i++)
                 only[lane[i]] = 1;
-            sweep_caster(w, v->surface[j], transparent_is(s, j), only);
+            sweep_caster(w, v->surface[j], j == s->object[id].first || transparent_is(s, j), only);
         }
     }
 }
@@ -274,9 +281,9 @@ static bool sweep_casters(const tracer *tr, int32_t id, workspace *v, const real
     if (v->candidates)
         sweep_candidates(tr, id, v, tau, w);
     else
-        for (int32_t j = 0; j < s->objects; j++)
-            if (j != id && shadow_casts(tr, j))
-                sweep_caster(w, v->surface[j], transparent_is(s, j), NULL);
+        for (int32_t j = intersect_next(s, NULL, -1); j >= 0; j = intersect_next(s, NULL, j))
+            if (casts_there(tr, id, j))
+                sweep_caster(w, v->surface[j], j == s->object[id].first || transparent_is(s, j), NULL);
     if (w->met)
         add_open(w->k->n, w->some, w->dark, differs);
     return w->met || v->candidates; /* others than the candidates may be near */

@@ -28,6 +28,7 @@ static void shape_and_shift(const tracer *tr, int32_t id, workspace *v)
     const bump *P = tr->scene->object[id].bump;
     hit_group *g = &v->g;
     stats *st = v->stats;
+    g->flat = f->ops->flat;
     f->ops->locate(f, g->n, g->x, g->t, g->part, g->u, g->w);
     f->ops->eval(f, g->n, g->part, g->u, g->w, tau_partials(tr, id, v), &g->q);
     stats_stage(st, STAGE_SURFACE);

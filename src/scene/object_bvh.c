@@ -81,6 +81,8 @@ object_bvh *object_bvh_new(const scene *s, int threads, bool *good)
     *good = c && (c->object = malloc(sizeof *c->object * n)) && (c->box = malloc(sizeof *c->box * n));
     for (int i = 0, endless = 0; *good && i < s->objects; i++) {
         const box b = box_of(&s->object[i]);
+        if (s->object[i].first != i)
+            continue;
         if (has_end(&b)) {
             c->box[c->bounded] = b;
             c->object[c->bounded++] = i;

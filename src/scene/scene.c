@@ -19,11 +19,11 @@ void scene_free(scene *s)
         free(s->material[i].file);
         texels_free(s->material[i].texels);
     }
-    for (int i = 0; i < s->objects; i++) {
+    for (int i = 0; i < s->kept; i++) {
         object *o = &s->object[i];
         free(o->name);
         surface_free(o->displaced);
-        if (o->shape != o->own)
+        if (o->shape != o->own && o->first == i)
             surface_free(o->shape);
         surface_free(o->centred);
         if (!o->copy_of) {

@@ -6,6 +6,7 @@
 #include "base/errors.h"
 #include "base/files.h"
 #include "base/progress.h"
+#include "crowd/crowd.h"
 #include "geometry/closed_form.h"
 #include "geometry/surface.h"
 #include "mesh/mesh_data.h"
@@ -81,6 +82,13 @@ typedef struct object {
     map_layout color_layout; /* how the colour's image or checker lies on (u,w) */
     int material;            /* index into scene.material */
     map_note map;
+
+    /* Of copies. A list with several materials is an object for each, one after another. They share the crowd and are
+     * the kinds of its hits; the first stands for all where rays are tested. */
+    const crowd *crowd; /* `shape` of the first; NULL: no copies */
+    int32_t first;      /* an object that is not of copies: itself */
+    int32_t inside;     /* for media: a number of its own; copies have those from here on */
+    bool hidden;        /* not in the picture */
 } object;
 
 typedef struct scene {
@@ -106,7 +114,8 @@ typedef struct scene {
     material *material;
     int materials;
     object *object;
-    int objects;
+    int objects;                   /* in the picture */
+    int kept;                      /* with the hidden ones, which come last */
     struct horizons *horizons;     /* NULL unless scene_wants_horizons */
     struct object_bvh *object_bvh; /* of many objects; NULL: few, all are tested */
 } scene;
@@ -129,8 +138,15 @@ static inline bool scene_wants_horizons(const scene *s)
     return s->bump_shadow.kind == BUMP_SHADOW_HORIZON && !s->displaced;
 }
 
-/* Limits: pixels along a side; lights, materials, objects; samples along a pixel's side; rays in a row. */
-enum { SCENE_MAX_SIDE = 32768, SCENE_MAX_ITEMS = 4096, SCENE_MAX_AA = 16, SCENE_MAX_DEPTH = 32 };
+/* Limits: pixels along a side; lights, materials; objects in the scene file; samples along a pixel's side; rays in a
+ * row. */
+enum {
+    SCENE_MAX_SIDE = 32768,
+    SCENE_MAX_ITEMS = 4096,
+    SCENE_MAX_OBJECTS = 1 << 24,
+    SCENE_MAX_AA = 16,
+    SCENE_MAX_DEPTH = 32
+};
 
 /* Where a scene is read from. Only `path` is needed. */
 typedef struct scene_source {

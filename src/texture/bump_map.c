@@ -33,8 +33,8 @@ STAGE static void level_beyond(int n, real k, real o, int last, const real *rest
 
 static void clamp_derivatives(const table_grid *g, int n, const real *u, const real *w, int order, bump_values *h)
 {
-    real *const along_u[] = {h->Pu, h->Puu, h->Puw}, *const along_w[] = {h->Pw, h->Puw, h->Pww};
-    for (int k = 0; k < (order == 2 ? 3 : 1); k++) {
+    real *const along_u[] = {h->Pu, h->Puu, h->Puw}, *const along_w[] = {h->Pw, h->Pww, h->Puw};
+    for (int k = 0; k < order; k++) {
         level_beyond(n, g->ku, g->ou, g->columns, u, along_u[k]);
         level_beyond(n, g->kw, g->ow, g->rows, w, along_w[k]);
     }
@@ -184,23 +184,32 @@ static const bump_ops map_methods = {.kind = "map",
                                      .prepare = map_prepare,
                                      .free = map_free};
 
-bump *bump_map_new(const image *samples, const map_layout *l)
+bump *bump_map_new(int width, int height, const map_layout *l)
 {
     map *m = calloc(1, sizeof *m);
-    if (!m || !heights_new(&m->heights, samples->width, samples->height, l)) {
+    if (!m || !heights_new(&m->heights, width, height, l)) {
         free(m);
         return NULL;
     }
     m->base.ops = &map_methods;
     bump_unknown_bends(&m->base);
-    for (int y = 0; y < samples->height; y++)
-        heights_put(&m->heights, 0, y, samples->width, samples->v + (size_t)y * (size_t)samples->width);
-    const heights_bounds b = heights_wrap(&m->heights, 0);
-    m->base.Pmin = b.lo;
-    m->base.Pmax = b.hi;
-    m->base.Pu_max = bump_slope(b.du, (double)m->heights.grid.ku); /* rounded, as the stages use it */
-    m->base.Pw_max = bump_slope(b.dw, (double)m->heights.grid.kw);
     return &m->base;
+}
+
+void bump_map_put(bump *p, int x, int y, int n, const float *samples)
+{
+    heights_put(&((map *)p)->heights, x, y, n, samples);
+}
+
+void bump_map_end(bump *p, int threads)
+{
+    heights *h = &((map *)p)->heights;
+    const heights_bounds b = heights_wrap(h, threads);
+    p->Pmin = b.lo;
+    p->Pmax = b.hi;
+    p->peaked = b.peaked;
+    p->Pu_max = bump_slope(b.du, (double)h->grid.ku); /* rounded, as the stages use it */
+    p->Pw_max = bump_slope(b.dw, (double)h->grid.kw);
 }
 
 bool bump_prepare(bump *p) { return p->pyramid || p->ops->prepare(p); }

@@ -16,10 +16,10 @@ STAGE static void begin(int n, hits *h)
 
 void gather_begin(int n, hits *h) { begin(n, h); }
 
-STAGE static void start_own(int n, const ray_origins *restrict from, const int32_t *restrict id, vec3s *restrict r)
+STAGE static void start_own(int n, const ray_origins *restrict from, const int32_t *restrict owns, vec3s *restrict r)
 {
     for (int i = 0; i < n; i++) {
-        int own = (id[i] == from->id[i]) & (id[i] >= 0);
+        int own = owns[i];
         real x = from->at.x[i], y = from->at.y[i], z = from->at.z[i];
         r->x[i] = own ? x : r->x[i];
         r->y[i] = own ? y : r->y[i];
@@ -27,7 +27,10 @@ STAGE static void start_own(int n, const ray_origins *restrict from, const int32
     }
 }
 
-void gather_move_origins(int n, const ray_origins *from, const hits *h, rays *x) { start_own(n, from, h->id, &x->r); }
+void gather_move_origins(int n, const ray_origins *from, const int32_t *own, rays *x)
+{
+    start_own(n, from, own, &x->r);
+}
 
 STAGE static void pick(const hit_group *restrict g, const real *restrict from, real *restrict to)
 {

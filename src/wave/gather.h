@@ -7,8 +7,8 @@
 /* Clear n lanes: no hits. */
 void gather_begin(int n, hits *h);
 
-/* Rays that hit the surface on which they start: change r to their start on its smooth shape. */
-void gather_move_origins(int n, const ray_origins *from, const hits *h, rays *x);
+/* The rays that hit the surface on which they start, own[i] != 0: change r to their start on its smooth shape. */
+void gather_move_origins(int n, const ray_origins *from, const int32_t *own, rays *x);
 
 /* Copy lanes lane[0..n-1] of a wave to lanes 0..n-1. */
 void gather_rays(int n, const int32_t *lane, const rays *x, rays *to);

@@ -23,11 +23,13 @@ typedef struct hit_group {
     int32_t part[LANES]; /* of the surface; u and w belong to it */
     real u[LANES], w[LANES];
     partials q;
+    bool flat; /* the surface is: Quu, Quw and Qww are 0, and may not be set */
 
     /* the bump */
     bump_values bump;
     vec3s n_smooth; /* n = Qu x Qw, not normalised */
     vec3s n_bump;   /* n', unit */
+    bool regular;   /* bs_regular holds for all lanes; only with a bump */
 
     /* the method */
     real tau[LANES];      /* the shift */

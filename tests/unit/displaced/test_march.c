@@ -11,6 +11,7 @@
 #include <cmocka.h>
 
 #include "support/check.h"
+#include "support/bump_of_map.h"
 #include "base/frame.h"
 #include "wave/lane.h"
 #include "method/method.h"
@@ -241,7 +242,7 @@ static bump *make_bump(int surface_kind, int bumped, const surface *f)
                     .scale = 0.15,
                     .zero = 0.5};
     l.offset[0] = surface_kind >= SPHERE ? -pi : 0;
-    return bump_map_new(&m, &l);
+    return bump_of_map(&m, &l);
 }
 
 static void random_ray(rays *x, int i, wide r[3], wide s[3])

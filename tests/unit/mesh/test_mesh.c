@@ -489,7 +489,7 @@ static double error_of(mesh *f, double A, int order)
         d->ops->hit(d, LANES, &x, 0, &rough);
         f->base.ops->locate(&f->base, LANES, &x, h.t, h.part, u, w);
         f->base.ops->eval(&f->base, LANES, h.part, u, w, 2, &q);
-        P->ops->eval(P, LANES, u, w, 2, &p);
+        P->ops->eval(P, LANES, u, w, 3, &p);
         for (int i = 0; i < LANES; i++) {
             const bs_vec3 s = lane_get(&x.s, i), Qu = lane_get(&q.Qu, i), Qw = lane_get(&q.Qw, i),
                           N = bs_normal(Qu, Qw);

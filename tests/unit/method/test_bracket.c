@@ -44,7 +44,7 @@ static hit_group *wave(const surface *f, const bump *P, double side)
     memset(g.part, 0, sizeof g.part);
     f->ops->locate(f, LANES, g.x, g.t, g.part, g.u, g.w);
     f->ops->eval(f, LANES, g.part, g.u, g.w, 2, &g.q);
-    P->ops->eval(P, LANES, g.u, g.w, 2, &g.bump);
+    P->ops->eval(P, LANES, g.u, g.w, 3, &g.bump);
     shift_normals(&g, P);
     return &g;
 }
