@@ -32,6 +32,23 @@ bool reader_textured(reader *r, node *at, const object *o);
 bump *reader_mirror_bump(reader *r, const object *o, bump *p);
 color_texture *reader_mirror_color(reader *r, const object *o, color_texture *c);
 
+/* ---- names.c: the names of objects ---- */
+
+typedef struct names {
+    uint32_t size;
+    int32_t *slot; /* an object's index + 1; 0: free */
+} names;
+
+/* Make room for the names of `count` objects. False: out of memory. */
+bool names_begin(names *n, int count);
+void names_free(names *n);
+
+/* Add object i, which has a name. False: another one has it. */
+bool names_add(names *n, const object *o, int i);
+
+/* The index of the object with a name; -1: there is none. */
+int names_find(const names *n, const object *o, const char *name);
+
 /* ---- the parts of an object ---- */
 
 /* Set the object's color texture if its material has a pattern. `at`: the object's material. */
