@@ -15,6 +15,7 @@ CLONES   ?= yes
 OPENMP   ?= yes
 BUILD    ?= build/$(REAL)
 BENCH    ?= normal
+SPEED    ?= normal
 OBJCOPY  ?= objcopy
 PREFIX   ?= /usr/local
 LIBDIR   ?= $(PREFIX)/lib
@@ -80,8 +81,8 @@ GALLERY   = $(patsubst scenes/gallery/%.yaml,%,$(wildcard scenes/gallery/*.yaml)
 C_FILES   = $(wildcard include/*.h src/*/*.[ch] examples/*.c tests/support/*.h tests/unit/*/*.[ch] bench/limits/*.c)
 TIDY      = $(filter-out bench/limits/%,$(filter %.c,$(C_FILES)))
 
-.PHONY: all render bench readme reference accept test unit-tests program-tests programs sanitize format lint tidy same
-.PHONY: install install-files uninstall clean help bootstrap FORCE
+.PHONY: all render bench speed readme reference accept counts test unit-tests program-tests programs sanitize format
+.PHONY: lint tidy same install install-files uninstall clean help bootstrap FORCE
 all: bootstrap
 	@$(MAKE) --no-print-directory $(JOBS) programs
 
@@ -91,9 +92,11 @@ help:
 	@echo 'make            build the program, $(BUILD)/kage, and the library'
 	@echo 'make render     the pictures of the paper and the gallery, into out/'
 	@echo 'make bench      measure cost and accuracy of each method, BENCH=quick|normal|full, into out/bench/index.html'
+	@echo 'make speed      measure what kage demands of its speed, SPEED=quick|normal|full, into out/speed/index.html'
 	@echo 'make readme     the same, then update the tables of README and docs'
 	@echo 'make test       all tests'
 	@echo 'make accept     show regression pictures that have changed, and keep them if you confirm'
+	@echo 'make counts     count the instructions of eight renders again, and keep them for the test'
 	@echo 'make reference  render stale reference pictures with POV-Ray, into reference/'
 	@echo 'make sanitize   unit tests, and some program tests, under ASan, UBSan and TSan'
 	@echo 'make lint       check style, likely mistakes and types; make format applies the style'
@@ -232,7 +235,7 @@ $(BUILD)/unit/api/test_memory: private override LDFLAGS += $(WRAPPED:%=-Wl,--wra
 
 # The units in C, in float and in double; then the program and the scripts, in Python.
 test: all
-	@CC='$(CC)' scripts/bootstrap test python
+	@CC='$(CC)' scripts/bootstrap test python valgrind
 	@$(MAKE) --no-print-directory $(JOBS) unit-tests REAL=float
 	@$(MAKE) --no-print-directory $(JOBS) unit-tests REAL=double
 	@$(MAKE) --no-print-directory program-tests
@@ -254,6 +257,11 @@ bench: all
 	@python=.venv/bin/python; scripts/venv || python=python3; \
 	    $$python -m bench --level $(BENCH) --kage $(BUILD)/kage || [ $$? -eq 3 ]
 
+# Each bound of docs/performance.md, with the peers, in one table; SPEED=quick|normal|full.
+speed: all
+	@CC='$(CC)' scripts/bootstrap python povray valgrind || echo 'speed: going on without what is missing' >&2
+	scripts/venv python -m bench.speed --level $(SPEED) --kage $(BUILD)/kage || [ $$? -eq 3 ]
+
 # The README's tables and pictures, and those of docs/.
 readme: render bench
 	scripts/venv python -m bench.readme
@@ -266,6 +274,11 @@ reference: all
 accept: all
 	@CC='$(CC)' scripts/bootstrap python
 	@KAGE=$(BUILD)/kage scripts/venv python -m tests.regression.accept
+
+# The instructions of eight renders, which a test compares.
+counts: all
+	@CC='$(CC)' scripts/bootstrap python valgrind
+	@KAGE=$(BUILD)/kage scripts/venv python -m tests.support.instructions
 
 # ---- sanitizers ----
 

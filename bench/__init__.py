@@ -5,6 +5,8 @@
     plan.py                 what is measured at which level
     runner.py, store.py     run the jobs, and keep results as they come, so that an interrupted bench can go on
     quality.py, whole.py, cost.py, sweep.py     the jobs
+    speed/                  by itself: the bounds of docs/performance.md (`make speed`)
+    callgrind.py            instructions and cache misses of each function
     programs.py             runs kage, POV-Ray, valgrind and the yardsticks, and reads their output
     stats.py, masks.py, images.py     intervals, shadows against shadows, pictures against pictures
     data.py                 the types of a report's data

@@ -44,7 +44,7 @@ static void set_surface(kage_probe *p, const hit_group *g)
 
 static void set_bump(kage_probe *p, const hit_group *g, const bump *P)
 {
-    const bs_vec3 s = lane_get(&g->x.s, 0), n = lane_get(&g->n_smooth, 0), Qu = lane_get(&g->q.Qu, 0),
+    const bs_vec3 s = lane_get(&g->x->s, 0), n = lane_get(&g->n_smooth, 0), Qu = lane_get(&g->q.Qu, 0),
                   Qw = lane_get(&g->q.Qw, 0);
     p->bumped = 1;
     p->P = (double)g->bump.P[0];
@@ -80,7 +80,7 @@ static kage_probe_row row_of(const tracer *k, int id, workspace *v, const char *
                         .t0 = (double)g->t0[0],
                         .fell_back = g->order[0] == asked ? NULL : method_code_name(g->order[0]),
                         .visible = visible};
-    set3(x.origin, lane_at(&g->x, 0, g->t0[0]));
+    set3(x.origin, lane_at(g->x, 0, g->t0[0]));
     set3(x.color, lane_get(&g->rgb, 0));
     for (int l = 0; l < k->scene->lights; l++)
         visible[l] = (double)v->visibility[l][0];

@@ -37,9 +37,9 @@ bool bvh_enter(const bvh_space *p, double reach, vec3 r, vec3 s, double *from, d
 /* Called with the index of each box. */
 typedef void bvh_visit(void *user, int32_t box);
 
-/* Build the hierarchy of n boxes, which are copied. Shows "building" in w, which may be NULL and cannot stop it. The
- * caller frees it with bvh_free. NULL: out of memory. */
-bvh *bvh_new(int n, const bvh_box *box, const progress *w);
+/* Build the hierarchy of n boxes, which are copied, with several threads; 0: one for each processor. Shows "building"
+ * in w, which may be NULL and cannot stop it. The caller frees it with bvh_free. NULL: out of memory. */
+bvh *bvh_new(int n, const bvh_box *box, int threads, const progress *w);
 void bvh_free(bvh *b);
 
 /* Visit the boxes that r + s t, 0 <= t <= end, passes. Reentrant, as are bvh_toward and bvh_around. */
@@ -49,6 +49,25 @@ void bvh_along(const bvh *b, const float r[3], const float s[3], float end, bvh_
  * stop. Boxes beyond the new end may still be visited. */
 typedef float bvh_shorten(void *user, int32_t box, float end);
 void bvh_toward(const bvh *b, const float r[3], const float s[3], float end, bvh_shorten *visit, void *user);
+
+/* Rays at + way x, 0 <= x <= end. end < 0: there is no such ray. */
+enum { BVH_PACKET = 16 };
+typedef struct bvh_packet {
+    float at[3][BVH_PACKET], way[3][BVH_PACKET], end[BVH_PACKET];
+} bvh_packet;
+
+/* bvh_enter for the rays r + s t, from[i] <= t <= to[i], of a packet; x->end is -1 where a ray misses the sphere, or
+ * from > to. */
+void bvh_enter_packet(const bvh_space *p, double reach, const double r[3][BVH_PACKET], const double s[3][BVH_PACKET],
+                      double from[BVH_PACKET], double to[BVH_PACKET], bvh_packet *x);
+
+/* Called with a box and the rays that reach it, bit i for ray i; perhaps not with all of them at once. It may lower
+ * end[i] of these rays; a negative number stops the ray. Boxes beyond the new end may still be visited. */
+typedef void bvh_meet(void *user, int32_t box, uint32_t which, float end[BVH_PACKET]);
+
+/* As bvh_toward, for rays that go nearly the same way: they share the hierarchy's memory and the calls. x->end becomes
+ * where each ray ended. */
+void bvh_packet_toward(const bvh *b, bvh_packet *x, bvh_meet *visit, void *user);
 
 /* Visit the boxes that are within `radius` of p. */
 void bvh_around(const bvh *b, const float p[3], float radius, bvh_visit *visit, void *user);

@@ -8,14 +8,27 @@
 #include <embree3/rtcore.h>
 #endif
 
+#include <math.h>
+#include <pthread.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "base/threads.h"
+
+static inline float less(float x, float y) { return x < y ? x : y; }
+static inline float more(float x, float y) { return x > y ? x : y; }
 
 struct bvh {
     RTCDevice device;
     RTCScene scene;
     bvh_box *box;
 };
+
+/* A packet's rays, and 1 / way. */
+typedef struct packet_rays {
+    float at[3][BVH_PACKET], over[3][BVH_PACKET];
+} packet_rays;
 
 /* What the callbacks need during one traversal. Embree's context comes first, so that a pointer to it points here. */
 typedef struct walk {
@@ -26,6 +39,10 @@ typedef struct walk {
 #endif
     bvh_visit *visit;
     bvh_shorten *shorten;
+    bvh_meet *meet; /* for packets */
+    const bvh *b;
+    const packet_rays *x; /* the packet's rays */
+    float *end;           /* of each */
     void *user;
 } walk;
 
@@ -35,6 +52,43 @@ static void bounds(const struct RTCBoundsFunctionArguments *a)
     struct RTCBounds *o = a->bounds_o;
     o->lower_x = b->lo[0], o->lower_y = b->lo[1], o->lower_z = b->lo[2];
     o->upper_x = b->hi[0], o->upper_y = b->hi[1], o->upper_z = b->hi[2];
+}
+
+static const uint32_t bit[BVH_PACKET] = {1u << 0, 1u << 1, 1u << 2,  1u << 3,  1u << 4,  1u << 5,  1u << 6,  1u << 7,
+                                         1u << 8, 1u << 9, 1u << 10, 1u << 11, 1u << 12, 1u << 13, 1u << 14, 1u << 15};
+
+/* Which rays pass a box: Embree names many more of a coherent packet. As wrong as Embree's own test, three roundings of
+ * each t, for which the boxes have room. */
+STAGE static uint32_t pass_box(const bvh_box *restrict box, const packet_rays *restrict x, const float *restrict end)
+{
+    const float lx = box->lo[0], ly = box->lo[1], lz = box->lo[2], hx = box->hi[0], hy = box->hi[1], hz = box->hi[2];
+    uint32_t which = 0;
+    for (int i = 0; i < BVH_PACKET; i++) {
+        const float a = (lx - x->at[0][i]) * x->over[0][i], b = (hx - x->at[0][i]) * x->over[0][i];
+        const float c = (ly - x->at[1][i]) * x->over[1][i], d = (hy - x->at[1][i]) * x->over[1][i];
+        const float e = (lz - x->at[2][i]) * x->over[2][i], f = (hz - x->at[2][i]) * x->over[2][i];
+        const float t0 = more(more(less(a, b), less(c, d)), more(less(e, f), 0)),
+                    t1 = less(less(more(a, b), more(c, d)), less(more(e, f), end[i]));
+        which |= bit[i] & -(uint32_t)(t0 <= t1);
+    }
+    return which;
+}
+
+/* Some rays of a packet, N in Embree's arrays (rtcore_ray.h has functions for these, in C++ only), reach a box. */
+static void met_packet(const walk *k, unsigned box, const int *valid, unsigned N, void *rays)
+{
+    float *tfar = (float *)rays + 8 * N;
+    const unsigned *id = (const unsigned *)rays + 10 * N;
+    uint32_t which = 0;
+    for (unsigned i = 0; i < N; i++)
+        which |= valid[i] ? 1u << id[i] : 0;
+    which &= pass_box(&k->b->box[box], k->x, k->end);
+    if (!which)
+        return;
+    k->meet(k->user, (int32_t)box, which, k->end);
+    for (unsigned i = 0; i < N; i++)
+        if (valid[i])
+            tfar[i] = k->end[id[i]] < 0 ? -HUGE_VALF : k->end[id[i]];
 }
 
 /* Visits the box without reporting a hit, so that Embree continues with all others. */
@@ -50,7 +104,9 @@ static void met_toward(const struct RTCIntersectFunctionNArguments *a)
 {
     const walk *k = (const walk *)(const void *)a->context;
     struct RTCRay *x = &((struct RTCRayHit *)(void *)a->rayhit)->ray;
-    if (a->valid[0])
+    if (k->meet)
+        met_packet(k, a->primID, a->valid, a->N, a->rayhit);
+    else if (a->valid[0])
         x->tfar = k->shorten(k->user, (int32_t)a->primID, x->tfar);
 }
 
@@ -61,21 +117,39 @@ static bool near_one(struct RTCPointQueryFunctionArguments *a)
     return false; /* the radius stays */
 }
 
+/* ---- making one ---- */
+
+typedef struct report {
+    const progress *to;
+    pthread_t caller;
+} report;
+
+/* Embree's threads call it, too; progress is shown in the caller's. */
 static bool report_progress(void *user, double share)
 {
-    progress_show(user, "building", share);
+    const report *r = user;
+    if (pthread_equal(r->caller, pthread_self()))
+        progress_show(r->to, "building", share);
     return true;
 }
 
-bvh *bvh_new(int n, const bvh_box *box, const progress *w)
+/* Threads cost more than they save where there are few boxes. */
+static RTCDevice device_with(int threads, int n)
 {
-    progress to = w ? *w : (progress){0};
+    enum { MANY = 1 << 14 };
+    char how[32];
+    snprintf(how, sizeof how, "threads=%d", n < MANY ? 1 : threads_of(threads));
+    return rtcNewDevice(how);
+}
+
+bvh *bvh_new(int n, const bvh_box *box, int threads, const progress *w)
+{
+    report to = {w, pthread_self()};
     bvh *b = calloc(1, sizeof *b);
     if (!b)
         return NULL;
     b->box = malloc(sizeof *box * (size_t)(n > 0 ? n : 1));
-    /* without threads of its own: kage has enough, and building takes little time */
-    b->device = b->box ? rtcNewDevice("threads=1") : NULL;
+    b->device = b->box ? device_with(threads, n) : NULL;
     b->scene = b->device ? rtcNewScene(b->device) : NULL;
     RTCGeometry g = b->scene ? rtcNewGeometry(b->device, RTC_GEOMETRY_TYPE_USER) : NULL;
     if (!g) {
@@ -115,6 +189,8 @@ void bvh_free(bvh *b)
     free(b->box);
     free(b);
 }
+
+/* ---- rays ---- */
 
 static struct RTCRay ray_of(const float r[3], const float s[3], float end)
 {
@@ -157,6 +233,61 @@ void bvh_toward(const bvh *b, const float r[3], const float s[3], float end, bvh
 #else
     rtcInitIntersectContext(&k.context);
     rtcIntersect1(b->scene, &k.context, &x);
+#endif
+}
+
+/* ---- packets ---- */
+
+/* 1 / way, where a way of 0 is next to it, so that t is no NaN. */
+static void set_over(const bvh_packet *x, packet_rays *y)
+{
+    memcpy(y->at, x->at, sizeof y->at);
+    for (int a = 0; a < 3; a++)
+        for (int i = 0; i < BVH_PACKET; i++) {
+            const float way = x->way[a][i];
+            y->over[a][i] = 1 / (fabsf(way) > 1e-18f ? way : 1e-18f);
+        }
+}
+
+static void set_rays(const bvh_packet *x, int valid[BVH_PACKET], struct RTCRay16 *y)
+{
+    memset(y, 0, sizeof *y);
+    memcpy(y->org_x, x->at[0], sizeof y->org_x);
+    memcpy(y->org_y, x->at[1], sizeof y->org_y);
+    memcpy(y->org_z, x->at[2], sizeof y->org_z);
+    memcpy(y->dir_x, x->way[0], sizeof y->dir_x);
+    memcpy(y->dir_y, x->way[1], sizeof y->dir_y);
+    memcpy(y->dir_z, x->way[2], sizeof y->dir_z);
+    memcpy(y->tfar, x->end, sizeof y->tfar);
+    for (unsigned i = 0; i < BVH_PACKET; i++) {
+        y->mask[i] = ~0u;
+        y->id[i] = i;
+        valid[i] = x->end[i] >= 0 ? -1 : 0;
+    }
+}
+
+/* rtcOccluded16 would name three times as many rays that miss the box. */
+void bvh_packet_toward(const bvh *b, bvh_packet *x, bvh_meet *visit, void *user)
+{
+    packet_rays rays;
+    walk k = {.meet = visit, .b = b, .x = &rays, .end = x->end, .user = user};
+    set_over(x, &rays);
+    RTC_ALIGN(64) int valid[BVH_PACKET];
+    RTC_ALIGN(64) struct RTCRayHit16 y;
+    set_rays(x, valid, &y.ray);
+    memset(y.hit.geomID, 0xff, sizeof y.hit.geomID); /* no hit */
+    memset(y.hit.instID, 0xff, sizeof y.hit.instID);
+#if KAGE_EMBREE == 4
+    struct RTCIntersectArguments how;
+    rtcInitIntersectArguments(&how);
+    rtcInitRayQueryContext(&k.context);
+    how.context = &k.context;
+    how.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+    rtcIntersect16(valid, b->scene, &y, &how);
+#else
+    rtcInitIntersectContext(&k.context);
+    k.context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    rtcIntersect16(valid, b->scene, &k.context, &y);
 #endif
 }
 

@@ -47,3 +47,31 @@ bool bvh_enter(const bvh_space *p, double reach, vec3 r, vec3 s, double *from, d
     *end = (float)((*to - *from) * length * unit) + (float)MARGIN;
     return true;
 }
+
+STAGE static void enter_sphere(vec3 centre, double unit, double R, const double (*restrict r)[BVH_PACKET],
+                               const double (*restrict s)[BVH_PACKET], double *restrict from, double *restrict to,
+                               bvh_packet *restrict x)
+{
+    for (int i = 0; i < BVH_PACKET; i++) {
+        const vec3 o = vec3_sub((vec3){r[0][i], r[1][i], r[2][i]}, centre), S = {s[0][i], s[1][i], s[2][i]};
+        const double length = vec3_length(S), start = -vec3_dot(o, S) / (length * length);
+        const vec3 near = vec3_add(o, vec3_scale(S, start));
+        const double half = sqrt(R * R - vec3_dot(near, near)) / length; /* NaN where the ray misses */
+        const double t0 = greater(from[i], start - half), t1 = lesser(to[i], start + half);
+        const vec3 q = vec3_scale(vec3_add(near, vec3_scale(S, t0 - start)), unit), d = vec3_scale(S, 1 / length);
+        double way = (t1 - t0) * length * unit;
+        way = half < HUGE_VAL ? way : -1;
+        way = way >= 0 ? way + MARGIN : -1;
+        x->at[0][i] = (float)q.x, x->at[1][i] = (float)q.y, x->at[2][i] = (float)q.z;
+        x->way[0][i] = (float)d.x, x->way[1][i] = (float)d.y, x->way[2][i] = (float)d.z;
+        x->end[i] = (float)way;
+        from[i] = t0;
+        to[i] = t1;
+    }
+}
+
+void bvh_enter_packet(const bvh_space *p, double reach, const double r[3][BVH_PACKET], const double s[3][BVH_PACKET],
+                      double from[BVH_PACKET], double to[BVH_PACKET], bvh_packet *x)
+{
+    enter_sphere(p->centre, 1 / p->radius, (1 + 1e-5) * reach, r, s, from, to, x);
+}

@@ -119,7 +119,7 @@ void displaced_shape(const surface *f, hit_group *g)
 {
     const displaced *d = of(f);
     closest_points p;
-    d->form->closest(d, g->n, &g->x, g->t, g->part, &p);
+    d->form->closest(d, g->n, g->x, g->t, g->part, &p);
     memcpy(g->u, p.u, sizeof g->u);
     memcpy(g->w, p.w, sizeof g->w);
     d->P->ops->eval(d->P, g->n, g->u, g->w, 1, &g->bump);
@@ -130,7 +130,7 @@ void displaced_shape(const surface *f, hit_group *g)
         n = lane_unit(n);
         lane_set(&g->n_smooth, i, n);
         lane_set(&g->n_bump, i, n);
-        lane_set(&g->q.Q, i, lane_at(&g->x, i, g->t[i]));
+        lane_set(&g->q.Q, i, lane_at(g->x, i, g->t[i]));
         g->tau[i] = 0;
         g->order[i] = ORDER_EXACT;
     }
@@ -141,7 +141,7 @@ STAGE static void take_shifts(const hits *restrict h, hit_group *restrict g)
 {
     const int n = g->n;
     for (int i = 0; i < n; i++) {
-        const bs_vec3 m = lane_get(&g->n_smooth, i), s = lane_get(&g->x.s, i);
+        const bs_vec3 m = lane_get(&g->n_smooth, i), s = lane_get(&g->x->s, i);
         const bs_view v = {bs_dot(s, m) / real_sqrt(bs_dot(m, m)), 0, 0};
         const int regular = bs_regular(m, lane_get(&g->q.Qu, i), lane_get(&g->q.Qw, i)), hit = h->id[i] == 0;
         const real tau0 = bs_tau0(v, g->bump.P[i]), order_0 = regular ? tau0 : 0;
@@ -157,6 +157,6 @@ void displaced_shift(const surface *f, hit_group *g)
         h.t[i] = REAL_FAR;
         h.id[i] = -1;
     }
-    f->ops->hit(f, g->n, &g->x, 0, &h);
+    f->ops->hit(f, g->n, g->x, 0, &h);
     take_shifts(&h, g);
 }

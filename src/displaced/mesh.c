@@ -39,7 +39,7 @@ static bool over_mesh_prepare(displaced *d)
         }
         box[i] = bvh_box_in(&f->space, b[0], b[1]);
     }
-    d->prisms = box ? bvh_new(f->d.n, box, NULL) : NULL;
+    d->prisms = box ? bvh_new(f->d.n, box, 1, NULL) : NULL;
     free(box);
     return d->prisms;
 }

@@ -47,6 +47,8 @@ static void mark_row(const display *d, int x, int y, int n, int limit, unsigned 
     compare(d, n, limit, x, y, x, y + 1, out);
 }
 
+enum { FEW = 1 << 14 }; /* pixels that are compared before another thread has started */
+
 unsigned char *adaptive_find(const film *f, window part, double threshold, int threads, errors *e)
 {
     display d = {f->part.x1 - f->part.x0, f->part.y1 - f->part.y0, {NULL}};
@@ -56,7 +58,7 @@ unsigned char *adaptive_find(const film *f, window part, double threshold, int t
     srgb *curve = srgb_create(16);
     uint16_t *code = malloc(3 * pixels * sizeof *code);
     bool good = found && curve && code;
-    threads = threads_of(threads);
+    threads = pixels > FEW ? threads_of(threads) : 1;
     (void)threads; /* without OpenMP */
     if (good) {
         for (int k = 0; k < 3; k++)

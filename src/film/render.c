@@ -3,39 +3,64 @@
 
 #include "base/threads.h"
 #include "film/adaptive.h"
+#include "film/stream.h"
 #include "render/trace.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-enum { TILE = 16, TILE_ROWS = LANES / TILE, TIMED_TILES = 8 };
+enum { TILE = 16, TILE_ROWS = LANES / TILE, TIMED_TILES = 8, CHUNK = 4 /* tiles that a thread takes at once */ };
+
+/* Pictures of at most so many tiles may be done before another thread would have started. */
+enum { SMALL = 64 };
+static const double SECONDS_ALONE = 2e-3;
 
 /* A tile of the picture. */
 typedef struct tile {
     int x0, y0, width, height;
 } tile;
 
+/* -1..1 over the picture, of n pixels in a row or column from `first` on, each at `offset` of it. */
+STAGE static void screen(int n, int first, double offset, int size, real *restrict to)
+{
+    for (int k = 0; k < n; k++)
+        to[k] = camera_screen(first + k + offset, size);
+}
+
+static inline void spread_rows(int width, int height, const real *restrict column, const real *restrict row,
+                               real *restrict x, real *restrict y)
+{
+    for (int k = 0; k < height; k++)
+        for (int c = 0; c < width; c++) {
+            x[k * width + c] = column[c];
+            y[k * width + c] = -row[k];
+        }
+}
+
+/* Most tiles have the constant width, whose rows are a few vectors. */
+STAGE static void spread(int width, int height, const real *column, const real *row, real *x, real *y)
+{
+    if (width == TILE)
+        spread_rows(TILE, height, column, row, x, y);
+    else
+        spread_rows(width, height, column, row, x, y);
+}
+
 static void tile_rays(const scene *s, const tile *b, int aa, int i, int j, workspace *v)
 {
-    real x[LANES], y[LANES], column[TILE];
-    for (int c = 0; c < b->width; c++)
-        column[c] = camera_screen(b->x0 + c + (i + 0.5) / aa, s->width);
-    for (int k = 0; k < b->height; k++) {
-        real row = -camera_screen(b->y0 + k + (j + 0.5) / aa, s->height);
-        for (int c = 0; c < b->width; c++) {
-            x[k * b->width + c] = column[c];
-            y[k * b->width + c] = row;
-        }
-    }
+    real x[LANES], y[LANES], column[TILE], row[TILE_ROWS];
+    screen(b->width, b->x0, (i + 0.5) / aa, s->width, column);
+    screen(b->height, b->y0, (j + 0.5) / aa, s->height, row);
+    spread(b->width, b->height, column, row, x, y);
     camera_rays(&s->camera, b->width * b->height, x, y, &v->x);
 }
 
-/* Store the values of a tile's lanes in a plane, or add them. Most tiles have the constant width, whose rows are a few
- * vectors. */
+/* Store the values of a tile's lanes in a plane, or add them. */
 static inline void lay_rows(float *restrict to, size_t stride, int width, int height, const real *restrict v,
                             float weight, bool add)
 {
     for (int k = 0; k < height; k++)
+#pragma omp simd
         for (int c = 0; c < width; c++) {
             float x = (float)v[k * width + c] * weight, *p = &to[(size_t)k * stride + (size_t)c];
             *p = add ? *p + x : x;
@@ -60,7 +85,11 @@ STAGE static void lay_more(float *restrict to, size_t stride, int width, int hei
 static void lay(film *f, int plane, const tile *b, const real *v, float weight, bool add)
 {
     float *to = f->plane[plane] + film_index(f, b->x0, b->y0);
-    (add ? lay_more : lay_first)(to, film_width(f), b->width, b->height, v, weight);
+    const size_t stride = film_width(f);
+    if (weight == 1 && !add && b->width == STREAM_ROW && stream_fits(to, stride))
+        stream_rows(to, stride, b->height, v); /* nothing is added later */
+    else
+        (add ? lay_more : lay_first)(to, stride, b->width, b->height, v, weight);
 }
 
 static void lay_layers(film *f, const tile *b, const workspace *v)
@@ -76,22 +105,9 @@ static void lay_layers(film *f, const tile *b, const workspace *v)
     lay(f, FILM_ORDER, b, order, 1, false);
 }
 
-/* Prefetch the rows that a tile will write; they are far apart and not in the cache. */
-static void fetch(const film *f, const tile *b)
-{
-#if defined(__GNUC__)
-    for (int p = FILM_R; p <= FILM_B; p++)
-        for (int k = 0; k < b->height; k++)
-            __builtin_prefetch(&f->plane[p][film_index(f, b->x0, b->y0 + k)], 1);
-#else
-    (void)f, (void)b;
-#endif
-}
-
 static void render_tile(const tracer *tr, int aa, const tile *b, film *f, workspace *v)
 {
     const float weight = 1.0f / (float)(aa * aa);
-    fetch(f, b);
     for (int j = 0; j < aa; j++)
         for (int i = 0; i < aa; i++) {
             const bool add = i + j > 0;
@@ -190,51 +206,84 @@ static void show(const render_options *o, pass *p, long done)
     }
 }
 
-static void note_tile(const render_options *o, pass *p)
+/* Tile n of `count` is done. They are noted by chunks: before an atomic addition the processor waits until all that was
+ * stored is in the cache, here the tile's rows. */
+static void note_tile(const render_options *o, pass *p, long n, long count)
 {
     long done;
+    if (n % CHUNK < CHUNK - 1 && n < count - 1)
+        return;
 #pragma omp atomic capture
-    done = ++p->done;
+    done = p->done += n % CHUNK + 1;
     show(o, p, done);
+}
+
+static void render_nth(const tracer *tr, const render_options *o, pass *p, film *f, long n, workspace *v)
+{
+    const window part = f->part;
+    const int columns = (part.x1 - part.x0 + TILE - 1) / TILE;
+    tile b = {part.x0 + (int)(n % columns) * TILE, part.y0 + (int)(n / columns) * TILE_ROWS, TILE, TILE_ROWS};
+    b.width = b.x0 + TILE > part.x1 ? part.x1 - b.x0 : TILE;
+    b.height = b.y0 + TILE_ROWS > part.y1 ? part.y1 - b.y0 : TILE_ROWS;
+    v->stats->timing = o->timing && n % TIMED_TILES == 0;
+    if (v->stats->timing)
+        v->stats->clock = stats_clock();
+    if (p->marked)
+        refine_tile(tr, p->aa, &b, p->marked, f, v);
+    else
+        render_tile(tr, p->aa, &b, f, v);
+    note_tile(o, p, n, tiles(part));
+}
+
+static workspace *tile_workspace(const tracer *tr)
+{
+    workspace *v = workspace_new(tr);
+    if (v)
+        camera_common(&tr->scene->camera, LANES, &v->x); /* once, as no stage changes it */
+    return v;
+}
+
+/* The caller's thread renders the first tiles by itself, for at most SECONDS_ALONE. Returns how many. To start and end
+ * another thread takes longer than a small picture: up to 15 ms on a virtual machine. */
+static long run_alone(const tracer *tr, const render_options *o, pass *p, film *f, stats *sum)
+{
+    const double end = stats_clock() + SECONDS_ALONE;
+    const long count = tiles(f->part);
+    workspace *v = tile_workspace(tr);
+    long n = 0;
+    while (v && n < count && !p->stop && stats_clock() < end)
+        render_nth(tr, o, p, f, n++, v);
+    stream_end();
+    if (v)
+        stats_add(sum, v->stats);
+    workspace_free(v);
+    return n;
 }
 
 static bool run(const tracer *tr, const render_options *o, pass *p, film *f, stats *sum, errors *e)
 {
-    const window part = f->part;
-    const int columns = (part.x1 - part.x0 + TILE - 1) / TILE;
-    const long count = tiles(part);
+    const long count = tiles(f->part);
     bool good = true;
     const int threads = threads_of(o->threads);
-    (void)threads;       /* without OpenMP */
     show(o, p, p->done); /* here and at the end, as other threads may take all the tiles of a small picture */
-#pragma omp parallel num_threads(threads)
+    const long first = threads > 1 && count <= SMALL ? run_alone(tr, o, p, f, sum) : 0;
+    const bool left = first < count;
+#pragma omp parallel num_threads(threads) if (left)
     {
-        workspace *v = workspace_new(tr);
-        if (v)
-            camera_common(&tr->scene->camera, LANES, &v->x); /* once, as no stage changes it */
-        else {
+        workspace *v = left ? tile_workspace(tr) : NULL;
+        if (left && !v) {
 #pragma omp atomic write
             good = false;
         }
-#pragma omp for schedule(dynamic, 4)
-        for (long n = 0; n < count; n++) {
+#pragma omp for schedule(dynamic, CHUNK)
+        for (long n = first; n < count; n++) {
             bool stop;
 #pragma omp atomic read
             stop = p->stop;
-            if (!v || stop)
-                continue;
-            tile b = {part.x0 + (int)(n % columns) * TILE, part.y0 + (int)(n / columns) * TILE_ROWS, TILE, TILE_ROWS};
-            b.width = b.x0 + TILE > part.x1 ? part.x1 - b.x0 : TILE;
-            b.height = b.y0 + TILE_ROWS > part.y1 ? part.y1 - b.y0 : TILE_ROWS;
-            v->stats->timing = o->timing && n % TIMED_TILES == 0;
-            if (v->stats->timing)
-                v->stats->clock = stats_clock();
-            if (p->marked)
-                refine_tile(tr, p->aa, &b, p->marked, f, v);
-            else
-                render_tile(tr, p->aa, &b, f, v);
-            note_tile(o, p);
+            if (v && !stop)
+                render_nth(tr, o, p, f, n, v);
         }
+        stream_end();
         if (v) {
 #pragma omp critical /* without a name, which would be a global variable */
             stats_add(sum, v->stats);

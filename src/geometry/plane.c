@@ -106,7 +106,7 @@ STAGE static void plane_eval(const surface *base, int n, const int32_t *part, co
 {
     const plane f = *(const plane *)base;
     (void)part;
-    for (int i = 0; i < n; i++) {
+    for (int i = 0; i < (order > 0 ? n : 0); i++) {
         q->Q.x[i] = f.O[0] + u[i] * f.U[0] + w[i] * f.W[0];
         q->Q.y[i] = f.O[1] + u[i] * f.U[1] + w[i] * f.W[1];
         q->Q.z[i] = f.O[2] + u[i] * f.U[2] + w[i] * f.W[2];

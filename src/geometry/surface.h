@@ -45,7 +45,7 @@ typedef struct surface_ops {
      * closed form; Newton's steps from the ray's hit find it (render/place.c). */
     void (*foot)(const surface *f, int n, const rays *x, const real *t, int32_t *part, real *u, real *w);
 
-    /* Q, Qu and Qw at (u,w); order 2: also Quu, Quw and Qww. */
+    /* Qu and Qw at (u,w); order 1: also Q, which most surfaces set in any case; order 2: also Quu, Quw and Qww. */
     void (*eval)(const surface *f, int n, const int32_t *part, const real *u, const real *w, int order, partials *q);
 
     /* Set lit[i] = 0 where the surface is hit at a t in (0,1): r + s t is a segment to a light. */

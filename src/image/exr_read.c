@@ -1,4 +1,6 @@
-/* Reads OpenEXR files with OpenEXRCore: one channel, or a colour. */
+/* Reads OpenEXR files with OpenEXRCore: one channel, or a colour. Chunks are independent, so that threads decode them
+ * side by side, each with a context of its own.
+ */
 #include <openexr.h>
 
 #include <errno.h>
@@ -8,6 +10,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/real.h"
+#include "base/threads.h"
 #include "image/format.h"
 
 /* The largest allocation for a (perhaps damaged) header: more than any chunk within our limits needs. */
@@ -111,196 +115,280 @@ static bool choose_colors(exr_reader *r, const exr_attr_chlist_t *list, const ex
     return true;
 }
 
-/* The image being read, and the pipeline that decompresses it chunk by chunk. */
-typedef struct exr_plane {
+/* What is read: the channels of a pixel's values, NULL where there is none, and the chunks that hold them. */
+typedef struct exr_plan {
+    image_stream *to;
+    const exr_attr_chlist_entry_t *channel[4];
+    bool tiled;
+    int first_y;           /* of scanlines */
+    int32_t width, height; /* of a chunk; scanlines are as wide as the image */
+    int across, chunks;
+} exr_plan;
+
+/* A thread's decoding, chunk by chunk. */
+typedef struct exr_worker {
+    exr_reader reader;
+    const exr_plan *plan;
     exr_context_t ctx;
     exr_decode_pipeline_t pipe;
     bool started;
-    const char *channel;
-    image *out;
-    int values, which; /* a pixel's values, and the one that the channel is */
-} exr_plane;
+    float *line; /* a chunk's line of pixels */
+    float range[2];
+} exr_worker;
 
-static float half_to_float(unsigned h)
+static uint32_t exr_uint(const uint8_t *b)
 {
-    const int exponent = (int)(h >> 10 & 31);
-    const float mantissa = (float)(h & 1023);
-    const float magnitude = exponent == 31 ? (mantissa > 0 ? NAN : INFINITY)
-                            : exponent > 0 ? ldexpf(mantissa + 1024, exponent - 25)
-                                           : ldexpf(mantissa, -24);
-    return h >> 15 ? -magnitude : magnitude;
+    return (uint32_t)b[3] << 24 | (uint32_t)b[2] << 16 | (uint32_t)b[1] << 8 | b[0];
 }
 
-/* n samples as the file has them, little-endian, to every `step`th place. */
-static void to_float(float *to, int step, const uint8_t *from, int n, int type)
+static float exr_float(uint32_t bits)
 {
-    for (int x = 0; x < n; x++, to += step) {
-        if (type == EXR_PIXEL_HALF) {
-            *to = half_to_float((unsigned)from[2 * x + 1] << 8 | from[2 * x]);
-            continue;
-        }
-        const uint8_t *b = from + 4 * (size_t)x;
-        uint32_t bits = (uint32_t)b[3] << 24 | (uint32_t)b[2] << 16 | (uint32_t)b[1] << 8 | b[0];
-        if (type == EXR_PIXEL_UINT)
-            *to = (float)bits;
-        else
-            memcpy(to, &bits, sizeof bits);
+    float x;
+    memcpy(&x, &bits, sizeof x);
+    return x;
+}
+
+/* n samples as the file has them, little-endian. Where a half's exponent and mantissa are moved to a float's place,
+ * 2^112 is missing, of subnormal numbers, too. Infinite ones and NaN have all bits of the exponent. */
+STAGE static void exr_halves(int n, const uint8_t *restrict from, float *restrict to)
+{
+    for (int x = 0; x < n; x++) {
+        const uint32_t h = (uint32_t)from[2 * x + 1] << 8 | from[2 * x], moved = (h & 0x7fff) << 13;
+        const float finite = exr_float(moved) * 0x1p112f, other = exr_float(moved | 0x7f800000);
+        const float size = (h & 0x7c00) == 0x7c00 ? other : finite;
+        to[x] = h & 0x8000 ? -size : size;
     }
 }
 
-/* From a decompressed chunk, which holds line after line and in each line channel after channel, take the one
- * channel. (The library's own unpacking writes through NULL for channels that are not wanted: 3.1.5, three or
- * four channels of type half.) */
-static bool unpack(exr_reader *r, exr_plane *p, int x, int y)
+STAGE static void exr_floats(int n, const uint8_t *restrict from, float *restrict to)
 {
-    const exr_chunk_info_t *chunk = &p->pipe.chunk;
-    const uint8_t *from = p->pipe.unpacked_buffer ? p->pipe.unpacked_buffer : p->pipe.packed_buffer;
+    for (int x = 0; x < n; x++)
+        to[x] = exr_float(exr_uint(from + 4 * (size_t)x));
+}
+
+STAGE static void exr_uints(int n, const uint8_t *restrict from, float *restrict to)
+{
+    for (int x = 0; x < n; x++)
+        to[x] = (float)exr_uint(from + 4 * (size_t)x);
+}
+
+static void to_floats(const exr_coding_channel_info_t *ch, const uint8_t *from, float *to)
+{
+    (ch->data_type == EXR_PIXEL_HALF   ? exr_halves
+     : ch->data_type == EXR_PIXEL_UINT ? exr_uints
+                                       : exr_floats)(ch->width, from, to);
+}
+
+/* Value k of each pixel of a line, from a channel's samples. */
+static void put_value(exr_worker *w, int k, const exr_coding_channel_info_t *ch, const uint8_t *from)
+{
+    const int values = w->plan->to->values;
+    float *const one = values > 1 ? w->line + (size_t)values * (size_t)w->plan->width : w->line;
+    to_floats(ch, from, one);
+    for (int x = 0; values > 1 && x < ch->width; x++)
+        w->line[x * values + k] = one[x];
+}
+
+/* Pass on the channels of a line. *from goes on behind it. */
+static bool unpack_line(exr_worker *w, int line, const uint8_t **from, uint64_t *left)
+{
+    const exr_chunk_info_t *chunk = &w->pipe.chunk;
+    const exr_plan *plan = w->plan;
+    for (int c = 0; c < w->pipe.channel_count; c++) {
+        const exr_coding_channel_info_t *ch = &w->pipe.channels[c];
+        if (ch->y_samples > 1 && (chunk->start_y + line) % ch->y_samples != 0)
+            continue;
+        const uint64_t size = (uint64_t)ch->width * (uint64_t)ch->bytes_per_element;
+        if (size > *left)
+            return image_refuse(w->reader.why, "OpenEXR: a chunk has a wrong size");
+        for (int k = 0; k < plan->to->values; k++) {
+            if (!plan->channel[k] || strcmp(ch->channel_name, plan->channel[k]->name.str) != 0)
+                continue;
+            if (ch->width != chunk->width)
+                return image_refuse(w->reader.why, "OpenEXR: a chunk has a wrong size");
+            put_value(w, k, ch, *from);
+        }
+        *from += size;
+        *left -= size;
+    }
+    return true;
+}
+
+/* From a decompressed chunk, which holds line after line and in each line channel after channel, take the channels
+ * of the plan. (The library's own unpacking writes through NULL for channels that are not wanted: 3.1.5, three or
+ * four channels of type half.) */
+static bool unpack(exr_worker *w, int x, int y)
+{
+    const exr_chunk_info_t *chunk = &w->pipe.chunk;
+    const uint8_t *from = w->pipe.unpacked_buffer ? w->pipe.unpacked_buffer : w->pipe.packed_buffer;
     uint64_t left = chunk->unpacked_size;
     for (int line = 0; line < chunk->height; line++)
-        for (int c = 0; c < p->pipe.channel_count; c++) {
-            const exr_coding_channel_info_t *ch = &p->pipe.channels[c];
-            if (ch->y_samples > 1 && (chunk->start_y + line) % ch->y_samples != 0)
-                continue;
-            const uint64_t size = (uint64_t)ch->width * (uint64_t)ch->bytes_per_element;
-            const bool wanted = strcmp(ch->channel_name, p->channel) == 0;
-            if (size > left || (wanted && ch->width != chunk->width))
-                return image_refuse(r->why, "OpenEXR: a chunk has a wrong size");
-            if (wanted)
-                to_float(p->out->v + ((size_t)(y + line) * (size_t)p->out->width + (size_t)x) * (size_t)p->values +
-                             p->which,
-                         p->values, from, ch->width, ch->data_type);
-            from += size;
-            left -= size;
-        }
+        if (!unpack_line(w, line, &from, &left) ||
+            !image_pass(w->plan->to, x, y + line, chunk->width, w->line, w->range, w->reader.why))
+            return false;
     return true;
 }
 
 /* Decode one chunk, whose first sample is (x, y) of the image. */
-static bool decode_chunk(exr_reader *r, exr_plane *p, const exr_chunk_info_t *chunk, int x, int y)
+static bool decode_chunk(exr_worker *w, const exr_chunk_info_t *chunk, int x, int y)
 {
-    if (chunk->width < 1 || chunk->height < 1 || chunk->width > p->out->width - x || chunk->height > p->out->height - y)
+    exr_reader *r = &w->reader;
+    const image_stream *to = w->plan->to;
+    if (chunk->width < 1 || chunk->height < 1 || chunk->width > to->width - x || chunk->height > to->height - y ||
+        chunk->width > w->plan->width)
         return image_refuse(r->why, "OpenEXR: a chunk does not lie within the image");
     if (chunk->packed_size == 0 ||
         (chunk->compression == EXR_COMPRESSION_NONE && chunk->packed_size != chunk->unpacked_size))
         return image_refuse(r->why, "OpenEXR: a chunk has a wrong size");
-    if (!good(r, p->started ? exr_decoding_update(p->ctx, 0, chunk, &p->pipe)
-                            : exr_decoding_initialize(p->ctx, 0, chunk, &p->pipe)))
+    if (!good(r, w->started ? exr_decoding_update(w->ctx, 0, chunk, &w->pipe)
+                            : exr_decoding_initialize(w->ctx, 0, chunk, &w->pipe)))
         return false;
-    if (!p->started && !good(r, exr_decoding_choose_default_routines(p->ctx, 0, &p->pipe)))
+    if (!w->started && !good(r, exr_decoding_choose_default_routines(w->ctx, 0, &w->pipe)))
         return false;
-    p->started = true;
-    p->pipe.unpack_and_convert_fn = NULL;
-    return good(r, exr_decoding_run(p->ctx, 0, &p->pipe)) && unpack(r, p, x, y);
-}
-
-static bool decode_scanlines(exr_reader *r, exr_plane *p, int first_y)
-{
-    int32_t lines = 0;
-    if (!good(r, exr_get_scanlines_per_chunk(p->ctx, 0, &lines)))
-        return false;
-    if (lines < 1)
-        return image_refuse(r->why, "OpenEXR: chunks without lines");
-    for (int y = 0; y < p->out->height; y += lines) {
-        exr_chunk_info_t chunk = {0};
-        if (!good(r, exr_read_scanline_chunk_info(p->ctx, 0, first_y + y, &chunk)) || !decode_chunk(r, p, &chunk, 0, y))
-            return false;
-    }
-    return true;
+    w->started = true;
+    w->pipe.unpack_and_convert_fn = NULL;
+    return good(r, exr_decoding_run(w->ctx, 0, &w->pipe)) && unpack(w, x, y);
 }
 
 /* Of a pyramid, the finest level. */
-static bool decode_tiles(exr_reader *r, exr_plane *p)
+static bool decode_numbered(exr_worker *w, int k)
 {
-    int32_t w = 0, h = 0;
-    if (!good(r, exr_get_tile_sizes(p->ctx, 0, 0, 0, &w, &h)))
-        return false;
-    if (w < 1 || h < 1)
-        return image_refuse(r->why, "OpenEXR: tiles without samples");
-    for (int64_t y = 0; y < p->out->height; y += h)
-        for (int64_t x = 0; x < p->out->width; x += w) {
-            exr_chunk_info_t chunk = {0};
-            if (!good(r, exr_read_tile_chunk_info(p->ctx, 0, (int)(x / w), (int)(y / h), 0, 0, &chunk)) ||
-                !decode_chunk(r, p, &chunk, (int)x, (int)y))
-                return false;
-        }
-    return true;
+    const exr_plan *p = w->plan;
+    exr_chunk_info_t chunk = {0};
+    const int row = k / p->across, column = k % p->across;
+    return good(&w->reader, p->tiled ? exr_read_tile_chunk_info(w->ctx, 0, column, row, 0, 0, &chunk)
+                                     : exr_read_scanline_chunk_info(w->ctx, 0, p->first_y + row * p->height, &chunk)) &&
+           decode_chunk(w, &chunk, column * p->width, row * p->height);
 }
 
-static bool all_finite(exr_reader *r, const image *m, int values)
-{
-    const int width = values * m->width;
-    for (int y = 0; y < m->height; y++)
-        for (int x = 0; x < width; x++) {
-            float v = m->v[(size_t)y * (size_t)width + (size_t)x];
-            if (!isfinite(v))
-                return image_refuse(r->why, "the sample in column %d of row %d (both from 0) is %s", x / values, y,
-                                    isnan(v) ? "NaN"
-                                    : v > 0  ? "infinite"
-                                             : "-infinite");
-        }
-    return true;
-}
+/* ---- the plan ---- */
 
-static bool decode_channel(exr_reader *r, exr_plane *p, const exr_attr_chlist_entry_t *channel, int which,
-                           exr_storage_t storage, int first_y)
-{
-    p->channel = channel->name.str;
-    p->which = which;
-    return storage == EXR_STORAGE_TILED ? decode_tiles(r, p) : decode_scanlines(r, p, first_y);
-}
-
-static bool decode(exr_reader *r, exr_plane *p, const char *name, bool color)
+static bool plan_channels(exr_reader *r, exr_context_t ctx, const char *name, exr_plan *p)
 {
     int parts = 0;
     exr_storage_t storage = EXR_STORAGE_LAST_TYPE;
-    exr_attr_box2i_t window;
     const exr_attr_chlist_t *list = NULL;
-    const exr_attr_chlist_entry_t *channel[4] = {NULL};
-    if (!good(r, exr_get_count(p->ctx, &parts)))
+    if (!good(r, exr_get_count(ctx, &parts)))
         return false;
     if (parts != 1)
         return image_refuse(r->why, "the OpenEXR file has several parts; one is expected");
-    if (!good(r, exr_get_storage(p->ctx, 0, &storage)))
+    if (!good(r, exr_get_storage(ctx, 0, &storage)))
         return false;
     if (storage != EXR_STORAGE_SCANLINE && storage != EXR_STORAGE_TILED)
         return image_refuse(r->why, "the OpenEXR file holds deep samples; a flat image is expected");
-    if (!good(r, exr_get_channels(p->ctx, 0, &list)) ||
-        !(color ? choose_colors(r, list, channel) : choose(r, list, name, channel)) ||
-        !good(r, exr_get_data_window(p->ctx, 0, &window)))
-        return false;
-    p->values = color ? 4 : 1;
-    if (!image_alloc(p->out, (int64_t)window.max.x - window.min.x + 1, (int64_t)window.max.y - window.min.y + 1,
-                     p->values, r->why))
-        return false;
-    for (size_t k = 0; color && k < (size_t)p->out->width * (size_t)p->out->height; k++)
-        p->out->v[4 * k + 3] = 1;
-    for (int k = 0; k < p->values; k++)
-        if (channel[k] && !decode_channel(r, p, channel[k], k, storage, window.min.y))
-            return false;
-    return all_finite(r, p->out, p->values);
+    p->tiled = storage == EXR_STORAGE_TILED;
+    return good(r, exr_get_channels(ctx, 0, &list)) &&
+           (p->to->values > 1 ? choose_colors(r, list, p->channel) : choose(r, list, name, p->channel));
 }
 
-bool image_read_exr(FILE *file, const char *channel, bool color, image *out, char *why)
+static bool plan_chunks(exr_reader *r, exr_context_t ctx, exr_plan *p)
 {
-    exr_reader r = {.fd = fileno(file), .why = why};
-    struct stat st;
-    if (fstat(r.fd, &st) != 0 || !S_ISREG(st.st_mode))
-        return image_refuse(r.why, "an OpenEXR file is read out of order, so not from a pipe or a device");
+    exr_attr_box2i_t window;
+    if (!good(r, exr_get_data_window(ctx, 0, &window)) ||
+        !image_begin(p->to, (int64_t)window.max.x - window.min.x + 1, (int64_t)window.max.y - window.min.y + 1, r->why))
+        return false;
+    p->first_y = window.min.y;
+    p->width = p->to->width;
+    if (!good(r, p->tiled ? exr_get_tile_sizes(ctx, 0, 0, 0, &p->width, &p->height)
+                          : exr_get_scanlines_per_chunk(ctx, 0, &p->height)))
+        return false;
+    if (p->width < 1 || p->height < 1)
+        return image_refuse(r->why, "OpenEXR: chunks without samples");
+    p->across = (p->to->width - 1) / p->width + 1;
+    p->chunks = p->across * ((p->to->height - 1) / p->height + 1);
+    return true;
+}
+
+/* ---- threads ---- */
+
+static bool start(exr_reader *r, exr_context_t *ctx)
+{
     exr_context_initializer_t init = EXR_DEFAULT_CONTEXT_INITIALIZER;
     init.error_handler_fn = on_read_error;
     init.alloc_fn = limited_alloc;
     init.free_fn = free;
-    init.user_data = &r;
+    init.user_data = r;
     init.read_fn = read_at;
     init.size_fn = size_of_file;
     init.max_image_width = init.max_image_height = IMAGE_MAX_SIDE;
     init.max_tile_width = init.max_tile_height = IMAGE_MAX_SIDE;
     init.flags = EXR_CONTEXT_FLAG_DISABLE_CHUNK_RECONSTRUCTION; /* an incomplete file is an error */
-    exr_plane p = {.pipe = EXR_DECODE_PIPELINE_INITIALIZER, .out = out};
-    bool ok = good(&r, exr_start_read(&p.ctx, "image", &init)) && decode(&r, &p, channel, color);
-    if (p.ctx) {
-        exr_decoding_destroy(p.ctx, &p.pipe);
-        exr_finish(&p.ctx);
+    return good(r, exr_start_read(ctx, "image", &init));
+}
+
+/* The first chunk that could not be read, and why: the same for any number of threads. */
+typedef struct exr_failure {
+    int chunk;
+    char why[IMAGE_WHY];
+} exr_failure;
+
+static bool begin_worker(exr_worker *w)
+{
+    const size_t values = (size_t)w->plan->to->values, width = (size_t)w->plan->width;
+    w->range[0] = INFINITY;
+    w->range[1] = -INFINITY;
+    w->line = malloc((values + 1) * width * sizeof *w->line);
+    if (!w->line)
+        return image_refuse(w->reader.why, "there is not enough memory for the image");
+    for (size_t k = 0; k < values * width; k++)
+        w->line[k] = 1; /* alpha, where there is no such channel */
+    return start(&w->reader, &w->ctx);
+}
+
+static void end_worker(exr_worker *w)
+{
+    if (w->ctx) {
+        exr_decoding_destroy(w->ctx, &w->pipe);
+        exr_finish(&w->ctx);
     }
+    free(w->line);
+}
+
+static void decode_all(int fd, const exr_plan *p, int threads, exr_failure *bad)
+{
+    float *const all = p->to->range;
+    bad->chunk = p->chunks;
+#pragma omp parallel num_threads(threads < p->chunks ? threads : p->chunks)
+    {
+        char why[IMAGE_WHY] = "";
+        exr_worker w = {.reader = {fd, why}, .plan = p, .pipe = EXR_DECODE_PIPELINE_INITIALIZER};
+        const bool ready = begin_worker(&w);
+#pragma omp for schedule(dynamic)
+        for (int k = 0; k < p->chunks; k++) {
+            int first;
+#pragma omp critical(exr)
+            first = bad->chunk;
+            if (k < first && !(ready && decode_numbered(&w, k)))
+#pragma omp critical(exr)
+                if (k < bad->chunk) {
+                    bad->chunk = k;
+                    memcpy(bad->why, why, sizeof why);
+                }
+        }
+#pragma omp critical(exr)
+        {
+            all[0] = fminf(all[0], w.range[0]);
+            all[1] = fmaxf(all[1], w.range[1]);
+        }
+        end_worker(&w);
+    }
+}
+
+bool image_read_exr(FILE *file, const char *channel, int threads, image_stream *to, char *why)
+{
+    exr_reader r = {.fd = fileno(file), .why = why};
+    struct stat st;
+    if (fstat(r.fd, &st) != 0 || !S_ISREG(st.st_mode))
+        return image_refuse(r.why, "an OpenEXR file is read out of order, so not from a pipe or a device");
+    exr_context_t ctx = NULL;
+    exr_plan p = {.to = to};
+    exr_failure bad;
+    bool ok = start(&r, &ctx) && plan_channels(&r, ctx, channel, &p) && plan_chunks(&r, ctx, &p);
+    if (ok) {
+        decode_all(r.fd, &p, threads_of(threads), &bad);
+        ok = bad.chunk == p.chunks || image_refuse(why, "%s", bad.why);
+    }
+    if (ctx)
+        exr_finish(&ctx);
     return ok;
 }

@@ -1,8 +1,10 @@
-/* Reasons, size limits and allocation for all formats. */
+/* Reasons, size limits and the way of the samples, for all formats. */
 #include "image/format.h"
 
+#include <math.h>
 #include <stdarg.h>
-#include <stdlib.h>
+
+#include "base/real.h"
 
 bool image_refuse(char *why, const char *fmt, ...)
 {
@@ -23,12 +25,61 @@ const char *image_refuse_size(int64_t width, int64_t height)
     return NULL;
 }
 
-bool image_alloc(image *out, int64_t width, int64_t height, int values, char *why)
+bool image_begin(image_stream *s, int64_t width, int64_t height, char *why)
 {
     const char *refused = image_refuse_size(width, height);
-    float *v = refused ? NULL : malloc((size_t)(width * height) * (size_t)values * sizeof *v);
-    if (!v)
-        return image_refuse(why, "%s", refused ? refused : "there is not enough memory for the image");
-    *out = (image){(int)width, (int)height, v};
+    s->width = (int)width;
+    s->height = (int)height;
+    s->range[0] = INFINITY;
+    s->range[1] = -INFINITY;
+    if (!refused)
+        refused = s->to->begin(s->to->user, s->width, s->height);
+    return !refused || image_refuse(why, "%s", refused);
+}
+
+/* What is found so far, each of some columns by itself. unknown: 0, or NaN by a value that is NaN or infinite. */
+enum { BESIDE = 64 };
+
+typedef struct extremes {
+    float low[BESIDE], high[BESIDE], unknown[BESIDE];
+} extremes;
+
+STAGE static void image_extremes(int n, const float *restrict v, extremes *restrict x)
+{
+    for (int i = 0; i < n; i++) {
+        x->low[i] = v[i] < x->low[i] ? v[i] : x->low[i];
+        x->high[i] = v[i] > x->high[i] ? v[i] : x->high[i];
+        x->unknown[i] += 0 * v[i];
+    }
+}
+
+static bool refuse_value(const image_stream *s, int x, int y, const float *v, char *why)
+{
+    int k = 0;
+    while (isfinite(v[k]))
+        k++;
+    return image_refuse(why, "the sample in column %d of row %d (both from 0) is %s", x + k / s->values, y,
+                        isnan(v[k]) ? "NaN"
+                        : v[k] > 0  ? "infinite"
+                                    : "-infinite");
+}
+
+bool image_pass(const image_stream *s, int x, int y, int n, const float *v, float range[2], char *why)
+{
+    extremes found;
+    for (int i = 0; i < BESIDE; i++) {
+        found.low[i] = range[0];
+        found.high[i] = range[1];
+        found.unknown[i] = 0;
+    }
+    for (int i = 0; i < n * s->values; i += BESIDE)
+        image_extremes(n * s->values - i < BESIDE ? n * s->values - i : BESIDE, v + i, &found);
+    for (int i = 0; i < BESIDE; i++) {
+        range[0] = fminf(range[0], found.low[i]);
+        range[1] = fmaxf(range[1], found.high[i]);
+        if (found.unknown[i] != 0)
+            return refuse_value(s, x, y, v, why);
+    }
+    s->to->take(s->to->user, x, y, n, v);
     return true;
 }

@@ -16,13 +16,22 @@ bool image_refuse(char *why, const char *fmt, ...) KAGE_PRINTF(2, 3);
 /* NULL, or why an image of this size is neither read nor written. */
 const char *image_refuse_size(int64_t width, int64_t height);
 
-/* Allocate width x height pixels of `values` floats each in *out; the caller frees out->v. False, with a reason: too
- * large, or out of memory; then *out is as before. */
-bool image_alloc(image *out, int64_t width, int64_t height, int values, char *why);
+/* The samples on their way to the taker. values: of a pixel, 1 or 4. */
+typedef struct image_stream {
+    const image_taker *to;
+    int values, width, height;
+    float range[2]; /* of all values so far */
+} image_stream;
 
-/* The readers behind image_read. *out begins empty; on error it may hold samples, and `why` the reason. color: four
- * values a pixel instead of one. */
-bool image_read_png(FILE *file, bool color, image *out, char *why); /* file: after the 8 bytes of the signature */
-bool image_read_exr(FILE *file, const char *channel, bool color, image *out, char *why); /* file: at any position */
+/* Before the samples. False, with a reason: too large, or not taken. */
+bool image_begin(image_stream *s, int64_t width, int64_t height, char *why);
+
+/* Pass on n pixels of row y from column x on, and widen the range, which may be another thread's own. False, with a
+ * reason: a value is NaN or infinite. */
+bool image_pass(const image_stream *s, int x, int y, int n, const float *v, float range[2], char *why);
+
+/* The readers behind image_read. */
+bool image_read_png(FILE *file, image_stream *to, char *why); /* file: after the 8 bytes of the signature */
+bool image_read_exr(FILE *file, const char *channel, int threads, image_stream *to, char *why); /* at any position */
 
 #endif

@@ -8,17 +8,30 @@
 
 #include "base/errors.h"
 
-/* Samples of an image: one value a pixel, or four where it was read in colour. */
+/* An image in colour: four values a pixel. */
 typedef struct image {
     int width, height;
-    float *v; /* height x width x values; free() */
+    float *v; /* height x width x 4 values; free() */
 } image;
 
 /* The most samples a side and in all of an image that is read or written. */
 enum { IMAGE_MAX_SIDE = 65536 };
 #define IMAGE_MAX_PIXELS ((long)1 << 28)
 
-/* Read one channel of a file into *out.
+/* Who takes the samples of an image while it is decoded, so that it need not be in memory twice. */
+typedef struct image_taker {
+    void *user;
+
+    /* Called once, before the samples. Returns NULL, or why the image can't be taken. */
+    const char *(*begin)(void *user, int width, int height);
+
+    /* Called with n samples of row y, from column x on, for each sample once, in any order, by several threads at once.
+     */
+    void (*take)(void *user, int x, int y, int n, const float *v);
+} image_taker;
+
+/* Read one channel of a file, on the given number of threads (0: one for each processor; only OpenEXR uses more than
+ * one). range: the least sample and the most.
  *
  * PNG: grey, 8 or 16 bit (also 1, 2, 4 bit; grey with alpha, the alpha ignored), as sample / (2^bits - 1),
  * so 0..1, without any gamma; `channel` must be NULL. Colour and palette images are refused.
@@ -26,7 +39,7 @@ enum { IMAGE_MAX_SIDE = 65536 };
  * channel, or Y. Values are not changed; NaN and infinities are refused.
  * The format is recognised by the file's first bytes, not by its name.
  * False, with one message in *e that does not name the file. */
-bool image_read(const char *path, const char *channel, image *out, errors *e);
+bool image_read(const char *path, const char *channel, int threads, const image_taker *to, float range[2], errors *e);
 
 /* The encoding of colours; IMAGE_BY_KIND: sRGB in PNG, linear in OpenEXR. */
 typedef enum image_encoding { IMAGE_BY_KIND, IMAGE_SRGB, IMAGE_LINEAR } image_encoding;
@@ -37,7 +50,7 @@ typedef enum image_encoding { IMAGE_BY_KIND, IMAGE_SRGB, IMAGE_LINEAR } image_en
  * PNG: any kind; sRGB unless IMAGE_LINEAR is asked for. Its other statements about gamma are ignored.
  * OpenEXR: as above; R, G and B, or Y as a grey. Always linear; IMAGE_SRGB is an error.
  * An image that is transparent anywhere is refused. exr: whether the file is one. */
-bool image_read_color(const char *path, image_encoding encoding, image *out, bool *exr, errors *e);
+bool image_read_color(const char *path, image_encoding encoding, int threads, image *out, bool *exr, errors *e);
 
 /* A named text to write into the file. */
 typedef struct image_text {

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/file_writer.h"
+#include "base/real.h"
 #include "image/format.h"
 #include "image/srgb.h"
 
@@ -16,6 +17,8 @@ typedef struct png_job {
     char *why; /* IMAGE_WHY */
     png_structp png;
     png_infop info;
+    png_bytep packed; /* while reading: rows as the file has them, and one row of samples */
+    float *row;
 } png_job;
 
 static void on_error(png_structp png, png_const_charp message)
@@ -37,17 +40,40 @@ static void read_bytes(png_structp png, png_bytep data, size_t size)
         png_error(png, ferror(file) ? strerror(errno) : "the file ends too early");
 }
 
-/* The samples of a row, big-endian integers of 1 or 2 bytes at its beginning, become floats in place. From the
- * last to the first, since each needs as much room or more than it had. */
-static void row_to_float(float *row, int width, int bytes)
+STAGE static void png_to_float8(int n, const unsigned char *restrict from, float *restrict to)
 {
-    const unsigned char *from = (const unsigned char *)row;
-    for (int x = width - 1; x >= 0; x--) {
-        if (bytes == 2)
-            row[x] = (float)(from[2 * x] << 8 | from[2 * x + 1]) / 65535.0f;
-        else
-            row[x] = (float)from[x] / 255.0f;
-    }
+    for (int i = 0; i < n; i++)
+        to[i] = (float)from[i] / 255.0f;
+}
+
+/* Big-endian. */
+STAGE static void png_to_float16(int n, const unsigned char *restrict from, float *restrict to)
+{
+    for (int i = 0; i < n; i++)
+        to[i] = (float)(from[2 * i] << 8 | from[2 * i + 1]) / 65535.0f;
+}
+
+static bool pass_row(png_job *job, image_stream *to, int y, const unsigned char *packed, int bytes)
+{
+    (bytes == 2 ? png_to_float16 : png_to_float8)(to->width * to->values, packed, job->row);
+    return image_pass(to, 0, y, to->width, job->row, to->range, job->why);
+}
+
+/* An interlaced image comes in several passes, so all its rows are kept; otherwise one is. */
+static bool read_rows(png_job *job, image_stream *to, int passes, size_t row, int bytes)
+{
+    const size_t kept = passes > 1 ? row : 0;
+    job->packed = malloc(row + kept * (size_t)(to->height - 1));
+    job->row = malloc((size_t)to->width * (size_t)to->values * sizeof *job->row);
+    if (!job->packed || !job->row)
+        return image_refuse(job->why, "there is not enough memory for the image");
+    for (int pass = 1; pass <= passes; pass++)
+        for (int y = 0; y < to->height; y++) {
+            png_read_row(job->png, job->packed + (size_t)y * kept, NULL);
+            if (pass == passes && !pass_row(job, to, y, job->packed + (size_t)y * kept, bytes))
+                return false;
+        }
+    return true;
 }
 
 /* Every kind of PNG as red, green, blue and alpha of 8 or 16 bits. */
@@ -73,26 +99,25 @@ static bool read_header(png_job *job, FILE *file, bool texts)
         return image_refuse(job->why, "libpng does not start");
     png_set_read_fn(job->png, file, read_bytes);
     png_set_sig_bytes(job->png, texts ? 0 : 8);
-    png_set_user_limits(job->png, PNG_UINT_31_MAX, PNG_UINT_31_MAX); /* image_alloc has the limits */
+    png_set_user_limits(job->png, PNG_UINT_31_MAX, PNG_UINT_31_MAX); /* image_begin has the limits */
     if (!texts)
         png_set_keep_unknown_chunks(job->png, PNG_HANDLE_CHUNK_NEVER, NULL, -1); /* nor gamma and colour profiles */
     png_read_info(job->png, job->info);
     return true;
 }
 
-static bool decode(png_job *job, FILE *file, bool color, image *out)
+static bool decode(png_job *job, FILE *file, image_stream *to)
 {
     if (setjmp(job->jump))
         return false;
     if (!read_header(job, file, false))
         return false;
+    const bool color = to->values > 1;
     int colour = png_get_color_type(job->png, job->info);
     if (!color && colour != PNG_COLOR_TYPE_GRAY && colour != PNG_COLOR_TYPE_GRAY_ALPHA)
         return image_refuse(job->why, "the PNG %s; a grey one is expected, of 8 or 16 bits",
                             colour == PNG_COLOR_TYPE_PALETTE ? "has a palette" : "is in colour");
-    const int values = color ? 4 : 1;
-    if (!image_alloc(out, png_get_image_width(job->png, job->info), png_get_image_height(job->png, job->info), values,
-                     job->why))
+    if (!image_begin(to, png_get_image_width(job->png, job->info), png_get_image_height(job->png, job->info), job->why))
         return false;
     const int bytes = png_get_bit_depth(job->png, job->info) == 16 ? 2 : 1;
     if (color)
@@ -103,23 +128,22 @@ static bool decode(png_job *job, FILE *file, bool color, image *out)
     }
     const int passes = png_set_interlace_handling(job->png);
     png_read_update_info(job->png, job->info);
-    const size_t row = (size_t)out->width * (size_t)values;
-    if (png_get_rowbytes(job->png, job->info) != row * (size_t)bytes)
+    const size_t row = (size_t)to->width * (size_t)to->values * (size_t)bytes;
+    if (png_get_rowbytes(job->png, job->info) != row)
         return image_refuse(job->why, "libpng: unexpected size of a row");
-    for (int pass = 0; pass < passes; pass++)
-        for (int y = 0; y < out->height; y++)
-            png_read_row(job->png, (png_bytep)(out->v + (size_t)y * row), NULL);
+    if (!read_rows(job, to, passes, row, bytes))
+        return false;
     png_read_end(job->png, NULL);
-    for (int y = 0; y < out->height; y++)
-        row_to_float(out->v + (size_t)y * row, (int)row, bytes);
     return true;
 }
 
-bool image_read_png(FILE *file, bool color, image *out, char *why)
+bool image_read_png(FILE *file, image_stream *to, char *why)
 {
     png_job job = {.why = why};
-    bool ok = decode(&job, file, color, out);
+    bool ok = decode(&job, file, to);
     png_destroy_read_struct(&job.png, &job.info, NULL);
+    free(job.packed);
+    free(job.row);
     return ok;
 }
 

@@ -7,7 +7,7 @@
 
 #include "image/srgb.h"
 
-static bool read_any(FILE *file, const char *channel, bool color, image *out, bool *is_exr, char *why)
+static bool read_any(FILE *file, const char *channel, int threads, image_stream *to, bool *is_exr, char *why)
 {
     static const unsigned char exr[4] = {0x76, 0x2f, 0x31, 0x01};
     static const unsigned char png[8] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
@@ -18,13 +18,49 @@ static bool read_any(FILE *file, const char *channel, bool color, image *out, bo
         return image_refuse(why, "%s", strerror(errno));
     *is_exr = n >= sizeof exr && memcmp(first, exr, sizeof exr) == 0;
     if (*is_exr)
-        return image_read_exr(file, channel, color, out, why);
+        return image_read_exr(file, channel, threads, to, why);
     if (n < sizeof png || memcmp(first, png, sizeof png) != 0)
         return image_refuse(why,
                             n ? "its first bytes are those of neither a PNG nor an OpenEXR file" : "the file is empty");
     if (channel)
         return image_refuse(why, "there is no channel '%s': a PNG file has no named channels", channel);
-    return image_read_png(file, color, out, why);
+    return image_read_png(file, to, why);
+}
+
+static bool read_file(const char *path, const char *channel, int threads, image_stream *to, bool *is_exr, errors *e)
+{
+    FILE *file = fopen(path, "rb");
+    if (!file)
+        return errors_add(e, "%s", strerror(errno));
+    char why[IMAGE_WHY] = "";
+    bool ok = read_any(file, channel, threads, to, is_exr, why);
+    fclose(file);
+    return ok || errors_add(e, "%s", why);
+}
+
+bool image_read(const char *path, const char *channel, int threads, const image_taker *to, float range[2], errors *e)
+{
+    bool is_exr;
+    image_stream s = {.to = to, .values = 1};
+    const bool ok = read_file(path, channel, threads, &s, &is_exr, e);
+    range[0] = s.range[0];
+    range[1] = s.range[1];
+    return ok;
+}
+
+/* ---- in colour: all pixels in memory ---- */
+
+static const char *begin_pixels(void *user, int width, int height)
+{
+    image *out = user;
+    *out = (image){width, height, malloc((size_t)width * (size_t)height * 4 * sizeof *out->v)};
+    return out->v ? NULL : "there is not enough memory for the image";
+}
+
+static void take_pixels(void *user, int x, int y, int n, const float *v)
+{
+    const image *out = user;
+    memcpy(out->v + 4 * ((size_t)y * (size_t)out->width + (size_t)x), v, 4 * (size_t)n * sizeof *v);
 }
 
 /* Frees the image unless `good`, which it returns. */
@@ -35,24 +71,6 @@ static bool keep_if(bool good, image *out)
         *out = (image){0};
     }
     return good;
-}
-
-static bool read_file(const char *path, const char *channel, bool color, image *out, bool *is_exr, errors *e)
-{
-    *out = (image){0};
-    FILE *file = fopen(path, "rb");
-    if (!file)
-        return errors_add(e, "%s", strerror(errno));
-    char why[IMAGE_WHY] = "";
-    bool ok = read_any(file, channel, color, out, is_exr, why);
-    fclose(file);
-    return keep_if(ok || errors_add(e, "%s", why), out);
-}
-
-bool image_read(const char *path, const char *channel, image *out, errors *e)
-{
-    bool is_exr;
-    return read_file(path, channel, false, out, &is_exr, e);
 }
 
 static bool all_opaque(const image *m, errors *e)
@@ -66,9 +84,12 @@ static bool all_opaque(const image *m, errors *e)
     return true;
 }
 
-bool image_read_color(const char *path, image_encoding encoding, image *out, bool *is_exr, errors *e)
+bool image_read_color(const char *path, image_encoding encoding, int threads, image *out, bool *is_exr, errors *e)
 {
-    bool ok = read_file(path, NULL, true, out, is_exr, e) && all_opaque(out, e);
+    const image_taker to = {out, begin_pixels, take_pixels};
+    image_stream s = {.to = &to, .values = 4};
+    *out = (image){0};
+    bool ok = read_file(path, NULL, threads, &s, is_exr, e) && all_opaque(out, e);
     if (ok && *is_exr && encoding == IMAGE_SRGB)
         ok = errors_add(e, "an OpenEXR file is linear; srgb is for PNG");
     if (ok && !*is_exr && encoding != IMAGE_LINEAR)

@@ -62,7 +62,7 @@ void lighting_aim_from(const light *l, const vec3s *from, hit_group *g)
     (l->kind == LIGHT_PARALLEL ? places_along : places_at)(l, g->n, from, &g->to_light);
 }
 
-void lighting_aim(const light *l, const real *t, hit_group *g) { lighting_rays(l, g->n, &g->x, t, &g->to_light); }
+void lighting_aim(const light *l, const real *t, hit_group *g) { lighting_rays(l, g->n, g->x, t, &g->to_light); }
 
 STAGE static void add(const hit_group *restrict g, real share, real *restrict sum)
 {
@@ -90,7 +90,7 @@ STAGE static void place(const hit_group *restrict g, const light *l, double *res
     const real lx = (real)l->at.x, ly = (real)l->at.y, lz = (real)l->at.z;
     const real ax = (real)l->axis.x, ay = (real)l->axis.y, az = (real)l->axis.z, flat = l->kind == LIGHT_PARALLEL;
     for (int i = 0; i < g->n; i++) {
-        bs_vec3 p = lane_at(&g->x, i, g->t_shade[i]);
+        bs_vec3 p = lane_at(g->x, i, g->t_shade[i]);
         real x = p.x - lx, y = p.y - ly, z = p.z - lz;
         real far = real_sqrt(x * x + y * y + z * z), deep = x * ax + y * ay + z * az;
         distance[i] = (double)(far + flat * (real_abs(deep) - far));

@@ -3,6 +3,7 @@
 #include "light/shade.h"
 
 #include "math/kmath.h"
+#include "wave/fill.h"
 #include "wave/lane.h"
 
 STAGE static void ambient_pattern(hit_group *restrict g, real share)
@@ -21,7 +22,7 @@ void shade_ambient(hit_group *g, const material *m)
         ambient_pattern(g, (real)share);
         return;
     }
-    vec3s_fill(&g->rgb, g->n, (real)(share * m->color.x), (real)(share * m->color.y), (real)(share * m->color.z));
+    fill_vec3s(g->n, (real)(share * m->color.x), (real)(share * m->color.y), (real)(share * m->color.z), &g->rgb);
 }
 
 /* The direction from p to a light: at - near p. near is 0 for a parallel light. The light is seen where its direction
@@ -49,11 +50,11 @@ static inline way way_against(const light *l, bool front)
  * smooth surface, if that counts. */
 static inline real facing(const hit_group *g, int i, way to, bs_vec3 *L, bs_vec3 *n)
 {
-    bs_vec3 p = lane_at(&g->x, i, g->t_shade[i]);
+    bs_vec3 p = lane_at(g->x, i, g->t_shade[i]);
     bs_vec3 d = {to.at.x - to.near * p.x, to.at.y - to.near * p.y, to.at.z - to.near * p.z};
     bs_vec3 smooth = lane_get(&g->n_smooth, i), bumped = lane_get(&g->n_bump, i);
     real lit = g->lit[i]; /* always read: a conditional read would be a branch */
-    real side = bs_dot(smooth, lane_get(&g->x.s, i)) < 0 ? R(1) : R(-1);
+    real side = bs_dot(smooth, lane_get(&g->x->s, i)) < 0 ? R(1) : R(-1);
     *L = lane_unit(d);
     n->x = side * bumped.x;
     n->y = side * bumped.y;
@@ -124,7 +125,7 @@ static void shade_diffuse(hit_group *g, const material *m, const light *l, bool 
 static inline void phong(const hit_group *restrict g, const way to, double *restrict c, real *restrict lit)
 {
     for (int i = 0; i < g->n; i++) {
-        bs_vec3 L, n, s = lane_unit(lane_get(&g->x.s, i));
+        bs_vec3 L, n, s = lane_unit(lane_get(&g->x->s, i));
         lit[i] = facing(g, i, to, &L, &n);
         c[i] = (double)real_max(bs_dot(s, L) - 2 * bs_dot(s, n) * bs_dot(n, L), 0);
     }
@@ -145,7 +146,7 @@ STAGE static void phong_against(const hit_group *g, const light *l, bool front, 
 static inline void blinn(const hit_group *restrict g, const way to, double *restrict c, real *restrict lit)
 {
     for (int i = 0; i < g->n; i++) {
-        bs_vec3 L, n, s = lane_unit(lane_get(&g->x.s, i));
+        bs_vec3 L, n, s = lane_unit(lane_get(&g->x->s, i));
         lit[i] = facing(g, i, to, &L, &n);
         bs_vec3 h = {L.x - s.x, L.y - s.y, L.z - s.z};
         real square = 2 - 2 * bs_dot(s, L), along = bs_dot(n, L) - bs_dot(s, n);
@@ -195,8 +196,21 @@ STAGE static void highlight_tinted(hit_group *restrict g, real kr, real kg, real
     }
 }
 
-static void add_highlight(hit_group *g, const light *l, bool tinted, double share, const double *c, const real *lit)
+STAGE static int shines(int n, const double *restrict c, const real *restrict lit)
 {
+    int some = 0;
+    for (int i = 0; i < n; i++)
+        some |= (c[i] > 0) & (lit[i] > 0);
+    return some;
+}
+
+/* share * c^power, where some lane has a highlight: most waves have none. */
+static void add_highlight(hit_group *g, const light *l, bool tinted, double share, double power, double *c,
+                          const real *lit)
+{
+    if (!shines(g->n, c, lit))
+        return;
+    raise(g->n, c, power);
     (tinted ? highlight_tinted : highlight_plain)(g, (real)(share * l->color.x), (real)(share * l->color.y),
                                                   (real)(share * l->color.z), c, lit);
 }
@@ -209,12 +223,10 @@ void shade_light(hit_group *g, const material *m, const light *l, bool tinted, b
     shade_diffuse(g, m, l, tinted, front);
     if (m->phong > 0) {
         (along ? phong_against : phong_to)(g, l, front, c, lit);
-        raise(g->n, c, m->phong_size);
-        add_highlight(g, l, tinted, m->phong, c, lit);
+        add_highlight(g, l, tinted, m->phong, m->phong_size, c, lit);
     }
     if (m->specular > 0) {
         (along ? blinn_against : blinn_to)(g, l, front, c, lit);
-        raise(g->n, c, 1 / m->roughness);
-        add_highlight(g, l, tinted, m->specular, c, lit);
+        add_highlight(g, l, tinted, m->specular, 1 / m->roughness, c, lit);
     }
 }

@@ -1,177 +1,124 @@
-/* Rays against a mesh: hits and shadows. A ray against a triangle is Woop, Benthin and Wald's test of 2013, in double:
- * the ray becomes an axis, and the sign of a sum says on which side of it each edge is. Two triangles that share an
- * edge compute the same sum with opposite signs, so that no ray passes between them. Embree's hierarchy (bvh.h) reports
- * the triangles to test, in any order: of hits at one t the triangle with the lowest index counts.
+/* Rays against a mesh: hits and shadows, in packets (packet.h). */
+#include "mesh/packet.h"
+
+#include <stddef.h>
+
+/* The lane of ray j of a packet. A whole wave is mostly a tile of 16 x 8 pixels; then its packets are squares of 4 x 4.
  */
-#include "mesh/mesh.h"
-
-#define MARGIN 4e-6f      /* more than float's rounding of where a ray ends, in radii; the boxes have the same */
-#define WIDER (1 + 1e-6f) /* float's rounding of t, as a share */
-#define OWN_ERROR 1e-12   /* 1e-16, of double, over a sine of 1e-4; of the size and place of the mesh */
-
-/* A ray as an axis: z is the coordinate in which its direction is largest. x and y are sheared so that the ray runs
- * along z. */
-typedef struct shear {
-    int x, y, z;       /* indices of coordinates */
-    double r[3];       /* the origin */
-    double sx, sy, sz; /* the shear of x and y per z, and t per z */
-} shear;
-
-static shear shear_of(vec3 r, vec3 s)
+static int lane_of(int n, int first, int j)
 {
-    const double S[3] = {s.x, s.y, s.z};
-    shear k = {.r = {r.x, r.y, r.z}};
-    k.z = fabs(s.x) > fabs(s.y) ? (fabs(s.x) > fabs(s.z) ? 0 : 2) : (fabs(s.y) > fabs(s.z) ? 1 : 2);
-    k.x = (k.z + 1) % 3;
-    k.y = (k.z + 2) % 3;
-    k.sz = 1 / S[k.z];
-    k.sx = S[k.x] * k.sz;
-    k.sy = S[k.y] * k.sz;
-    return k;
+    const int square = first / BVH_PACKET;
+    return n < LANES ? first + j : (square / 4 * 4 + j / 4) * 16 + square % 4 * 4 + j % 4;
 }
 
-/* Whether the ray meets a triangle, and t there, also below 0. */
-static bool meets(const float at[3][3], const shear *k, double *t)
+static void put(mesh_packet *k, int i, const vec3s *r, const vec3s *s, int lane)
 {
-    double x[3], y[3], z[3];
-    for (int i = 0; i < 3; i++) {
-        z[i] = (double)at[i][k->z] - k->r[k->z];
-        x[i] = (double)at[i][k->x] - k->r[k->x] - k->sx * z[i];
-        y[i] = (double)at[i][k->y] - k->r[k->y] - k->sy * z[i];
+    k->r[0][i] = (double)r->x[lane], k->r[1][i] = (double)r->y[lane], k->r[2][i] = (double)r->z[lane];
+    k->s[0][i] = (double)s->x[lane], k->s[1][i] = (double)s->y[lane], k->s[2][i] = (double)s->z[lane];
+}
+
+static void store_hits(const mesh_packet *k, const int *lane, int32_t id, hits *h)
+{
+    for (int i = 0; i < k->n; i++) {
+        const real t = (real)k->to[i];
+        if (k->index[i] >= 0 && t > 0 && t < h->t[lane[i]]) {
+            h->t[lane[i]] = t;
+            h->id[lane[i]] = id;
+            h->part[lane[i]] = k->index[i];
+        }
     }
-    const double U = x[2] * y[1] - y[2] * x[1], V = x[0] * y[2] - y[0] * x[2], W = x[1] * y[0] - y[1] * x[0],
-                 all = U + V + W;
-    if (((U < 0) | (V < 0) | (W < 0)) & ((U > 0) | (V > 0) | (W > 0)))
-        return false;
-    *t = (U * z[0] + V * z[1] + W * z[2]) * k->sz / all;
-    return all != 0;
 }
 
-/* A ray on its way through the hierarchy. Hits with from < t < to count; `to` becomes t of the first one. */
-typedef struct mesh_query {
-    const mesh *f;
-    shear k;
-    int32_t own, index; /* a triangle that does not count, -1: none; the triangle that is met, -1: none so far */
-    double from, to;
-    double enter, unit; /* t where the ray enters the hierarchy's sphere, and its length in radii for each t */
-    bool any;           /* any hit will do, as for shadows */
-} mesh_query;
-
-static float visit(void *user, int32_t index, float end)
+/* The rays from the mesh itself, if `own`, or the others. from: NULL: all are others. */
+static void hit_some(const mesh *f, int n, const rays *x, const ray_origins *from, bool own, int32_t id, hits *h)
 {
-    mesh_query *q = user;
-    double t;
-    if (index == q->own || !meets((const float(*)[3])q->f->d.at[index], &q->k, &t) || !(t > q->from))
-        return end;
-    if (!(t < q->to || (t == q->to && q->index >= 0 && index < q->index)))
-        return end;
-    q->to = t;
-    q->index = index;
-    if (q->any)
-        return -1;
-    const float now = (float)((t - q->enter) * q->unit) * WIDER + MARGIN;
-    return now < end ? now : end;
-}
-
-/* The first hit of r + s t with from < t < to, on any triangle other than `own`: into q->to and q->index. */
-static void intersect(mesh_query *q, vec3 r, vec3 s, double from, double to, int32_t own)
-{
-    float at[3], way[3], end;
-    double enter = from > 0 ? from : 0, leave = to;
-    q->own = own;
-    q->index = -1;
-    q->from = from;
-    q->to = to;
-    if (!(from < to) || !bvh_enter(&q->f->space, q->f->space.radius, r, s, &enter, &leave, at, way, &end))
-        return;
-    q->k = shear_of(r, s);
-    q->enter = enter;
-    q->unit = vec3_length(s) / q->f->space.radius;
-    bvh_toward(q->f->tree, at, way, end, visit, q);
-}
-
-static void store_hit(const mesh_query *q, int i, int32_t id, hits *h)
-{
-    const real t = (real)q->to;
-    if (q->index >= 0 && t > 0 && t < h->t[i]) {
-        h->t[i] = t;
-        h->id[i] = id;
-        h->part[i] = q->index;
+    mesh_packet k = {.f = f};
+    int lane[BVH_PACKET];
+    for (int first = 0; first < n; first += BVH_PACKET) {
+        k.n = 0;
+        for (int j = 0; j < BVH_PACKET && first + j < n; j++) {
+            const int l = lane_of(n, first, j), i = k.n;
+            if (from && own != (from->id[l] == id))
+                continue;
+            lane[k.n++] = l;
+            put(&k, i, own ? &from->at : &x->r, &x->s, l);
+            k.from[i] = 0;
+            k.to[i] = (double)h->t[l];
+            k.own[i] = own ? from->part[l] : -1;
+        }
+        if (k.n == 0)
+            continue;
+        if (own)
+            mesh_packet_start(&k, false);
+        mesh_packet_intersect(&k);
+        store_hits(&k, lane, id, h);
     }
 }
 
 void mesh_hit(const surface *base, int n, const rays *x, int32_t id, hits *h)
 {
-    mesh_query q = {.f = (const mesh *)base};
-    for (int i = 0; i < n; i++) {
-        intersect(&q, vec3s_get(&x->r, i), vec3s_get(&x->s, i), 0, (double)h->t[i], -1);
-        store_hit(&q, i, id, h);
+    hit_some((const mesh *)base, n, x, NULL, false, id, h);
+}
+
+void mesh_hit_own(const surface *base, int n, const rays *x, const ray_origins *from, int32_t id, hits *h)
+{
+    hit_some((const mesh *)base, n, x, from, false, id, h);
+    hit_some((const mesh *)base, n, x, from, true, id, h);
+}
+
+/* part: of segments from the mesh itself; NULL: they start elsewhere. */
+static void occlude_some(const mesh *f, int n, const rays *x, const int32_t *part, real *lit)
+{
+    mesh_packet k = {.f = f, .any = true};
+    int lane[BVH_PACKET];
+    for (int first = 0; first < n; first += BVH_PACKET) {
+        k.n = 0;
+        for (int j = 0; j < BVH_PACKET && first + j < n; j++) {
+            const int l = lane_of(n, first, j), i = k.n;
+            if (!(lit[l] > 0))
+                continue;
+            lane[k.n++] = l;
+            put(&k, i, &x->r, &x->s, l);
+            k.from[i] = 0;
+            k.to[i] = 1;
+            k.own[i] = part ? part[l] : -1;
+        }
+        if (k.n == 0)
+            continue;
+        if (part)
+            mesh_packet_start(&k, true);
+        mesh_packet_intersect(&k);
+        for (int i = 0; i < k.n; i++)
+            lit[lane[i]] = k.index[i] >= 0 ? 0 : lit[lane[i]];
     }
 }
 
 void mesh_occlude(const surface *base, int n, const rays *x, real *lit)
 {
-    mesh_query q = {.f = (const mesh *)base, .any = true};
-    for (int i = 0; i < n; i++) {
-        intersect(&q, vec3s_get(&x->r, i), vec3s_get(&x->s, i), 0, lit[i] > 0 ? 1 : -1, -1);
-        lit[i] = q.index >= 0 ? 0 : lit[i];
-    }
-}
-
-bool mesh_near(const mesh *f, vec3 p, vec3 N, int32_t *part)
-{
-    mesh_query out = {.f = f}, in = {.f = f};
-    const vec3 down = vec3_scale(N, -1);
-    intersect(&out, p, N, 0, 1, -1);
-    intersect(&in, p, down, 0, out.index >= 0 ? out.to : 1, -1);
-    const mesh_query *q = in.index >= 0 ? &in : &out;
-    if (q->index < 0)
-        return false;
-    *part = q->index;
-    return true;
-}
-
-/* ---- rays from the mesh itself ---- */
-
-/* Where on its triangle a ray starts, in double. The triangle itself is left out by its index. A neighbour whose edge
- * the start is on is left out by *beyond, where other hits begin: the rounding of double, over a sine of the ray's
- * angle to the neighbour of at least 1e-4. */
-static vec3 own_start(const mesh *f, int32_t index, vec3 at, vec3 s, double *beyond)
-{
-    const mesh_triangle x = mesh_triangle_of(f, index);
-    double b, c;
-    mesh_foot_shares(&x, at, &b, &c);
-    mesh_keep_inside(&b, &c);
-    const vec3 from = mesh_mix(x.at, b, c);
-    *beyond = OWN_ERROR * (vec3_length(from) + f->space.radius) / vec3_length(s);
-    return from;
-}
-
-void mesh_hit_own(const surface *base, int n, const rays *x, const ray_origins *from, int32_t id, hits *h)
-{
-    mesh_query q = {.f = (const mesh *)base};
-    for (int i = 0; i < n; i++) {
-        const bool own = from->id[i] == id;
-        vec3 r = vec3s_get(&x->r, i);
-        const vec3 s = vec3s_get(&x->s, i);
-        double beyond = 0;
-        if (own)
-            r = own_start(q.f, from->part[i], vec3s_get(&from->at, i), s, &beyond);
-        intersect(&q, r, s, beyond, (double)h->t[i], own ? from->part[i] : -1);
-        store_hit(&q, i, id, h);
-    }
+    occlude_some((const mesh *)base, n, x, NULL, lit);
 }
 
 void mesh_occlude_own(const surface *base, int n, const rays *x, const int32_t *part, real *lit)
 {
-    mesh_query q = {.f = (const mesh *)base, .any = true};
-    for (int i = 0; i < n; i++) {
-        if (!(lit[i] > 0))
-            continue;
-        double beyond;
-        const vec3 r = vec3s_get(&x->r, i), to = vec3_add(r, vec3s_get(&x->s, i)),
-                   from = own_start(q.f, part[i], r, vec3s_get(&x->s, i), &beyond);
-        intersect(&q, from, vec3_sub(to, from), beyond, 1, part[i]);
-        lit[i] = q.index >= 0 ? 0 : lit[i];
-    }
+    occlude_some((const mesh *)base, n, x, part, lit);
+}
+
+static void put_one(mesh_packet *k, int i, vec3 r, vec3 s, double to)
+{
+    k->r[0][i] = r.x, k->r[1][i] = r.y, k->r[2][i] = r.z;
+    k->s[0][i] = s.x, k->s[1][i] = s.y, k->s[2][i] = s.z;
+    k->from[i] = 0;
+    k->to[i] = to;
+    k->own[i] = -1;
+}
+
+bool mesh_near(const mesh *f, vec3 p, vec3 N, int32_t *part)
+{
+    mesh_packet k = {.f = f, .n = 2};
+    put_one(&k, 0, p, N, 1);
+    put_one(&k, 1, p, vec3_scale(N, -1), 1);
+    mesh_packet_intersect(&k);
+    const int i = k.index[1] >= 0 && !(k.index[0] >= 0 && k.to[0] <= k.to[1]);
+    *part = k.index[i] >= 0 ? k.index[i] : *part;
+    return k.index[i] >= 0;
 }

@@ -6,16 +6,67 @@
 #include <stdlib.h>
 #include <string.h>
 
+enum { SOME = 16 };
+
+/* The triangles of some lanes, side by side. */
+typedef struct triangles {
+    float at[3][3][SOME], normal[3][3][SOME], uv[3][2][SOME];
+} triangles;
+
+static void gather(const mesh *f, int n, const int32_t *part, bool normals, triangles *to)
+{
+    for (int i = 0; i < n; i++) {
+        const float(*at)[3] = (const float(*)[3])f->d.at[part[i]];
+        const mesh_skin *x = &f->d.skin[part[i]];
+        for (int c = 0; c < 3; c++) {
+            for (int a = 0; a < 3; a++)
+                to->at[c][a][i] = at[c][a];
+            for (int a = 0; normals && a < 3; a++)
+                to->normal[c][a][i] = x->normal[c][a];
+            to->uv[c][0][i] = x->uv[c][0];
+            to->uv[c][1][i] = x->uv[c][1];
+        }
+    }
+}
+
+static inline vec3 get(const float (*v)[SOME], int i)
+{
+    return (vec3){(double)v[0][i], (double)v[1][i], (double)v[2][i]};
+}
+
+static inline mesh_triangle triangle_of(const triangles *f, int i)
+{
+    mesh_triangle x;
+    for (int c = 0; c < 3; c++) {
+        x.at[c] = get(f->at[c], i);
+        x.normal[c] = get(f->normal[c], i);
+        x.u[c] = (double)f->uv[c][0][i];
+        x.w[c] = (double)f->uv[c][1][i];
+    }
+    return x;
+}
+
+STAGE static void triangle_places(const triangles *restrict f, int n, const vec3s *restrict r, const vec3s *restrict s,
+                                  int first, const real *restrict t, real *restrict u, real *restrict w)
+{
+    for (int i = 0; i < n; i++) {
+        const mesh_triangle a = triangle_of(f, i);
+        const int l = first + i;
+        double b, c;
+        mesh_foot_shares(&a, vec3_add(vec3s_get(r, l), vec3_scale(vec3s_get(s, l), (double)t[l])), &b, &c);
+        mesh_keep_inside(&b, &c);
+        u[l] = (real)(a.u[0] + b * (a.u[1] - a.u[0]) + c * (a.u[2] - a.u[0]));
+        w[l] = (real)(a.w[0] + b * (a.w[1] - a.w[0]) + c * (a.w[2] - a.w[0]));
+    }
+}
+
 static void mesh_locate(const surface *base, int n, const rays *x, const real *t, int32_t *part, real *u, real *w)
 {
-    const mesh *f = (const mesh *)base;
-    for (int i = 0; i < n; i++) {
-        const mesh_triangle a = mesh_triangle_of(f, part[i]);
-        double b, c;
-        mesh_foot_shares(&a, vec3_add(vec3s_get(&x->r, i), vec3_scale(vec3s_get(&x->s, i), (double)t[i])), &b, &c);
-        mesh_keep_inside(&b, &c);
-        u[i] = (real)(a.u[0] + b * (a.u[1] - a.u[0]) + c * (a.u[2] - a.u[0]));
-        w[i] = (real)(a.w[0] + b * (a.w[1] - a.w[0]) + c * (a.w[2] - a.w[0]));
+    triangles f;
+    for (int i = 0; i < n; i += SOME) {
+        const int some = n - i < SOME ? n - i : SOME;
+        gather((const mesh *)base, some, part + i, false, &f);
+        triangle_places(&f, some, &x->r, &x->s, i, t, u, w);
     }
 }
 
@@ -79,30 +130,56 @@ static vec3 along(const vec3 v[3], double b, double c)
     return vec3_add(vec3_scale(vec3_sub(v[1], v[0]), b), vec3_scale(vec3_sub(v[2], v[0]), c));
 }
 
+/* gcc finds it too long to be part of both stages. */
+#define INLINE __attribute__((always_inline)) inline
+
+/* Q and its partials at (u,w); the second partials only if `second`. */
+INLINE static void eval_one(const triangles *restrict f, int i, int l, const real *u, const real *w, bool second,
+                            partials *restrict q)
+{
+    const mesh_triangle x = triangle_of(f, i);
+    const double bu = x.u[1] - x.u[0], bw = x.w[1] - x.w[0], cu = x.u[2] - x.u[0], cw = x.w[2] - x.w[0],
+                 k = 1 / (bu * cw - cu * bw);
+    double b, c;
+    mesh_shares(&x, (double)u[l], (double)w[l], &b, &c);
+    mesh_keep_inside(&b, &c);
+    const vec3 N = mesh_mix(x.normal, b, c), n_unit = vec3_unit(N);
+    const vec3 Qu = across(along(x.at, k * cw, -k * bw), n_unit), Qw = across(along(x.at, -k * cu, k * bu), n_unit);
+    vec3s_set(&q->Q, l, mesh_mix(x.at, b, c));
+    vec3s_set(&q->Qu, l, Qu);
+    vec3s_set(&q->Qw, l, Qw);
+    if (!second)
+        return;
+    const double over = 1 / vec3_length(N);
+    const vec3 nu = vec3_scale(along(x.normal, k * cw, -k * bw), over),
+               nw = vec3_scale(along(x.normal, -k * cu, k * bu), over);
+    vec3s_set(&q->Quu, l, vec3_scale(n_unit, -vec3_dot(nu, Qu)));
+    vec3s_set(&q->Quw, l, vec3_scale(n_unit, -0.5 * (vec3_dot(nu, Qw) + vec3_dot(nw, Qu))));
+    vec3s_set(&q->Qww, l, vec3_scale(n_unit, -vec3_dot(nw, Qw)));
+}
+
+STAGE static void triangle_eval(const triangles *restrict f, int n, int first, const real *restrict u,
+                                const real *restrict w, partials *restrict q)
+{
+    for (int i = 0; i < n; i++)
+        eval_one(f, i, first + i, u, w, false, q);
+}
+
+STAGE static void triangle_bends(const triangles *restrict f, int n, int first, const real *restrict u,
+                                 const real *restrict w, partials *restrict q)
+{
+    for (int i = 0; i < n; i++)
+        eval_one(f, i, first + i, u, w, true, q);
+}
+
 static void mesh_eval(const surface *base, int n, const int32_t *part, const real *u, const real *w, int order,
                       partials *q)
 {
-    const mesh *f = (const mesh *)base;
-    for (int i = 0; i < n; i++) {
-        const mesh_triangle x = mesh_triangle_of(f, part[i]);
-        const double bu = x.u[1] - x.u[0], bw = x.w[1] - x.w[0], cu = x.u[2] - x.u[0], cw = x.w[2] - x.w[0],
-                     k = 1 / (bu * cw - cu * bw);
-        double b, c;
-        mesh_shares(&x, (double)u[i], (double)w[i], &b, &c);
-        mesh_keep_inside(&b, &c);
-        const vec3 N = mesh_mix(x.normal, b, c), n_unit = vec3_unit(N);
-        const vec3 Qu = across(along(x.at, k * cw, -k * bw), n_unit), Qw = across(along(x.at, -k * cu, k * bu), n_unit);
-        vec3s_set(&q->Q, i, mesh_mix(x.at, b, c));
-        vec3s_set(&q->Qu, i, Qu);
-        vec3s_set(&q->Qw, i, Qw);
-        if (order < 2)
-            continue;
-        const double over = 1 / vec3_length(N);
-        const vec3 nu = vec3_scale(along(x.normal, k * cw, -k * bw), over),
-                   nw = vec3_scale(along(x.normal, -k * cu, k * bu), over);
-        vec3s_set(&q->Quu, i, vec3_scale(n_unit, -vec3_dot(nu, Qu)));
-        vec3s_set(&q->Quw, i, vec3_scale(n_unit, -0.5 * (vec3_dot(nu, Qw) + vec3_dot(nw, Qu))));
-        vec3s_set(&q->Qww, i, vec3_scale(n_unit, -vec3_dot(nw, Qw)));
+    triangles f;
+    for (int i = 0; i < n; i += SOME) {
+        const int some = n - i < SOME ? n - i : SOME;
+        gather((const mesh *)base, some, part + i, true, &f);
+        (order < 2 ? triangle_eval : triangle_bends)(&f, some, i, u, w, q);
     }
 }
 
@@ -126,29 +203,23 @@ static void mesh_box(const surface *base, double lo[3], double hi[3])
 static void set_box(mesh *f)
 {
     for (int a = 0; a < 3; a++) {
-        f->lo[a] = HUGE_VAL;
-        f->hi[a] = -HUGE_VAL;
-        for (int k = 0; k < 3 * f->d.n; k++) {
-            const double x = (double)f->d.at[k / 3][k % 3][a];
-            f->lo[a] = x < f->lo[a] ? x : f->lo[a];
-            f->hi[a] = x > f->hi[a] ? x : f->hi[a];
-        }
+        double lo = HUGE_VAL, hi = -HUGE_VAL;
+        for (int k = 0; k < f->d.n; k++)
+            for (int i = 0; i < 3; i++) {
+                const double x = (double)f->d.at[k][i][a];
+                lo = lesser(lo, x);
+                hi = greater(hi, x);
+            }
+        f->lo[a] = lo;
+        f->hi[a] = hi;
     }
 }
 
-static bvh *tree_of(const mesh *f, const progress *w)
+static bvh *tree_of(mesh *f, int threads, const progress *w)
 {
-    bvh_box *box = malloc(sizeof *box * (size_t)f->d.n);
-    for (int k = 0; box && k < f->d.n; k++) {
-        double lo[3], hi[3];
-        for (int a = 0; a < 3; a++) {
-            const double x = (double)f->d.at[k][0][a], y = (double)f->d.at[k][1][a], z = (double)f->d.at[k][2][a];
-            lo[a] = fmin(x, fmin(y, z));
-            hi[a] = fmax(x, fmax(y, z));
-        }
-        box[k] = bvh_box_in(&f->space, lo, hi);
-    }
-    bvh *b = box ? bvh_new(f->d.n, box, w) : NULL;
+    bvh_box *box;
+    bvh *b = mesh_clusters_new(&f->d, &f->space, threads, &f->clusters, &box) ? bvh_new(f->clusters.n, box, threads, w)
+                                                                              : NULL;
     free(box);
     return b;
 }
@@ -157,6 +228,7 @@ static void mesh_free(surface *base)
 {
     mesh *f = (mesh *)base;
     bvh_free(f->tree);
+    mesh_clusters_free(&f->clusters);
     mesh_data_free(&f->d);
     free(f);
 }
@@ -178,19 +250,19 @@ static const surface_ops methods = {
 bool mesh_is(const surface *f) { return f->ops == &methods; }
 
 /* Set all else from the triangles and their texture coordinates. */
-static surface *finish(mesh *f, const progress *w)
+static surface *finish(mesh *f, int threads, const progress *w)
 {
     f->base.ops = &methods;
     f->base.free = mesh_free;
     set_box(f);
     f->space = bvh_space_about(f->lo, f->hi);
-    if (f->space.radius > 0 && (f->tree = tree_of(f, w)))
+    if (f->space.radius > 0 && (f->tree = tree_of(f, threads, w)))
         return &f->base;
     mesh_free(&f->base);
     return NULL;
 }
 
-surface *mesh_new(mesh_data *d, const progress *w)
+surface *mesh_new(mesh_data *d, int threads, const progress *w)
 {
     mesh *f = calloc(1, sizeof *f);
     if (!f) {
@@ -204,12 +276,12 @@ surface *mesh_new(mesh_data *d, const progress *w)
         mesh_lay_texture(f);
     else
         mesh_lay_bare(f);
-    return finish(f, w);
+    return finish(f, threads, w);
 }
 
 /* A map that mirrors swaps inside and outside. So the corners get the opposite order, and u is reflected about the
  * middle of its range. */
-surface *mesh_moved(const surface *base, const affine *m)
+surface *mesh_moved(const surface *base, const affine *m, int threads)
 {
     const mesh *from = (const mesh *)base;
     const bool mirrors = affine_volume(m) < 0;
@@ -234,7 +306,7 @@ surface *mesh_moved(const surface *base, const affine *m)
             f->d.skin[k].uv[to][1] = from->d.skin[k].uv[i][1];
         }
     if (f->d.at && f->d.skin)
-        return finish(f, NULL);
+        return finish(f, threads, NULL);
     mesh_free(&f->base);
     return NULL;
 }

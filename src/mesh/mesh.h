@@ -13,6 +13,7 @@
 #define KAGE_MESH_MESH_H
 
 #include "bvh/bvh.h"
+#include "mesh/cluster.h"
 #include "mesh/mesh_data.h"
 #include "geometry/surface.h"
 
@@ -23,16 +24,18 @@ typedef struct mesh {
     double u[2], w[2];   /* the range of the texture coordinates; 0..1 where there are none */
     double lo[3], hi[3]; /* the box of all vertices */
     bvh_space space;     /* the sphere about all vertices */
-    bvh *tree;           /* over the triangles, in `space` */
+    mesh_clusters clusters;
+    bvh *tree; /* over the blocks of clusters, in `space` */
 } mesh;
 
-/* Owns *d, also on failure. *d has been through mesh_clean. w: the progress of building the hierarchy; may be NULL.
+/* Owns *d, also on failure. *d has been through mesh_clean. threads: those that build the hierarchy, 0: one for each
+ * processor; w: the progress of that, may be NULL.
  * NULL: out of memory, or all vertices are in one place. */
-surface *mesh_new(mesh_data *d, const progress *w);
+surface *mesh_new(mesh_data *d, int threads, const progress *w);
 
 /* The image of a mesh by an affine map, with arrays of its own; unlike one by surface_transformed it can be displaced.
  * Where the map mirrors, u runs the other way in its range. NULL: out of memory. */
-surface *mesh_moved(const surface *base, const affine *m);
+surface *mesh_moved(const surface *base, const affine *m, int threads);
 
 /* Whether a surface is one. */
 bool mesh_is(const surface *f);
@@ -65,14 +68,19 @@ static inline vec3 mesh_mix(const vec3 v[3], double b, double c)
  * below 0, or above 1 in sum. */
 void mesh_shares(const mesh_triangle *x, double u, double w, double *b, double *c);
 
-/* The same of the point of the triangle's plane that is closest to p. */
-static inline void mesh_foot_shares(const mesh_triangle *x, vec3 p, double *b, double *c)
+/* The same of the point of the triangle's plane that is closest to its first corner + d. B and C: the sides from that
+ * corner. */
+static inline void mesh_foot_in(vec3 B, vec3 C, vec3 d, double *b, double *c)
 {
-    const vec3 B = vec3_sub(x->at[1], x->at[0]), C = vec3_sub(x->at[2], x->at[0]), d = vec3_sub(p, x->at[0]),
-               n = vec3_cross(B, C);
+    const vec3 n = vec3_cross(B, C);
     const double k = 1 / vec3_dot(n, n);
     *b = k * vec3_dot(n, vec3_cross(d, C));
     *c = k * vec3_dot(n, vec3_cross(B, d));
+}
+
+static inline void mesh_foot_shares(const mesh_triangle *x, vec3 p, double *b, double *c)
+{
+    mesh_foot_in(vec3_sub(x->at[1], x->at[0]), vec3_sub(x->at[2], x->at[0]), vec3_sub(p, x->at[0]), b, c);
 }
 
 /* Move b and c to inside the triangle. */

@@ -49,7 +49,7 @@ STAGE static void begin_flat(hit_group *restrict g, real Pmin, real Pmax, bracke
 {
     for (int i = 0; i < g->n; i++) {
         bs_vec3 n = lane_get(&g->n_smooth, i), Qu = lane_get(&g->q.Qu, i), Qw = lane_get(&g->q.Qw, i);
-        bs_view v = bs_view_of(lane_get(&g->x.s, i), n, Qu, Qw);
+        bs_view v = bs_view_of(lane_get(&g->x->s, i), n, Qu, Qw);
         first_try(g, i, n, Qu, Qw, v.sn);
         k->sn[i] = v.sn;
         k->a[i] = v.a;
@@ -63,7 +63,7 @@ STAGE static void begin_curved(hit_group *restrict g, real Pmin, real Pmax, brac
 {
     for (int i = 0; i < g->n; i++) {
         bs_vec3 n = lane_get(&g->n_smooth, i), Qu = lane_get(&g->q.Qu, i), Qw = lane_get(&g->q.Qw, i);
-        bs_view v = bs_view_of(lane_get(&g->x.s, i), n, Qu, Qw);
+        bs_view v = bs_view_of(lane_get(&g->x->s, i), n, Qu, Qw);
         real curvature = bs_curvature(v, n, lane_get(&g->q.Quu, i), lane_get(&g->q.Quw, i), lane_get(&g->q.Qww, i));
         first_try(g, i, n, Qu, Qw, v.sn);
         k->sn[i] = v.sn;
@@ -106,8 +106,8 @@ void places_pick(const hit_group *g, const brackets *k, int n, const int32_t *la
     pick(g, n, lane, k->curvature, p->k.curvature);
     pick(g, n, lane, k->front, p->k.front);
     pick(g, n, lane, k->back, p->k.back);
-    pick3(g, n, lane, &g->x.r, &p->x.r);
-    pick3(g, n, lane, &g->x.s, &p->x.s);
+    pick3(g, n, lane, &g->x->r, &p->x.r);
+    pick3(g, n, lane, &g->x->s, &p->x.s);
     pick(g, n, lane, g->t, p->t);
     pick(g, n, lane, g->u, p->u);
     pick(g, n, lane, g->w, p->w);

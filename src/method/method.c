@@ -99,7 +99,7 @@ void method_name(method m, char name[METHOD_NAME_SIZE])
         snprintf(name, METHOD_NAME_SIZE, steps ? "%s:%d" : "%s", code, m.n);
 }
 
-int method_order(method m) { return m.kind == METHOD_ORDER && m.n >= 2 ? 2 : 1; }
+int method_order(method m) { return m.kind == METHOD_ORDER && m.n >= 2 ? m.n : 1; }
 
 bool method_bends(method m)
 {

@@ -30,7 +30,8 @@ bool method_parse(const char *text, method *m);
 /* Write its name. */
 void method_name(method m, char name[METHOD_NAME_SIZE]);
 
-/* The derivatives of P it needs: 1 the gradient (always, for n'), 2 also the second ones. */
+/* The derivatives of P it needs, as bump_ops.eval counts them: 1 the gradient (always, for n'), 2 also the pure second
+ * ones, 3 also the mixed one. */
 int method_order(method m);
 
 /* Whether it needs the smooth surface's curvature: Quu, Quw and Qww. */

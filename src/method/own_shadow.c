@@ -30,7 +30,7 @@ STAGE static void ways(const hit_group *restrict g, real Pmin, real Pmax, own_wa
         bs_offset o = bs_offset_of(n, Qu, Qw, Quu, Quw, Qww, g->bump.P[i]);
         bs_view d = bs_view_of(lane_get(&g->to_light.s, i), bs_normal(o.Qu, o.Qw), o.Qu, o.Qw);
         bs_turn turn = bs_turn_of(d, n, Qu, Qw, Quu, Quw, Qww);
-        real P = g->bump.P[i], side = bs_dot(n, lane_get(&g->x.s, i)) < 0 ? R(1) : R(-1);
+        real P = g->bump.P[i], side = bs_dot(n, lane_get(&g->x->s, i)) < 0 ? R(1) : R(-1);
         /* more than the rounding of places: the smooth surface is tested from there */
         real air = AIR * real_sqrt(bs_dot(lane_get(&g->rough, i), lane_get(&g->rough, i)));
         real curvature = bs_curvature(d, n, Quu, Quw, Qww);
@@ -57,7 +57,7 @@ STAGE static void ways_flat(const hit_group *restrict g, real Pmin, real Pmax, o
     for (int i = 0; i < g->n; i++) {
         bs_vec3 n = lane_get(&g->n_smooth, i), to = lane_get(&g->to_light.s, i), X = lane_get(&g->rough, i);
         bs_view d = bs_view_of(to, n, lane_get(&g->q.Qu, i), lane_get(&g->q.Qw, i));
-        real P = g->bump.P[i], side = bs_dot(n, lane_get(&g->x.s, i)) < 0 ? R(1) : R(-1);
+        real P = g->bump.P[i], side = bs_dot(n, lane_get(&g->x->s, i)) < 0 ? R(1) : R(-1);
         real above = side > 0 ? Pmax - P : P - Pmin, out = side > 0 ? top - P : bottom + P;
         real sn = side * d.sn, rise = real_max(sn, R(1e-30));
         y->side[i] = side;

@@ -1,6 +1,9 @@
 /* The formulas of bumpshadow.h in loops over the lanes of a group. */
 #include "method/shift.h"
 
+#include <string.h>
+
+#include "wave/fill.h"
 #include "wave/lane.h"
 
 STAGE static void normals_smooth(hit_group *restrict g)
@@ -12,8 +15,10 @@ STAGE static void normals_smooth(hit_group *restrict g)
     }
 }
 
-STAGE static void normals_bump(hit_group *restrict g)
+/* Returns how many lanes are not regular. */
+STAGE static int normals_bump(hit_group *restrict g)
 {
+    int irregular = 0;
     for (int i = 0; i < g->n; i++) {
         bs_vec3 Qu = lane_get(&g->q.Qu, i), Qw = lane_get(&g->q.Qw, i), n = bs_normal(Qu, Qw);
         bs_vec3 np = bs_perturbed_normal(n, Qu, Qw, g->bump.Pu[i], g->bump.Pw[i]);
@@ -23,20 +28,22 @@ STAGE static void normals_bump(hit_group *restrict g)
         np.z = regular ? np.z : n.z;
         lane_set(&g->n_smooth, i, n);
         lane_set(&g->n_bump, i, lane_unit(np));
+        irregular += regular == 0;
     }
+    return irregular;
 }
 
 void shift_normals(hit_group *g, const bump *P)
 {
     if (P)
-        normals_bump(g);
+        g->regular = normals_bump(g) == 0;
     else
         normals_smooth(g);
 }
 
 static inline bs_view view(const hit_group *g, int i)
 {
-    return bs_view_of(lane_get(&g->x.s, i), lane_get(&g->n_smooth, i), lane_get(&g->q.Qu, i), lane_get(&g->q.Qw, i));
+    return bs_view_of(lane_get(&g->x->s, i), lane_get(&g->n_smooth, i), lane_get(&g->q.Qu, i), lane_get(&g->q.Qw, i));
 }
 
 static inline real curvature(const hit_group *g, int i, bs_view v)
@@ -128,12 +135,6 @@ STAGE static void walk_place(const hit_group *restrict g, ray_walk *restrict wal
     }
 }
 
-static void walk_evaluate(const hit_group *g, ray_walk *walk, const bump *P)
-{
-    walk_place(g, walk);
-    P->ops->eval(P, g->n, walk->u, walk->w, 0, &walk->h);
-}
-
 STAGE static void iter_step(int n, ray_walk *restrict walk, const real *restrict P)
 {
     for (int i = 0; i < n; i++) {
@@ -148,17 +149,17 @@ static long iterate(hit_group *g, const bump *P, method m)
     walk_start(g, &walk);
     iter_step(g->n, &walk, g->bump.P); /* P at the smooth hit is known */
     for (int step = 1; step < m.n; step++) {
-        walk_evaluate(g, &walk, P);
+        walk_place(g, &walk);
+        P->ops->eval(P, g->n, walk.u, walk.w, 0, &walk.h);
         iter_step(g->n, &walk, walk.h.P);
     }
-    for (int i = 0; i < g->n; i++) {
-        g->tau[i] = walk.tau[i];
-        g->order[i] = method_code(m);
-    }
+    memcpy(g->tau, walk.tau, sizeof g->tau);
+    fill_ids(g->n, method_code(m), g->order);
     return (long)(m.n - 1) * g->n;
 }
 
 typedef struct march_lanes {
+    real front[LANES], back[LANES]; /* the slab */
     real tau[LANES], gap[LANES];
     int32_t found[LANES];
 } march_lanes;
@@ -167,23 +168,33 @@ STAGE static void march_start(int n, const ray_walk *restrict walk, real Pmin, r
 {
     for (int i = 0; i < n; i++) {
         bs_view v = {walk->sn[i], walk->a[i], walk->b[i]};
-        bs_march s = bs_march_start(bs_slab_of(v, Pmin, Pmax));
+        bs_slab slab = bs_slab_of(v, Pmin, Pmax);
+        bs_march s = bs_march_start(slab);
+        m->front[i] = slab.front;
+        m->back[i] = slab.back;
         m->tau[i] = s.tau;
         m->gap[i] = s.gap;
         m->found[i] = s.found;
     }
 }
 
-STAGE static void march_place(int n, ray_walk *restrict walk, real Pmin, real Pmax, int step, int steps)
+/* Step 0..steps through the slab, and the place of P there. */
+STAGE static void march_place(const hit_group *restrict g, const march_lanes *restrict m, int step, int steps,
+                              ray_walk *restrict walk)
 {
-    for (int i = 0; i < n; i++) {
-        bs_view v = {walk->sn[i], walk->a[i], walk->b[i]};
-        walk->tau[i] = bs_march_tau(bs_slab_of(v, Pmin, Pmax), step, steps);
+    for (int i = 0; i < g->n; i++) {
+        bs_slab slab = {m->front[i], m->back[i]};
+        real tau = bs_march_tau(slab, step, steps);
+        walk->tau[i] = tau;
+        walk->u[i] = g->u[i] + walk->a[i] * tau;
+        walk->w[i] = g->w[i] + walk->b[i] * tau;
     }
 }
 
-STAGE static void march_step(int n, const ray_walk *restrict walk, march_lanes *restrict m)
+/* Returns how many lanes are still looking. */
+STAGE static int march_step(int n, const ray_walk *restrict walk, march_lanes *restrict m)
 {
+    int looking = 0;
     for (int i = 0; i < n; i++) {
         bs_view v = {walk->sn[i], walk->a[i], walk->b[i]};
         bs_march s = {m->tau[i], m->gap[i], m->found[i]};
@@ -191,44 +202,94 @@ STAGE static void march_step(int n, const ray_walk *restrict walk, march_lanes *
         m->tau[i] = s.tau;
         m->gap[i] = s.gap;
         m->found[i] = s.found;
+        looking += s.found == 0;
+    }
+    return looking;
+}
+
+/* Order 0 where nothing is found. */
+STAGE static void march_end(const ray_walk *restrict walk, const march_lanes *restrict m, int32_t code,
+                            hit_group *restrict g)
+{
+    for (int i = 0; i < g->n; i++) {
+        bs_view v = {walk->sn[i], 0, 0};
+        int found = m->found[i];
+        real tau = m->tau[i], tau0 = bs_tau0(v, g->bump.P[i]);
+        g->tau[i] = found ? tau : tau0;
+        g->order[i] = found ? code : 0;
     }
 }
 
+/* Look P up at a step, and take it. */
+static int march_look(const hit_group *g, const bump *P, int step, int steps, march_lanes *x, ray_walk *walk)
+{
+    march_place(g, x, step, steps, walk);
+    P->ops->eval(P, g->n, walk->u, walk->w, 0, &walk->h);
+    return march_step(g->n, walk, x);
+}
+
+/* Step 0 of a peaked P, where the ray is above the surface: the gap alone. */
+STAGE static void march_top(int n, const ray_walk *restrict walk, march_lanes *restrict m)
+{
+    for (int i = 0; i < n; i++) {
+        bs_view v = {walk->sn[i], 0, 0};
+        real gap = bs_gap(v, walk->curvature[i], walk->tau[i], walk->h.P[i]);
+        m->gap[i] = v.sn < 0 ? gap : -gap;
+    }
+}
+
+/* A peaked P is below the top of the slab, but for single points. So step 0 finds nothing, and its gap matters only to
+ * lanes that step 1 finds: the waves that have some look it up then. Returns how many lanes are looking. */
+static int march_below_top(const hit_group *g, const bump *P, int steps, march_lanes *x, ray_walk *walk, long *looked)
+{
+    int looking = march_look(g, P, 1, steps, x, walk);
+    *looked += g->n;
+    if (looking == g->n)
+        return looking;
+    march_start(g->n, walk, P->Pmin, P->Pmax, x);
+    march_place(g, x, 0, steps, walk);
+    P->ops->eval(P, g->n, walk->u, walk->w, 0, &walk->h);
+    march_top(g->n, walk, x);
+    *looked += 2L * g->n;
+    return march_look(g, P, 1, steps, x, walk);
+}
+
+/* Until all lanes have found the surface: those of a wave are next to each other, and find it at nearly the same step.
+ */
 static long march(hit_group *g, const bump *P, method m)
 {
     ray_walk walk;
     march_lanes x;
+    long looked = 0;
     walk_start(g, &walk);
-    walk_curvature(g, &walk);
+    if (g->flat)
+        fill(g->n, 0, walk.curvature);
+    else
+        walk_curvature(g, &walk);
     march_start(g->n, &walk, P->Pmin, P->Pmax, &x);
-    for (int step = 0; step <= m.n; step++) {
-        march_place(g->n, &walk, P->Pmin, P->Pmax, step, m.n);
-        walk_evaluate(g, &walk, P);
-        march_step(g->n, &walk, &x);
+    int looking = P->peaked ? march_below_top(g, P, m.n, &x, &walk, &looked) : g->n;
+    for (int step = P->peaked ? 2 : 0; step <= m.n && looking > 0; step++) {
+        looking = march_look(g, P, step, m.n, &x, &walk);
+        looked += g->n;
     }
-    for (int i = 0; i < g->n; i++) {
-        bs_view v = {walk.sn[i], 0, 0};
-        g->tau[i] = x.found[i] ? x.tau[i] : bs_tau0(v, g->bump.P[i]);
-        g->order[i] = x.found[i] ? method_code(m) : 0;
-    }
-    return (long)(m.n + 1) * g->n;
+    march_end(&walk, &x, method_code(m), g);
+    return looked;
 }
 
 long shift_group(hit_group *g, const bump *P, method m, bool guard)
 {
     long evaluations = 0;
     if (!P || m.kind == METHOD_NONE) {
-        for (int i = 0; i < g->n; i++) {
-            g->tau[i] = 0;
-            g->order[i] = -1;
-        }
+        fill(g->n, 0, g->tau);
+        fill_ids(g->n, -1, g->order);
         return 0;
     }
     if (m.kind == METHOD_ORDER)
         by_orders[guard][m.n](g, P->Pmin, P->Pmax);
     else
         evaluations = (m.kind == METHOD_ITER ? iterate : march)(g, P, m);
-    drop_irregular(g);
+    if (!g->regular)
+        drop_irregular(g);
     return evaluations;
 }
 

@@ -196,12 +196,12 @@ static void patch_box(const surface *base, double lo[3], double hi[3])
 
 /* ---- making one ---- */
 
-static bvh *tree_of(const pieces *l)
+static bvh *tree_of(const pieces *l, int threads)
 {
     bvh_box *box = malloc(sizeof *box * (size_t)l->n);
     for (int i = 0; box && i < l->n; i++)
         box[i] = bvh_box_in(&l->space, l->piece[i].box[0], l->piece[i].box[1]);
-    bvh *b = box ? bvh_new(l->n, box, NULL) : NULL;
+    bvh *b = box ? bvh_new(l->n, box, threads, NULL) : NULL;
     free(box);
     return b;
 }
@@ -251,7 +251,7 @@ patch_surface *patch_surface_make(patch *q, double flat, bool *bounded)
     f->base.free = patch_free;
     f->base.ops = f->methods = methods_of(q);
     if (f->base.ops && pieces_of(q, flat, &f->l, bounded))
-        f->tree = tree_of(&f->l);
+        f->tree = tree_of(&f->l, q->threads);
     if (f->tree)
         return f;
     patch_free(&f->base);

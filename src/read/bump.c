@@ -3,7 +3,32 @@
 
 #include <stdlib.h>
 
-static bool read_samples(reader *r, node *at, image *out, map_note *note)
+/* The samples on their way from the file into the table. */
+typedef struct map_reading {
+    const map_layout *layout; /* NULL: it is wrong; the file is read for its own errors */
+    bump *p;
+    int width, height;
+} map_reading;
+
+static const char *begin_samples(void *user, int width, int height)
+{
+    map_reading *m = user;
+    m->width = width;
+    m->height = height;
+    if (!m->layout || width < 2 || height < 2) /* reader_usable refuses it */
+        return NULL;
+    m->p = bump_map_new(width, height, m->layout);
+    return m->p ? NULL : "there is not enough memory for the map, or the map has more than 2^29 samples";
+}
+
+static void take_samples(void *user, int x, int y, int n, const float *v)
+{
+    map_reading *m = user;
+    if (m->p)
+        bump_map_put(m->p, x, y, n, v);
+}
+
+static bool read_samples(reader *r, node *at, map_reading *m, map_note *note)
 {
     if (!yaml_map(r->y, at, "map", "file channel"))
         return false;
@@ -13,23 +38,29 @@ static bool read_samples(reader *r, node *at, image *out, map_note *note)
     if (!name || (channel && !layer))
         return false;
     char *path = reader_beside(r, name);
+    const image_taker to = {m, begin_samples, take_samples};
+    float range[2];
     errors e = {0};
-    const bool good = path && reader_usable(r, file, name, image_read(path, layer, out, &e), out, "samples", &e);
-    if (good) {
-        *note = (map_note){reader_copy(r, name), out->width, out->height, HUGE_VAL, -HUGE_VAL};
-        for (size_t k = 0; k < (size_t)out->width * (size_t)out->height; k++) {
-            note->low = fmin(note->low, (double)out->v[k]);
-            note->high = fmax(note->high, (double)out->v[k]);
-        }
-    }
+    const bool was_read = path && image_read(path, layer, r->from->threads, &to, range, &e);
+    const bool good = path && reader_usable(r, file, name, was_read, m->width, m->height, "samples", &e);
+    if (good)
+        *note = (map_note){reader_copy(r, name), m->width, m->height, (double)range[0], (double)range[1]};
     free(path);
     return good;
+}
+
+/* Whether the heights are not too large. low, high: of the samples. */
+static bool check_heights(reader *r, node *at, const map_layout *l, double low, double high)
+{
+    const double a = l->scale * (low - l->zero), b = l->scale * (high - l->zero);
+    return fmax(fabs(a), fabs(b)) <= BIG ||
+           yaml_error(r->y, yaml_get(at, "scale"),
+                      "heights from %.4g to %.4g, expected them within 1000000 scene units", fmin(a, b), fmax(a, b));
 }
 
 /* Scale, zero and sign have no defaults: without them samples are no heights. */
 static bump *read_map(reader *r, node *at, const double u[2], const double w[2], map_note *note, bump_spec *spec)
 {
-    image samples = {0};
     map_layout l = {.size = {1, 1}};
     bool good = yaml_map(r->y, at, "a bump with a map", "map scale zero sign size repeat offset wrap samples");
     good = reader_need_all(r, at, "scale zero sign", "a bump with a map") && good;
@@ -38,21 +69,17 @@ static bump *read_map(reader *r, node *at, const double u[2], const double w[2],
     good = reader_number(r, at, "zero", -BIG, false, BIG, "the map's value whose height is 0", &l.zero) && good;
     const int up = reader_word(r, at, "sign", "up down", "up (higher values are higher) or down");
     good = reader_layout(r, at, u, w, &l) && up >= 0 && good;
-    good = read_samples(r, yaml_get(at, "map"), &samples, note) && good;
-    if (!note->file) {
-        free(samples.v);
-        return NULL;
-    }
     l.scale = up == 1 ? -l.scale : l.scale;
-    const double low = l.scale * (note->low - l.zero), high = l.scale * (note->high - l.zero);
-    if (good && fmax(fabs(low), fabs(high)) > BIG)
-        good = yaml_error(r->y, yaml_get(at, "scale"),
-                          "heights from %.4g to %.4g, expected them within 1000000 scene units", fmin(low, high),
-                          fmax(low, high));
+    map_reading m = {.layout = good ? &l : NULL};
+    const bool was_read = read_samples(r, yaml_get(at, "map"), &m, note);
+    good = was_read && good && note->file && check_heights(r, at, &l, note->low, note->high);
     spec->layout = l;
-    bump *p = good ? reader_made(r, bump_map_new(&samples, &l)) : NULL;
-    free(samples.v);
-    return p;
+    if (good) {
+        bump_map_end(m.p, r->from->threads);
+        return m.p;
+    }
+    bump_free(m.p);
+    return NULL;
 }
 
 /* The range of (u,w) over all parts of a surface, over which a function needs bounds. */

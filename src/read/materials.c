@@ -25,8 +25,8 @@ static void read_pixels(reader *r, node *file, image_encoding encoding, material
     errors e = {0};
     if (!path)
         return;
-    const bool was_read = image_read_color(path, encoding, &pixels, &m->exr, &e);
-    if (reader_usable(r, file, name, was_read, &pixels, "pixels", &e))
+    const bool was_read = image_read_color(path, encoding, r->from->threads, &pixels, &m->exr, &e);
+    if (reader_usable(r, file, name, was_read, pixels.width, pixels.height, "pixels", &e))
         m->texels = reader_made(r, texels_new(&pixels, &m->layout));
     m->file = reader_copy(r, name);
     free(pixels.v);

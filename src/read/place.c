@@ -73,7 +73,7 @@ static surface *image_of(object *o, const shape_values *values, const affine *m,
         return image_of_closed(o, values, m, truth, threads);
     if (!truth)
         return surface_transformed(o->own, m);
-    return o->shape_spec.kind == SHAPE_MESH ? mesh_moved(o->own, m) : patch_surface_affine(o->own, m);
+    return o->shape_spec.kind == SHAPE_MESH ? mesh_moved(o->own, m, threads) : patch_surface_affine(o->own, m);
 }
 
 static double square(const affine *m) { return vec3_dot(m->x, m->x) + vec3_dot(m->y, m->y) + vec3_dot(m->z, m->z); }

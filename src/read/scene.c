@@ -36,7 +36,7 @@ scene *scene_read(const scene_source *from, errors *e)
             if (e->count == before) {
                 note_secondary(r.s);
                 bool good = true;
-                r.s->object_bvh = object_bvh_new(r.s, &good);
+                r.s->object_bvh = object_bvh_new(r.s, from->threads, &good);
                 if (scene_wants_horizons(r.s))
                     good = (r.s->horizons = horizons_new(r.s, from->threads)) && good;
                 if (!good)

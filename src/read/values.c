@@ -175,15 +175,14 @@ node *reader_named(reader *r, const char *key, int most, size_t size, void *arra
     return at;
 }
 
-bool reader_usable(reader *r, node *file, const char *name, bool was_read, const image *p, const char *values,
+bool reader_usable(reader *r, node *file, const char *name, bool was_read, int width, int height, const char *values,
                    errors *e)
 {
     if (!was_read)
         yaml_error(r->y, file, "'%s' can't be used: %.*s", name, e->size ? (int)e->size - 1 : 0,
                    e->text ? e->text : "");
-    else if (p->width < 2 || p->height < 2)
-        was_read =
-            yaml_error(r->y, file, "'%s' has %d x %d %s, expected at least 2 x 2", name, p->width, p->height, values);
+    else if (width < 2 || height < 2)
+        was_read = yaml_error(r->y, file, "'%s' has %d x %d %s, expected at least 2 x 2", name, width, height, values);
     errors_free(e);
     return was_read;
 }

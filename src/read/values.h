@@ -86,7 +86,7 @@ char *reader_beside(reader *r, const char *file);
 
 /* Whether an image was read (if not, *e has the reason) and has at least 2 x 2 values. False with an error. Frees *e.
  */
-bool reader_usable(reader *r, node *file, const char *name, bool was_read, const image *p, const char *values,
+bool reader_usable(reader *r, node *file, const char *name, bool was_read, int width, int height, const char *values,
                    errors *e);
 
 /* A function of u and w; owned by the caller. NULL with an error. */

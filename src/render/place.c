@@ -22,7 +22,7 @@ enum { STEPS = 5 };
 
 static void place_smooth(bool own, hit_group *g)
 {
-    memcpy(g->t_shade, g->t, sizeof g->t);
+    g->t_shade = g->t;
     if (own)
         own_places(g, &g->rough);
 }
@@ -38,7 +38,7 @@ STAGE static void choose(int n, const real *restrict t, const real *restrict t0,
 STAGE static void foot_step(hit_group *restrict g, const partials *restrict q)
 {
     for (int i = 0; i < g->n; i++) {
-        bs_vec3 x = lane_at(&g->x, i, g->t_shade[i]), Q = lane_get(&q->Q, i), Qu = lane_get(&q->Qu, i),
+        bs_vec3 x = lane_at(g->x, i, g->t_shade[i]), Q = lane_get(&q->Q, i), Qu = lane_get(&q->Qu, i),
                 Qw = lane_get(&q->Qw, i), n = bs_normal(Qu, Qw), d = {x.x - Q.x, x.y - Q.y, x.z - Q.z};
         bs_view v = bs_view_of(d, n, Qu, Qw);
         int regular = bs_regular(n, Qu, Qw);
@@ -59,7 +59,7 @@ static void foot_by_steps(const surface *f, hit_group *g)
 STAGE static void put_places(hit_group *restrict g)
 {
     for (int i = 0; i < g->n; i++)
-        lane_set(&g->q.Q, i, lane_at(&g->x, i, g->t_shade[i]));
+        lane_set(&g->q.Q, i, lane_at(g->x, i, g->t_shade[i]));
 }
 
 /* n' of the rough surface itself, with the smooth surface's curvature in it. */
@@ -82,10 +82,11 @@ STAGE static void bend_normals(hit_group *restrict g)
 
 static void place_shifted(const surface *f, const bump *P, bool own, hit_group *g)
 {
-    choose(g->n, g->t, g->t0, g->t_shade);
+    choose(g->n, g->t, g->t0, g->t_moved);
+    g->t_shade = g->t_moved;
     memcpy(g->shade_part, g->part, sizeof g->part);
     if (f->ops->foot)
-        f->ops->foot(f, g->n, &g->x, g->t_shade, g->shade_part, g->u, g->w);
+        f->ops->foot(f, g->n, g->x, g->t_shade, g->shade_part, g->u, g->w);
     else
         foot_by_steps(f, g);
     f->ops->eval(f, g->n, g->shade_part, g->u, g->w, f->ops->flat ? 1 : 2, &g->q);

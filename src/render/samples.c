@@ -1,31 +1,25 @@
 /* Copies a group's results to its lanes of the wave. */
 #include "render/samples.h"
 
+#include "wave/fill.h"
 #include "wave/gather.h"
-
-STAGE static void fill(int n, real *v, real x)
-{
-    for (int i = 0; i < n; i++)
-        v[i] = x;
-}
 
 void samples_background(int n, vec3 color, bool layers, samples *o)
 {
-    vec3s_fill(&o->rgb, n, (real)color.x, (real)color.y, (real)color.z);
+    fill_vec3s(n, (real)color.x, (real)color.y, (real)color.z, &o->rgb);
     if (!layers)
         return;
-    fill(n, o->depth, (real)HUGE_VAL);
-    vec3s_fill(&o->position, n, 0, 0, 0);
-    vec3s_fill(&o->normal, n, 0, 0, 0);
-    fill(n, o->u, 0);
-    fill(n, o->w, 0);
-    fill(n, o->height, 0);
-    fill(n, o->tau, 0);
-    for (int i = 0; i < n; i++)
-        o->order[i] = -1;
+    fill(n, (real)HUGE_VAL, o->depth);
+    fill_vec3s(n, 0, 0, 0, &o->position);
+    fill_vec3s(n, 0, 0, 0, &o->normal);
+    fill(n, 0, o->u);
+    fill(n, 0, o->w);
+    fill(n, 0, o->height);
+    fill(n, 0, o->tau);
+    fill_ids(n, -1, o->order);
 }
 
-void samples_dark(int n, real *visibility) { fill(n, visibility, 0); }
+void samples_dark(int n, real *visibility) { fill(n, 0, visibility); }
 
 STAGE static void brightness(const hit_group *restrict g, real *restrict v)
 {

@@ -46,7 +46,7 @@ static inline bs_vec3 mirrored(bs_vec3 s, bs_vec3 smooth, bs_vec3 bumped)
 STAGE static void mirror(const hit_group *restrict g, ways *restrict y)
 {
     for (int i = 0; i < g->n; i++)
-        lane_set(&y->mirrored, i, mirrored(lane_get(&g->x.s, i), lane_get(&g->n_smooth, i), lane_get(&g->n_bump, i)));
+        lane_set(&y->mirrored, i, mirrored(lane_get(&g->x->s, i), lane_get(&g->n_smooth, i), lane_get(&g->n_bump, i)));
 }
 
 /* Snell's law with n' on the viewer's side. A direction that stays on that side of the smooth surface is reflected at
@@ -55,7 +55,7 @@ STAGE static void mirror(const hit_group *restrict g, ways *restrict y)
 STAGE static void bend(const hit_group *restrict g, ways *restrict y)
 {
     for (int i = 0; i < g->n; i++) {
-        bs_vec3 s = lane_unit(lane_get(&g->x.s, i)), n = lane_get(&g->n_bump, i), smooth = lane_get(&g->n_smooth, i);
+        bs_vec3 s = lane_unit(lane_get(&g->x->s, i)), n = lane_get(&g->n_bump, i), smooth = lane_get(&g->n_smooth, i);
         real ratio = y->ratio[i], c = -bs_dot(s, n), k = 1 + ratio * ratio * (c * c - 1),
              root = real_sqrt(real_max(k, 0));
         real by = ratio * c - (c < 0 ? -root : root);
@@ -147,11 +147,11 @@ static void send(const hit_group *g, int i, int id, real t0, bs_vec3 s, bs_vec3 
     const int to = b->n++;
     b->lane[to] = hit_group_place(g, i);
     lane_set(&b->weight, to, weight);
-    lane_set(&b->x.r, to, lane_at(&g->x, i, t0));
+    lane_set(&b->x.r, to, lane_at(g->x, i, t0));
     lane_set(&b->x.s, to, s);
     b->from.id[to] = id;
     b->from.part[to] = g->part[i];
-    lane_set(&b->from.at, to, lane_at(&g->x, i, g->t[i]));
+    lane_set(&b->from.at, to, lane_at(g->x, i, g->t[i]));
     copy_media(in, j, &b->in, to);
 }
 
@@ -176,7 +176,7 @@ static void send_clear(const scene *sc, int32_t id, workspace *v, ways *y)
         /* an object that was entered is left, as in POV-Ray, also at a gap between displaced parts; an object that
          * contains the camera is left without having been entered */
         const int32_t inside = inside_of(sc, id, g, i);
-        bool out = find(&in, i, inside) >= 0 || bs_dot(lane_get(&g->x.s, i), lane_get(&g->n_smooth, i)) > 0;
+        bool out = find(&in, i, inside) >= 0 || bs_dot(lane_get(&g->x->s, i), lane_get(&g->n_smooth, i)) > 0;
         y->ratio[i] = (real)cross(sc, id, inside, out, &in, i);
     }
     bend(g, y);
@@ -193,7 +193,7 @@ static void send_clear(const scene *sc, int32_t id, workspace *v, ways *y)
         else if (is_zero(through))
             ;
         else if (y->ratio[i] == 1) /* the same ray: from the smooth hit, as all before that was tested */
-            send(g, i, id, g->t[i], lane_get(&g->x.s, i), through, &in, i, &v->straight);
+            send(g, i, id, g->t[i], lane_get(&g->x->s, i), through, &in, i, &v->straight);
         else
             send(g, i, id, g->t0[i], lane_get(&y->bent, i), through, &in, i, &v->refracted);
         if (!total && !is_zero(mirror_weight))

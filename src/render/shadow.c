@@ -11,6 +11,7 @@
 #include "render/bumps.h"
 #include "render/intersect.h"
 #include "render/transparent.h"
+#include "wave/fill.h"
 #include "wave/gather.h"
 #include "wave/lane.h"
 
@@ -23,7 +24,7 @@ static void darken_facing_away(hit_group *g)
 {
     for (int i = 0; i < g->n; i++) {
         bs_vec3 n = lane_get(&g->n_smooth, i);
-        bool lit = bs_dot(n, lane_get(&g->to_light.s, i)) * bs_dot(n, lane_get(&g->x.s, i)) < 0;
+        bool lit = bs_dot(n, lane_get(&g->to_light.s, i)) * bs_dot(n, lane_get(&g->x->s, i)) < 0;
         g->lit[i] = lit ? g->lit[i] : 0;
     }
 }
@@ -98,10 +99,9 @@ static void cast_others(const tracer *tr, int32_t id, workspace *v)
 static void shadow_place(const tracer *tr, int32_t id, const light *l, bool shared, workspace *v)
 {
     hit_group *g = &v->g;
-    for (int i = 0; i < g->n; i++)
-        g->lit[i] = 1;
+    fill(g->n, 1, g->lit);
     if (tr->scene->clear)
-        vec3s_fill(&g->tint, g->n, 1, 1, 1);
+        fill_vec3s(g->n, 1, 1, 1, &g->tint);
     if (bumps_cast(tr, id, v))
         bumps_shadow(tr, id, l, shared, v);
     else if (shadow_casts(tr, id) && (v->surface[id]->ops->occlude_own || transparent_is(tr->scene, id))) {

@@ -14,11 +14,17 @@ double stats_clock(void)
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-void stats_orders(stats *s, int n, const int32_t *order, int asked)
+STAGE static int count_order(int n, const int32_t *order, int wanted)
 {
     int same = 0;
     for (int i = 0; i < n; i++)
-        same += order[i] == asked;
+        same += order[i] == wanted;
+    return same;
+}
+
+void stats_orders(stats *s, int n, const int32_t *order, int asked)
+{
+    const int same = count_order(n, order, asked);
     s->bumped += n;
     s->fell_back += asked == ORDER_ANY ? 0 : n - same;
     if (same == n)

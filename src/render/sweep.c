@@ -296,7 +296,7 @@ int sweep_lights(const tracer *tr, int32_t id, workspace *v, const brackets *k, 
     sweep w;
     bool met = false;
     for (int l = 0; l < tr->scene->lights; l++) {
-        sweep_begin(&tr->scene->light[l], k, &g->x, g->t, &w);
+        sweep_begin(&tr->scene->light[l], k, g->x, g->t, &w);
         met |= sweep_casters(tr, id, v, g->tau, &w, differs);
     }
     v->alone = !met;

@@ -9,10 +9,12 @@
 
 int tau_partials(const tracer *tr, int32_t id, const workspace *v)
 {
-    const bool flat = v->surface[id]->ops->flat; /* auto and the bumps' shadows leave its zeros out */
-    const bool shift = method_bends(tr->shadow) && !(flat && tr->shadow.kind == METHOD_AUTO);
-    const bool own = bumps_cast(tr, id, v) && !tr->shifted && !flat;
-    return tr->scene->object[id].bump && (shift || own) ? 2 : 1;
+    const bool flat = v->surface[id]->ops->flat; /* all but 2+ leave its zeros out */
+    const bool shift = method_bends(tr->shadow) && !(flat && tr->shadow.kind != METHOD_ORDER);
+    const bool own = bumps_cast(tr, id, v);
+    if (tr->scene->object[id].bump && (shift || (own && !tr->shifted && !flat)))
+        return 2;
+    return tr->layers || own;
 }
 
 void tau_find(const tracer *tr, int32_t id, workspace *v)

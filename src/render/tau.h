@@ -4,7 +4,8 @@
 
 #include "render/workspace.h"
 
-/* The partials of Q that are needed at the smooth hit: 1 or, for its curvature, 2. */
+/* What surface_ops.eval is asked for at the smooth hit: 0, the partials of Q; 1 for a layer or the bumps' own shadows,
+ * also Q; 2 for the curvature, all. */
 int tau_partials(const tracer *tr, int32_t id, const workspace *v);
 
 /* g->tau and g->order of the group v->g on object `id`; v->alone. Counts the orders. */

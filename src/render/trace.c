@@ -28,7 +28,8 @@ static void shape_and_shift(const tracer *tr, int32_t id, workspace *v)
     const bump *P = tr->scene->object[id].bump;
     hit_group *g = &v->g;
     stats *st = v->stats;
-    f->ops->locate(f, g->n, &g->x, g->t, g->part, g->u, g->w);
+    g->flat = f->ops->flat;
+    f->ops->locate(f, g->n, g->x, g->t, g->part, g->u, g->w);
     f->ops->eval(f, g->n, g->part, g->u, g->w, tau_partials(tr, id, v), &g->q);
     stats_stage(st, STAGE_SURFACE);
     if (P) {
@@ -115,14 +116,16 @@ static void follow_all(const tracer *tr, workspace *v)
 void trace(const tracer *tr, int n, workspace *v)
 {
     const scene *s = tr->scene;
-    int32_t id;
     intersect_nearest(s, n, v);
     stats_stage(v->stats, STAGE_HIT);
-    samples_background(n, s->background, tr->layers, &v->out);
+    int left = gather_hits(n, &v->nearest);
+    if (left < n || tr->layers)
+        samples_background(n, s->background, tr->layers, &v->out);
     for (int l = 0; tr->layers && l < s->lights; l++)
         samples_dark(n, v->visibility[l]);
     secondary_begin(v);
-    while ((id = gather_next_group(n, &v->x, &v->nearest, &v->g)) >= 0) {
+    for (; left > 0; left -= v->g.n) {
+        const int32_t id = gather_next_group(n, &v->x, &v->nearest, &v->g);
         stats_stage(v->stats, STAGE_SORT);
         trace_group(tr, id, v);
         samples_put(&v->g, tr->layers, s->object[id].bump != NULL, &v->out);

@@ -64,17 +64,17 @@ static void measure(object_bvh *c)
     c->space = bvh_space_about(all.lo, all.hi);
 }
 
-static bvh *tree_of(const object_bvh *c)
+static bvh *tree_of(const object_bvh *c, int threads)
 {
     bvh_box *b = malloc(sizeof *b * (size_t)c->bounded);
     for (int i = 0; b && i < c->bounded; i++)
         b[i] = bvh_box_in(&c->space, c->box[i].lo, c->box[i].hi);
-    bvh *tree = b ? bvh_new(c->bounded, b, NULL) : NULL;
+    bvh *tree = b ? bvh_new(c->bounded, b, threads, NULL) : NULL;
     free(b);
     return tree;
 }
 
-object_bvh *object_bvh_new(const scene *s, bool *good)
+object_bvh *object_bvh_new(const scene *s, int threads, bool *good)
 {
     const size_t n = (size_t)s->objects;
     object_bvh *c = calloc(1, sizeof *c);
@@ -92,7 +92,7 @@ object_bvh *object_bvh_new(const scene *s, bool *good)
     if (*good && c->bounded > FEW) {
         c->objects = s->objects;
         measure(c);
-        *good = (c->tree = tree_of(c)) != NULL;
+        *good = (c->tree = tree_of(c, threads)) != NULL;
     }
     if (c && c->tree)
         return c;

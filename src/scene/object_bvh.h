@@ -11,9 +11,9 @@
 struct scene;
 typedef struct object_bvh object_bvh;
 
-/* A hierarchy over the boxes of the scene's objects. NULL with *good: few objects, testing all is faster. NULL without:
- * out of memory. */
-object_bvh *object_bvh_new(const struct scene *s, bool *good);
+/* A hierarchy over the boxes of the scene's objects, built with several threads (0: all processors). NULL with *good:
+ * few objects, testing all is faster. NULL without: out of memory. */
+object_bvh *object_bvh_new(const struct scene *s, int threads, bool *good);
 void object_bvh_free(object_bvh *c);
 
 /* For each object the rays of a wave that may meet it. One for each thread. */

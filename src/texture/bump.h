@@ -8,7 +8,6 @@
 #include <stdbool.h>
 
 #include "expr/expr.h"
-#include "image/image.h"
 #include "texture/pyramid.h"
 #include "texture/table.h"
 
@@ -17,7 +16,8 @@ typedef struct bump bump;
 typedef struct bump_ops {
     const char *kind; /* as in the scene file: "map" or "function" */
 
-    /* P at n <= LANES places; order 1: also Pu and Pw; order 2: also Puu, Puw and Pww. Reentrant, no allocation. */
+    /* P at n <= LANES places; order 1: also Pu and Pw; order 2: also Puu and Pww; order 3 (2+): also Puw. Reentrant, no
+     * allocation. */
     void (*eval)(const bump *p, int n, const real *u, const real *w, int order, bump_values *h);
 
     /* P, Pu and Pw at n <= EXPR_BATCH places, in double. Here a map's partials are the derivatives of its bilinear
@@ -40,6 +40,7 @@ typedef struct bump_ops {
 struct bump {
     const bump_ops *ops;
     real Pmin, Pmax; /* bounds of P; infinite where none are known */
+    bool peaked;     /* P is at these in single points alone, if at all. False where that is not known */
 
     /* Lipschitz constants of P: for any two places on the surface
      *     |P(u,w) - P(u',w')| <= Pu_max |u - u'| + Pw_max |w - w'|
@@ -55,11 +56,14 @@ struct bump {
     pyramid *pyramid; /* what `range` looks up; NULL before bump_prepare, when it gives the bounds above */
 };
 
-/* P from samples, by section 4.1 of the paper: partials by central differences at the samples; heights and partials
- * interpolated bilinearly. Beyond the outermost samples of a clamped map P is constant. u is to the right, w down.
- * `samples` is copied. NULL: out of memory, fewer than 2 x 2 samples, or more than 2^29 (four times as many if
- * mirrored). */
-bump *bump_map_new(const image *samples, const map_layout *layout);
+/* P from width x height samples, by section 4.1 of the paper: partials by central differences at the samples; heights
+ * and partials interpolated bilinearly. Beyond the outermost samples of a clamped map P is constant. u is to the right,
+ * w down. It is of use once all samples are put in, n of row y from column x on, by any threads, and bump_map_end has
+ * laid out what is around them and found the bounds, which do not depend on its threads (0: one for each processor).
+ * NULL: out of memory, fewer than 2 x 2 samples, or more than 2^29 (four times as many if mirrored). */
+bump *bump_map_new(int width, int height, const map_layout *layout);
+void bump_map_put(bump *p, int x, int y, int n, const float *samples);
+void bump_map_end(bump *p, int threads);
 
 /* P = scale f(u,w), with exact partials. Owns f, also on failure. Pmin to Pw_max hold for (u,w) in the given range
  * (infinite ends allowed). NULL: out of memory. */

@@ -29,7 +29,7 @@ static void function_eval(const bump *base, int n, const real *u, const real *w,
             x[i] = (double)u[at + i];
             y[i] = (double)w[at + i];
         }
-        expr_eval(p->f, m, x, y, order, &j);
+        expr_eval(p->f, m, x, y, order < 2 ? order : 2, &j);
         function_copy(m, p->scale, j.v, h->P + at);
         if (order >= 1) {
             function_copy(m, p->scale, j.u, h->Pu + at);

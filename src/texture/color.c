@@ -91,7 +91,7 @@ static void image_eval(const color_texture *base, int n, const real *u, const re
     const image_texture *p = (const image_texture *)base;
     int32_t at[LANES];
     real a[LANES], b[LANES];
-    table_cells(&p->grid, n, u, w, at, a, b);
+    table_cells(&p->grid, p->grid.columns + 1, n, u, w, at, a, b);
     if (p->nearest) {
         to_corner(n, a);
         to_corner(n, b);

@@ -218,6 +218,6 @@ void horizon_look(const horizon *h, int n, const real *u, const real *w, const r
 {
     int32_t at[LANES];
     real a[LANES], b[LANES];
-    table_cells(&h->grid, n, u, w, at, a, b);
+    table_cells(&h->grid, h->grid.columns + 1, n, u, w, at, a, b);
     look_up(h, n, at, a, b, bearing, rise);
 }

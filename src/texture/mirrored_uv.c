@@ -40,7 +40,7 @@ static void mirrored_bump_eval(const bump *base, int n, const real *u, const rea
     f->of->ops->eval(f->of, n, at, w, order, h);
     if (order >= 1)
         apply_sign(n, sign, h->Pu);
-    if (order >= 2)
+    if (order == 3)
         apply_sign(n, sign, h->Puw);
 }
 

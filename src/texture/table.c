@@ -3,20 +3,27 @@
 
 #include <stddef.h>
 
+/* real_floor without its choice for a distant x. */
+static inline real near_floor(real x)
+{
+    real f = (x + REAL_INTEGER) - REAL_INTEGER;
+    return f > x ? f - 1 : f;
+}
+
 /* The cell i of a coordinate, 0 <= i < n, and its fraction in the cell, 0..1; for any x, also NaN. */
 static inline int cell_of(real x, int n, int repeat, real *fraction)
 {
-    real N = (real)n, iN = 1 / N, y = repeat ? x - real_floor(x * iN) * N : x;
+    real N = (real)n, iN = 1 / N, y = repeat ? x - near_floor(x * iN) * N : x;
     y = real_min(real_max(y, 0), N); /* without a meaning for a distant x or NaN */
-    int i = (int)y;                  /* y >= 0, so this is the floor */
-    i = i < n ? i : n - 1;
+    int i = (int)y, last = n - 1;    /* y >= 0, so this is the floor */
+    i = i < last ? i : last;
     *fraction = y - (real)i;
     return i;
 }
 
 /* Called with a constant `repeat`, as a choice in the loop would prevent SIMD. */
-static inline void cells(const table_grid *t, int repeat, int n, const real *restrict u, const real *restrict w,
-                         int32_t *restrict at, real *restrict a, real *restrict b)
+static inline void cells(const table_grid *t, int repeat, int pitch, int n, const real *restrict u,
+                         const real *restrict w, int32_t *restrict at, real *restrict a, real *restrict b)
 {
     const int columns = t->columns, rows = t->rows;
     const real ku = t->ku, kw = t->kw, ou = t->ou, ow = t->ow;
@@ -24,32 +31,20 @@ static inline void cells(const table_grid *t, int repeat, int n, const real *res
     for (int i = 0; i < n; i++) {
         int c = cell_of(u[i] * ku + ou, columns, repeat, &a[i]);
         int r = cell_of(w[i] * kw + ow, rows, repeat, &b[i]);
-        at[i] = r * (columns + 1) + c;
+        at[i] = r * pitch + c;
     }
 }
 
-STAGE static void cells_repeat(const table_grid *t, int n, const real *u, const real *w, int32_t *at, real *a, real *b)
+STAGE static void cells_repeat(const table_grid *t, int pitch, int n, const real *u, const real *w, int32_t *at,
+                               real *a, real *b)
 {
-    cells(t, 1, n, u, w, at, a, b);
+    cells(t, 1, pitch, n, u, w, at, a, b);
 }
 
-STAGE static void cells_clamp(const table_grid *t, int n, const real *u, const real *w, int32_t *at, real *a, real *b)
+STAGE static void cells_clamp(const table_grid *t, int pitch, int n, const real *u, const real *w, int32_t *at, real *a,
+                              real *b)
 {
-    cells(t, 0, n, u, w, at, a, b);
-}
-
-/* One value: a gather. */
-STAGE static void map_one(const table_grid *t, const real *restrict v, int n, const int32_t *restrict at,
-                          const real *restrict a, const real *restrict b, real *restrict out)
-{
-    const int row = (t->columns + 1) * TABLE_VALUES;
-#pragma omp simd
-    for (int i = 0; i < n; i++) {
-        int p = at[i] * TABLE_VALUES, q = p + row;
-        real left = v[p] + (v[q] - v[p]) * b[i];
-        real right = v[p + TABLE_VALUES] + (v[q + TABLE_VALUES] - v[p + TABLE_VALUES]) * b[i];
-        out[i] = left + (right - left) * a[i];
-    }
+    cells(t, 0, pitch, n, u, w, at, a, b);
 }
 
 /* All three values: the two upper corners of a cell are one vector of 8, and so are the lower ones. Twelve gathers
@@ -79,14 +74,9 @@ STAGE static void map_unpack(int n, const real (*restrict from)[TABLE_VALUES], r
     }
 }
 
-void table_cells(const table_grid *t, int n, const real *u, const real *w, int32_t *at, real *a, real *b)
+void table_cells(const table_grid *t, int pitch, int n, const real *u, const real *w, int32_t *at, real *a, real *b)
 {
-    (t->repeat ? cells_repeat : cells_clamp)(t, n, u, w, at, a, b);
-}
-
-void table_one(const table_grid *t, const real *v, int n, const int32_t *at, const real *a, const real *b, real *x)
-{
-    map_one(t, v, n, at, a, b, x);
+    (t->repeat ? cells_repeat : cells_clamp)(t, pitch, n, u, w, at, a, b);
 }
 
 void table_three(const table_grid *t, const real *v, int n, const int32_t *at, const real *a, const real *b, real *x,

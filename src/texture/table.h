@@ -30,12 +30,12 @@ typedef struct table_grid {
     real ku, kw, ou, ow; /* samples per (u,w), and the sample at (u,w) = 0 */
 } table_grid;
 
-/* The cells of n <= LANES places: `at` the index of the upper left sample, a and b the place in the cell, to the right
- * and down, both 0..1. */
-void table_cells(const table_grid *t, int n, const real *u, const real *w, int32_t *at, real *a, real *b);
+/* The cells of n <= LANES places: `at` is row x pitch + column of the upper left sample, a and b are the place in the
+ * cell, to the right and down, both 0..1. */
+void table_cells(const table_grid *t, int pitch, int n, const real *u, const real *w, int32_t *at, real *a, real *b);
 
-/* The first value, or all three, interpolated bilinearly. v: (rows + 1) x (columns + 1) x TABLE_VALUES. */
-void table_one(const table_grid *t, const real *v, int n, const int32_t *at, const real *a, const real *b, real *x);
+/* The three values, interpolated bilinearly. v: (rows + 1) x (columns + 1) x TABLE_VALUES; the pitch of `at` is
+ * columns + 1. */
 void table_three(const table_grid *t, const real *v, int n, const int32_t *at, const real *a, const real *b, real *x,
                  real *y, real *z);
 

@@ -3,6 +3,8 @@
 
 #include <string.h>
 
+#include "wave/fill.h"
+
 STAGE static void begin(int n, hits *h)
 {
     for (int i = 0; i < n; i++) {
@@ -32,10 +34,6 @@ void gather_move_origins(int n, const ray_origins *from, const int32_t *own, ray
 
 STAGE static void pick(const hit_group *restrict g, const real *restrict from, real *restrict to)
 {
-    if (g->whole) {
-        memcpy(to, from, (size_t)g->n * sizeof *to);
-        return;
-    }
 #pragma omp simd
     for (int i = 0; i < g->n; i++)
         to[i] = from[g->lane[i]];
@@ -72,12 +70,33 @@ void gather_ray_origins(int n, const int32_t *lane, const ray_origins *from, ray
     pick_some(n, lane, &from->at, &to->at);
 }
 
+STAGE static int count_hits(int n, const int32_t *id)
+{
+    int m = 0;
+    for (int i = 0; i < n; i++)
+        m += id[i] >= 0;
+    return m;
+}
+
+int gather_hits(int n, const hits *h) { return count_hits(n, h->id); }
+
 STAGE static int count(int n, const int32_t *id, int32_t wanted)
 {
     int m = 0;
     for (int i = 0; i < n; i++)
         m += id[i] == wanted;
     return m;
+}
+
+/* The lanes of object `id`, from the first on. */
+static void list_lanes(int32_t id, int first, hits *h, hit_group *g)
+{
+    for (int i = first, m = 0; m < g->n; i++) { /* no branch, as it would be unpredictable at a silhouette */
+        g->lane[m] = i;
+        m += h->id[i] == id;
+    }
+    for (int i = 0; i < g->n; i++)
+        h->id[g->lane[i]] = -1;
 }
 
 int32_t gather_next_group(int n, const rays *x, hits *h, hit_group *g)
@@ -90,18 +109,20 @@ int32_t gather_next_group(int n, const rays *x, hits *h, hit_group *g)
     const int32_t id = h->id[first];
     g->n = count(n, h->id, id);
     g->whole = g->n == n;
-    if (!g->whole)
-        for (int i = first, m = 0; m < g->n; i++) { /* no branch, as it would be unpredictable at a silhouette */
-            g->lane[m] = i;
-            m += h->id[i] == id;
-        }
+    g->x = x;
+    g->t = h->t;
+    if (g->whole) {
+        fill_ids(n, -1, h->id);
+        memcpy(g->part, h->part, (size_t)n * sizeof *h->part);
+        return id;
+    }
+    list_lanes(id, first, h, g);
+    pick3(g, &x->r, &g->picked.x.r);
+    pick3(g, &x->s, &g->picked.x.s);
+    pick(g, h->t, g->picked.t);
     for (int i = 0; i < g->n; i++)
-        h->id[hit_group_place(g, i)] = -1;
-    pick(g, h->t, g->t);
-    for (int i = 0; i < g->n; i++)
-        g->part[i] = h->part[hit_group_place(g, i)];
-    pick3(g, &x->r, &g->x.r);
-    pick3(g, &x->s, &g->x.s);
+        g->part[i] = h->part[g->lane[i]];
+    hit_group_picked(g);
     return id;
 }
 

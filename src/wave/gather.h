@@ -14,8 +14,11 @@ void gather_move_origins(int n, const ray_origins *from, const int32_t *own, ray
 void gather_rays(int n, const int32_t *lane, const rays *x, rays *to);
 void gather_ray_origins(int n, const int32_t *lane, const ray_origins *from, ray_origins *to);
 
-/* Move the lanes of one object from the hits to the group, in their order. Returns the object's id; -1: no lane is
- * left. */
+/* How many lanes have a hit. */
+int gather_hits(int n, const hits *h);
+
+/* Move the lanes of one object from the hits to the group, in their order. Where they are the whole wave, x and h->t
+ * are not copied, and the group needs them. Returns the object's id; -1: no lane is left. */
 int32_t gather_next_group(int n, const rays *x, hits *h, hit_group *g);
 
 /* Copy a group's results to their lanes of the wave. */

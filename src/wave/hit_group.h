@@ -13,17 +13,23 @@ typedef struct hit_group {
     bool whole;          /* all lanes of the wave; then `lane` is not set */
     int32_t lane[LANES]; /* their lanes in the wave */
 
-    /* the smooth hit */
-    rays x;
-    real t[LANES];       /* t_hit */
+    /* the smooth hit. x and t are the wave's own where the group is all of it, else the picked ones. */
+    const rays *x;
+    const real *t; /* t_hit */
+    struct {
+        rays x;
+        real t[LANES];
+    } picked;
     int32_t part[LANES]; /* of the surface; u and w belong to it */
     real u[LANES], w[LANES];
     partials q;
+    bool flat; /* the surface is: Quu, Quw and Qww are 0, and may not be set */
 
     /* the bump */
     bump_values bump;
     vec3s n_smooth; /* n = Qu x Qw, not normalised */
     vec3s n_bump;   /* n', unit */
+    bool regular;   /* bs_regular holds for all lanes; only with a bump */
 
     /* the method */
     real tau[LANES];      /* the shift */
@@ -31,8 +37,9 @@ typedef struct hit_group {
     int32_t order[LANES]; /* used; method_code's numbers */
 
     /* the place that is shaded: the smooth hit, or r + s t0, with (u,w), q, bump and normals there (render/place.h) */
-    real t_shade[LANES];
-    int32_t shade_part[LANES]; /* of the surface; only with r + s t0 */
+    const real *t_shade;       /* t, or t_moved */
+    real t_moved[LANES];       /* the next two only with r + s t0 */
+    int32_t shade_part[LANES]; /* of the surface */
 
     vec3s rough; /* X = Q + P n/|n| over the place that is shaded; only for the bumps' own shadows */
 
@@ -47,5 +54,12 @@ typedef struct hit_group {
 
 /* The lane of the wave for a lane of the group. */
 static inline int hit_group_place(const hit_group *g, int i) { return g->whole ? i : g->lane[i]; }
+
+/* The group has rays of its own, which the caller has put in `picked`. */
+static inline void hit_group_picked(hit_group *g)
+{
+    g->x = &g->picked.x;
+    g->t = g->t_shade = g->picked.t;
+}
 
 #endif

@@ -120,7 +120,7 @@ def test_compile_line_is_joined_and_ends_before_the_run() -> None:
     assert programs.compile_line(source) == ["gcc", "-std=c99", "-O3", "-fopenmp", "a.c", "-o", "a", "-lm"]
 
 
-@pytest.mark.parametrize("name", ["fused_kernel", "embree_loop"])
+@pytest.mark.parametrize("name", ["fused_kernel", "embree_loop", "embree_mesh", "png_decode"])
 def test_compile_lines_of_the_yardsticks(name: str) -> None:
     words = programs.compile_line((TOP / "bench" / "limits" / f"{name}.c").read_text())
     assert words[0] == "gcc" and f"{name}.c" in words and words[words.index("-o") + 1] == name

@@ -3,6 +3,7 @@
 
 #include "image/image.h"
 #include "support/check.h"
+#include "support/image_whole.h"
 
 /* What a result points to before a call; afterwards it does not. */
 static char nowhere[1];
@@ -280,12 +281,13 @@ static void pictures_are_written(void **state)
     assert_int_equal(kage_film_write_png(f, png, 0, &e), KAGE_OK);
     assert_true(kage_file_is_picture(png));
     assert_int_equal(kage_film_write_exr(f, exr, "Z,N", 1, &e), KAGE_OK);
-    image read = {0};
+    image read;
+    float range[2];
     errors wrong = {0};
-    assert_true(image_read(exr, "N.Y", &read, &wrong));
+    assert_true(image_whole(exr, "N.Y", 1, &read, range, &wrong));
     assert_memory_equal(read.v, kage_film_plane(f, "N.Y"), pixels_of(f) * sizeof *read.v);
     free(read.v);
-    assert_false(image_read(exr, "R", &read, &wrong));
+    assert_false(image_whole(exr, "R", 1, &read, range, &wrong));
     errors_free(&wrong);
     assert_int_equal(kage_film_write_exr(f, exr, "Z,Q", 1, &e), KAGE_BAD_OPTION);
     kage_errors_free(e);

@@ -23,7 +23,7 @@ static int set_up(void **state)
             box[i].lo[k] = coordinate();
             box[i].hi[k] = box[i].lo[k] + (float)random_in(0, 0.5);
         }
-    tree = bvh_new(BOXES, box, NULL);
+    tree = bvh_new(BOXES, box, 1, NULL);
     return tree ? 0 : -1;
 }
 
@@ -148,6 +148,180 @@ static void test_toward_stops(void **state)
     BETWEEN(1, visits, all - 1);
 }
 
+/* What each ray of a packet has met. */
+typedef struct packet_seen {
+    int box[BVH_PACKET][BOXES];
+    int calls;
+} packet_seen;
+
+static void count_meeting(void *user, int32_t i, uint32_t which, float end[BVH_PACKET])
+{
+    packet_seen *seen = user;
+    (void)end;
+    CHECK(which, !=, 0);
+    seen->calls++;
+    for (int k = 0; k < BVH_PACKET; k++)
+        seen->box[k][i] += (int)(which >> k & 1);
+}
+
+/* Rays near each other (wide: not at all), of which each third is none, if `some`. */
+static void random_packet(bvh_packet *x, double wide, bool some)
+{
+    float r[3], s[3];
+    random_ray(r, s);
+    for (int i = 0; i < BVH_PACKET; i++) {
+        for (int k = 0; k < 3; k++) {
+            x->at[k][i] = r[k] + (float)random_in(-wide, wide);
+            x->way[k][i] = s[k] + (float)random_in(-wide, wide);
+        }
+        x->end[i] = some && i % 3 == 1 ? -1 : (float)random_in(0.1, 3);
+    }
+}
+
+/* Against brute force. At most a share `shared` of calls is left of those for single rays. */
+static void check_packets(double wide, double shared)
+{
+    int met = 0, calls = 0;
+    for (int i = 0; i < TRIES; i++) {
+        packet_seen seen = {.calls = 0};
+        bvh_packet x;
+        random_packet(&x, wide, i % 2);
+        const bvh_packet was = x;
+        bvh_packet_toward(tree, &x, count_meeting, &seen);
+        for (int l = 0; l < BVH_PACKET; l++) {
+            const float r[3] = {x.at[0][l], x.at[1][l], x.at[2][l]}, s[3] = {x.way[0][l], x.way[1][l], x.way[2][l]};
+            double at;
+            CHECK(x.end[l], ==, was.end[l]);
+            for (int k = 0; k < BOXES; k++) {
+                if (x.end[l] >= 0 && passes(&box[k], r, s, (double)x.end[l], -1e-5, &at))
+                    CHECK(seen.box[l][k], ==, 1);
+                if (x.end[l] < 0 || !passes(&box[k], r, s, (double)x.end[l], 1e-5, &at))
+                    CHECK(seen.box[l][k], ==, 0);
+                met += seen.box[l][k];
+            }
+        }
+        calls += seen.calls;
+    }
+    CHECK(met, >, 2 * TRIES);
+    CHECK(calls, <, shared * met);
+}
+
+static void test_packets_visit_what_their_rays_do(void **state)
+{
+    (void)state;
+    check_packets(0.01, 0.25);
+    check_packets(1, 1);
+}
+
+/* A packet's search for the nearest box of each ray. */
+typedef struct packet_search {
+    const bvh_packet *x;
+    double nearest[BVH_PACKET];
+    int visits;
+} packet_search;
+
+static void note_nearest_each(void *user, int32_t i, uint32_t which, float end[BVH_PACKET])
+{
+    packet_search *k = user;
+    for (int l = 0; l < BVH_PACKET; l++) {
+        if (!(which >> l & 1))
+            continue;
+        const float r[3] = {k->x->at[0][l], k->x->at[1][l], k->x->at[2][l]},
+                    s[3] = {k->x->way[0][l], k->x->way[1][l], k->x->way[2][l]};
+        search one = {r, s, k->nearest[l], 0};
+        end[l] = note_nearest(&one, i, end[l]);
+        k->nearest[l] = one.nearest;
+        k->visits++;
+    }
+}
+
+static void test_packets_find_the_nearest_boxes(void **state)
+{
+    int visits = 0, all = 0;
+    (void)state;
+    for (int i = 0; i < TRIES; i++) {
+        bvh_packet x;
+        random_packet(&x, i % 2 ? 1 : 0.01, i % 4 > 1);
+        const bvh_packet was = x;
+        packet_search k = {.x = &x};
+        for (int l = 0; l < BVH_PACKET; l++)
+            k.nearest[l] = (double)x.end[l];
+        bvh_packet_toward(tree, &x, note_nearest_each, &k);
+        for (int l = 0; l < BVH_PACKET; l++) {
+            const float r[3] = {x.at[0][l], x.at[1][l], x.at[2][l]}, s[3] = {x.way[0][l], x.way[1][l], x.way[2][l]};
+            double nearest = (double)was.end[l], at;
+            for (int b = 0; b < BOXES && nearest >= 0; b++)
+                if (passes(&box[b], r, s, (double)was.end[l], 0, &at)) {
+                    nearest = fmin(nearest, at);
+                    all++;
+                }
+            NEAR(k.nearest[l], nearest, 1e-5);
+        }
+        visits += k.visits;
+    }
+    CHECK(visits, <, 0.8 * all);
+}
+
+static void stop_odd(void *user, int32_t i, uint32_t which, float end[BVH_PACKET])
+{
+    (void)i;
+    for (int l = 0; l < BVH_PACKET; l++) {
+        ((int *)user)[l] += (int)(which >> l & 1);
+        end[l] = l % 2 && which >> l & 1 ? -1 : end[l];
+    }
+}
+
+static void test_packets_stop_rays(void **state)
+{
+    int seen[BVH_PACKET] = {0};
+    bvh_packet x;
+    (void)state;
+    for (int l = 0; l < BVH_PACKET; l++)
+        for (int k = 0; k < 3; k++) {
+            x.at[k][l] = k == 0 ? -3.0f : 0.001f * (float)l;
+            x.way[k][l] = k == 0 ? 1.0f : 0.01f * (float)k;
+            x.end[l] = 9;
+        }
+    bvh_packet_toward(tree, &x, stop_odd, seen);
+    for (int l = 0; l < BVH_PACKET; l++) {
+        CHECK(x.end[l] < 0, ==, l % 2);
+        if (l % 2)
+            BETWEEN(1, seen[l], seen[l - 1] - 1);
+    }
+}
+
+/* Embree's threads change nothing. */
+static void test_threads_build_the_same(void **state)
+{
+    enum { MANY = 20000, RAYS = 100 };
+    (void)state;
+    bvh_box *many = malloc(sizeof *many * MANY);
+    int *seen[2] = {calloc(MANY, sizeof(int)), calloc(MANY, sizeof(int))};
+    for (int i = 0; i < MANY; i++)
+        for (int k = 0; k < 3; k++) {
+            many[i].lo[k] = coordinate();
+            many[i].hi[k] = many[i].lo[k] + 0.02f;
+        }
+    for (int t = 0; t < 2; t++) {
+        bvh *b = bvh_new(MANY, many, 1 + 2 * t, NULL);
+        assert_non_null(b);
+        for (int i = 0; i < RAYS; i++) {
+            const float x = 0.019f * (float)i - 0.95f;
+            bvh_along(b, (float[]){x, -3, 0.1f}, (float[]){0.01f, 1, 0.02f}, 9, count_visit, seen[t]);
+        }
+        bvh_free(b);
+    }
+    int sum = 0;
+    for (int i = 0; i < MANY; i++) {
+        CHECK(seen[0][i], ==, seen[1][i]);
+        sum += seen[0][i];
+    }
+    CHECK(sum, >, RAYS);
+    free(many);
+    free(seen[0]);
+    free(seen[1]);
+}
+
 static void test_around_visits_the_boxes_within_the_radius(void **state)
 {
     int met = 0;
@@ -170,7 +344,7 @@ static void test_no_boxes(void **state)
 {
     (void)state;
     int seen = 0;
-    bvh *none = bvh_new(0, NULL, NULL);
+    bvh *none = bvh_new(0, NULL, 1, NULL);
     assert_non_null(none);
     bvh_along(none, (float[]){0, 0, 0}, (float[]){1, 0, 0}, 1, count_visit, &seen);
     bvh_around(none, (float[]){0, 0, 0}, 1, count_visit, &seen);
@@ -248,6 +422,10 @@ int main(void)
         cmocka_unit_test(test_along_visits_the_boxes_that_are_passed),
         cmocka_unit_test(test_toward_finds_the_nearest_box),
         cmocka_unit_test(test_toward_stops),
+        cmocka_unit_test(test_packets_visit_what_their_rays_do),
+        cmocka_unit_test(test_packets_find_the_nearest_boxes),
+        cmocka_unit_test(test_packets_stop_rays),
+        cmocka_unit_test(test_threads_build_the_same),
         cmocka_unit_test(test_around_visits_the_boxes_within_the_radius),
         cmocka_unit_test(test_no_boxes),
         cmocka_unit_test(test_space_has_the_centre_and_the_half_diagonal),

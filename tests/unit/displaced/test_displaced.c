@@ -61,9 +61,10 @@ static void located_below_the_hit(void **state)
     d->ops->hit(d, LANES, &x, 0, &h);
     d->ops->locate(d, LANES, &x, h.t, h.part, u, w);
     g.n = LANES;
-    g.x = x;
+    hit_group_picked(&g);
+    g.picked.x = x;
     for (int i = 0; i < LANES; i++) {
-        g.t[i] = h.t[i];
+        g.picked.t[i] = h.t[i];
         g.part[i] = h.part[i];
     }
     displaced_shape(d, &g);
@@ -108,7 +109,7 @@ static surface *square(void)
                 if (a < 2)
                     m.skin[k].uv[i][a] = corner[index[k][i]][2 - 2 * a];
             }
-    return mesh_new(&m, NULL);
+    return mesh_new(&m, 1, NULL);
 }
 
 /* Two bumps over one mesh: neither knows of the other. */

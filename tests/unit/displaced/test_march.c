@@ -11,6 +11,7 @@
 #include <cmocka.h>
 
 #include "support/check.h"
+#include "support/bump_of_map.h"
 #include "base/frame.h"
 #include "wave/lane.h"
 #include "method/method.h"
@@ -241,7 +242,7 @@ static bump *make_bump(int surface_kind, int bumped, const surface *f)
                     .scale = 0.15,
                     .zero = 0.5};
     l.offset[0] = surface_kind >= SPHERE ? -pi : 0;
-    return bump_map_new(&m, &l);
+    return bump_of_map(&m, &l);
 }
 
 static void random_ray(rays *x, int i, wide r[3], wide s[3])
@@ -337,11 +338,12 @@ static void normals_are_gradients(void **state)
         displaced_counts counts = {0};
         surface *bumpy = displace(f, P, &counts);
         wide r[LANES][3], s[LANES][3];
-        random_wave(&g.x, &h, r, s);
-        bumpy->ops->hit(bumpy, LANES, &g.x, 0, &h);
+        hit_group_picked(&g);
+        random_wave(&g.picked.x, &h, r, s);
+        bumpy->ops->hit(bumpy, LANES, g.x, 0, &h);
         g.n = LANES;
         for (int i = 0; i < LANES; i++) {
-            g.t[i] = h.id[i] == 0 ? h.t[i] : R(1);
+            g.picked.t[i] = h.id[i] == 0 ? h.t[i] : R(1);
             g.part[i] = h.id[i] == 0 ? h.part[i] : 0;
         }
         displaced_shape(bumpy, &g);
@@ -633,19 +635,20 @@ static void flat_and_exact(void **state)
     displaced_counts counts = {0};
     surface *bumpy = displace(f, P, &counts);
     g.n = LANES;
+    hit_group_picked(&g);
     for (int i = 0; i < LANES; i++) {
-        g.x.r.x[i] = (real)(i * 0.1), g.x.r.y[i] = R(2), g.x.r.z[i] = R(-1);
-        g.x.s.x[i] = R(0.1), g.x.s.y[i] = (real)(-0.2 - 0.01 * i), g.x.s.z[i] = R(0.7);
-        g.t[i] = -2 / g.x.s.y[i];
+        g.picked.x.r.x[i] = (real)(i * 0.1), g.picked.x.r.y[i] = R(2), g.picked.x.r.z[i] = R(-1);
+        g.picked.x.s.x[i] = R(0.1), g.picked.x.s.y[i] = (real)(-0.2 - 0.01 * i), g.picked.x.s.z[i] = R(0.7);
+        g.picked.t[i] = -2 / g.x->s.y[i];
     }
-    f->ops->locate(f, LANES, &g.x, g.t, g.part, g.u, g.w);
+    f->ops->locate(f, LANES, g.x, g.t, g.part, g.u, g.w);
     f->ops->eval(f, LANES, g.part, g.u, g.w, 1, &g.q);
     P->ops->eval(P, LANES, g.u, g.w, 1, &g.bump);
     for (int i = 0; i < LANES; i++)
         lane_set(&g.n_smooth, i, bs_normal(lane_get(&g.q.Qu, i), lane_get(&g.q.Qw, i)));
     displaced_shift(bumpy, &g);
     for (int i = 0; i < LANES; i++) {
-        double y = (double)(g.x.r.y[i] + g.x.s.y[i] * (g.t[i] + g.tau[i]));
+        double y = (double)(g.x->r.y[i] + g.x->s.y[i] * (g.t[i] + g.tau[i]));
         assert_int_equal(g.order[i], ORDER_EXACT);
         NEAR(y, 0.1, 1e-6);
     }

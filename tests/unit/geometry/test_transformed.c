@@ -407,13 +407,14 @@ static void rough_box(void **state)
         int met = 0;
         for (int i = 0; i < LANES; i++) {
             random_ray(&y, i, 1);
-            map_ray(&m, &y, &g.x, i);
+            map_ray(&m, &y, &g.picked.x, i);
         }
         no_hits(&h, LANES);
-        d->ops->hit(d, LANES, &g.x, 0, &h);
+        hit_group_picked(&g);
+        d->ops->hit(d, LANES, g.x, 0, &h);
         g.n = LANES;
         for (int i = 0; i < LANES; i++) {
-            g.t[i] = h.id[i] == 0 ? h.t[i] : R(1);
+            g.picked.t[i] = h.id[i] == 0 ? h.t[i] : R(1);
             g.part[i] = h.id[i] == 0 ? h.part[i] : 0;
         }
         displaced_shape(d, &g);
@@ -425,7 +426,7 @@ static void rough_box(void **state)
             f->ops->eval(f, 1, &g.part[i], &g.u[i], &g.w[i], 1, &q);
             const bs_vec3 Q = lane_get(&q.Q, 0), n = lane_unit(bs_normal(lane_get(&q.Qu, 0), lane_get(&q.Qw, 0)));
             const vec3 X = vec3_add(widen(Q), vec3_scale(widen(n), (double)g.bump.P[i]));
-            CHECK(apart(lane_at(&g.x, i, h.t[i]), X), <, 100 * EPS);
+            CHECK(apart(lane_at(g.x, i, h.t[i]), X), <, 100 * EPS);
         }
         CHECK(met, >, 40);
         assert_int_equal(counts.uncertain, 0);

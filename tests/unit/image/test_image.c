@@ -25,6 +25,7 @@
 #include "image/image.h"
 #include "image/srgb.h"
 #include "support/check.h"
+#include "support/image_whole.h"
 
 enum { WIDTH = 37, HEIGHT = 23, SAMPLES = WIDTH * HEIGHT }; /* as in tests/data */
 
@@ -92,9 +93,10 @@ static void assert_same_files(const char *a, const char *b)
 /* Reading must fail with one message, which contains `words`. */
 static void assert_refused(const char *path, const char *channel, const char *words)
 {
-    image m = {1, 1, NULL};
+    image m;
+    float range[2];
     errors e = {0};
-    assert_false(image_read(path, channel, &m, &e));
+    assert_false(image_whole(path, channel, 2, &m, range, &e));
     assert_int_equal(e.count, 1);
     if (!strstr(e.text, words))
         fail_msg("%s: \"%s\" does not say \"%s\"", path, e.text, words);
@@ -104,10 +106,17 @@ static void assert_refused(const char *path, const char *channel, const char *wo
 
 static image read_well(const char *path, const char *channel)
 {
-    image m = {0};
+    image m;
+    float range[2], lo = INFINITY, hi = -INFINITY;
     errors e = {0};
-    if (!image_read(path, channel, &m, &e))
+    if (!image_whole(path, channel, 2, &m, range, &e))
         fail_msg("%s: %s", path, e.text);
+    for (int i = 0; i < m.width * m.height; i++) {
+        lo = fminf(lo, m.v[i]);
+        hi = fmaxf(hi, m.v[i]);
+    }
+    CHECK(range[0], ==, lo);
+    CHECK(range[1], ==, hi);
     assert_int_equal(e.count, 0);
     return m;
 }
@@ -116,9 +125,10 @@ static image read_well(const char *path, const char *channel)
  * refusal has one message. */
 static bool survives(const char *path)
 {
-    image m = {0};
+    image m;
+    float range[2];
     errors e = {0};
-    bool ok = image_read(path, NULL, &m, &e);
+    bool ok = image_whole(path, NULL, 2, &m, range, &e);
     assert_int_equal(e.count, ok ? 0 : 1);
     assert_true(ok || e.size > 2);
     CHECK((m.v != NULL), ==, ok);

@@ -6,9 +6,10 @@
 /* A lane straight below the eye at height 8, whose ray meets y = 0 at t = 2 in (x, 0, 0). */
 static void lane_over(hit_group *g, int i, double x)
 {
-    lane_set(&g->x.r, i, (bs_vec3){(real)x, 8, 0});
-    lane_set(&g->x.s, i, (bs_vec3){0, -4, 0});
-    g->t[i] = g->t_shade[i] = 2;
+    hit_group_picked(g);
+    lane_set(&g->picked.x.r, i, (bs_vec3){(real)x, 8, 0});
+    lane_set(&g->picked.x.s, i, (bs_vec3){0, -4, 0});
+    g->picked.t[i] = 2;
     g->t0[i] = R(1.5);
     g->lit[i] = 1;
 }

@@ -15,15 +15,16 @@ static bs_vec3 random_vector(double size)
 static void random_group(hit_group *g)
 {
     g->n = LANES;
+    hit_group_picked(g);
     for (int i = 0; i < LANES; i++) {
         const bs_vec3 n = random_vector(1), lean = random_vector(0.3);
-        lane_set(&g->x.r, i, random_vector(5));
-        lane_set(&g->x.s, i, random_vector(1));
+        lane_set(&g->picked.x.r, i, random_vector(5));
+        lane_set(&g->picked.x.s, i, random_vector(1));
         lane_set(&g->n_smooth, i, n);
         lane_set(&g->n_bump, i, lane_unit((bs_vec3){n.x + lean.x, n.y + lean.y, n.z + lean.z}));
         lane_set(&g->color, i, (bs_vec3){(real)random_in(0, 1), (real)random_in(0, 1), (real)random_in(0, 1)});
         lane_set(&g->tint, i, (bs_vec3){(real)random_in(0, 1), (real)random_in(0, 1), (real)random_in(0, 1)});
-        g->t_shade[i] = (real)random_in(0.5, 2);
+        g->picked.t[i] = (real)random_in(0.5, 2);
         g->lit[i] = i % 4 == 0 ? 0 : R(0.75);
     }
 }
@@ -31,7 +32,7 @@ static void random_group(hit_group *g)
 /* What lane i sends to the eye, in red. */
 static double red(const hit_group *g, int i, const material *m, const light *l, bool tinted, bool front)
 {
-    const vec3 s = vec3_unit(wide(lane_get(&g->x.s, i))), p = wide(lane_at(&g->x, i, g->t_shade[i]));
+    const vec3 s = vec3_unit(wide(lane_get(&g->x->s, i))), p = wide(lane_at(g->x, i, g->t_shade[i]));
     const vec3 L = vec3_unit(l->kind == LIGHT_PARALLEL ? vec3_scale(l->axis, -1) : vec3_sub(l->at, p));
     vec3 smooth = wide(lane_get(&g->n_smooth, i)), n = wide(lane_get(&g->n_bump, i));
     const double color = m->pattern ? (double)g->color.x[i] : m->color.x, tint = tinted ? (double)g->tint.x[i] : 1;

@@ -62,8 +62,8 @@ static mesh_data grid(model *of, int n, int m)
 static mesh *mesh_from(mesh_data d, mesh_normals normals, double crease)
 {
     char why[MESH_WHY];
-    assert_true(mesh_clean(&d, normals, crease, 1e6, why));
-    surface *f = mesh_new(&d, NULL);
+    assert_true(mesh_clean(&d, normals, crease, 1e6, 2, why));
+    surface *f = mesh_new(&d, 1, NULL);
     assert_non_null(f);
     return (mesh *)f;
 }
@@ -322,7 +322,7 @@ static void images(void **state)
                                   {{-1.2, 0.3, 0}, {-0.2, 0.9, 0.4}, {0.1, 0, 1.1}, {0.3, -0.2, 0.5}}};
     mesh *f = mesh_of(ball, 24, 12);
     for (size_t m = 0; m < 2; m++) {
-        surface *g = surface_transformed(&f->base, &maps[m]), *k = mesh_moved(&f->base, &maps[m]);
+        surface *g = surface_transformed(&f->base, &maps[m]), *k = mesh_moved(&f->base, &maps[m], 1);
         assert_true(g && k);
         static rays x;
         static hits a, b;
@@ -396,6 +396,8 @@ static void displaced_as(const char *name, mesh *f, surface *g, const char *text
         over_closed->ops->hit(over_closed, LANES, &x, 0, &b);
         over_mesh->ops->occlude(over_mesh, LANES, &x, lit_a);
         over_closed->ops->occlude(over_closed, LANES, &x, lit_b);
+        hit_group_picked(&g_a);
+        hit_group_picked(&g_b);
         g_a.n = g_b.n = 0;
         for (int i = 0; i < LANES; i++) {
             differ += a.id[i] != b.id[i];
@@ -410,14 +412,14 @@ static void displaced_as(const char *name, mesh *f, surface *g, const char *text
             }
             const int k = g_a.n++;
             g_b.n = g_a.n;
-            lane_set(&g_a.x.r, k, lane_get(&x.r, i));
-            lane_set(&g_a.x.s, k, lane_get(&x.s, i));
-            g_a.t[k] = a.t[i];
-            g_b.t[k] = b.t[i];
+            lane_set(&g_a.picked.x.r, k, lane_get(&x.r, i));
+            lane_set(&g_a.picked.x.s, k, lane_get(&x.s, i));
+            g_a.picked.t[k] = a.t[i];
+            g_b.picked.t[k] = b.t[i];
             g_a.part[k] = a.part[i];
             g_b.part[k] = b.part[i];
         }
-        g_b.x = g_a.x;
+        g_b.picked.x = g_a.picked.x;
         displaced_shape(over_mesh, &g_a);
         displaced_shape(over_closed, &g_b);
         for (int k = 0; k < g_a.n; k++)
@@ -487,7 +489,7 @@ static double error_of(mesh *f, double A, int order)
         d->ops->hit(d, LANES, &x, 0, &rough);
         f->base.ops->locate(&f->base, LANES, &x, h.t, h.part, u, w);
         f->base.ops->eval(&f->base, LANES, h.part, u, w, 2, &q);
-        P->ops->eval(P, LANES, u, w, 2, &p);
+        P->ops->eval(P, LANES, u, w, 3, &p);
         for (int i = 0; i < LANES; i++) {
             const bs_vec3 s = lane_get(&x.s, i), Qu = lane_get(&q.Qu, i), Qw = lane_get(&q.Qw, i),
                           N = bs_normal(Qu, Qw);

@@ -25,25 +25,26 @@ static hit_group *wave(const surface *f, const bump *P, double side)
     static hit_group g;
     hits h;
     g.n = LANES;
+    hit_group_picked(&g);
     for (int i = 0; i < LANES; i++) {
         double x = random_in(-0.3, 0.3), z = random_in(-0.3, 0.3);
-        lane_set(&g.x.s, i,
+        lane_set(&g.picked.x.s, i,
                  (bs_vec3){(real)random_in(-1, 1), (real)(-side * random_in(0.4, 1)), (real)random_in(-1, 1)});
-        g.x.r.x[i] = (real)x - 2 * g.x.s.x[i];
-        g.x.r.y[i] = R(-0.05) - 2 * g.x.s.y[i];
-        g.x.r.z[i] = (real)z - 2 * g.x.s.z[i];
+        g.picked.x.r.x[i] = (real)x - 2 * g.x->s.x[i];
+        g.picked.x.r.y[i] = R(-0.05) - 2 * g.x->s.y[i];
+        g.picked.x.r.z[i] = (real)z - 2 * g.x->s.z[i];
         h.t[i] = REAL_FAR;
         h.id[i] = -1;
         h.part[i] = 0;
     }
-    f->ops->hit(f, LANES, &g.x, 0, &h);
+    f->ops->hit(f, LANES, g.x, 0, &h);
     for (int i = 0; i < LANES; i++)
         assert_int_equal(h.id[i], 0);
-    memcpy(g.t, h.t, sizeof g.t);
+    memcpy(g.picked.t, h.t, sizeof g.picked.t);
     memset(g.part, 0, sizeof g.part);
-    f->ops->locate(f, LANES, &g.x, g.t, g.part, g.u, g.w);
+    f->ops->locate(f, LANES, g.x, g.t, g.part, g.u, g.w);
     f->ops->eval(f, LANES, g.part, g.u, g.w, 2, &g.q);
-    P->ops->eval(P, LANES, g.u, g.w, 2, &g.bump);
+    P->ops->eval(P, LANES, g.u, g.w, 3, &g.bump);
     shift_normals(&g, P);
     return &g;
 }

@@ -19,10 +19,11 @@ static void places_on_plane(const bump *P, double side, hit_group *g)
     surface *f = plane_new((vec3){0, 0, 0}, (vec3){0, 0, 1}, (vec3){1, 0, 0}, false);
     assert_non_null(f);
     g->n = LANES;
+    hit_group_picked(g);
     for (int i = 0; i < LANES; i++) {
         g->u[i] = (real)random_in(-3, 3);
         g->w[i] = (real)random_in(-3, 3);
-        lane_set(&g->x.s, i, (bs_vec3){R(0.3), (real)-side, R(0.1)});
+        lane_set(&g->picked.x.s, i, (bs_vec3){R(0.3), (real)-side, R(0.1)});
         g->lit[i] = 1;
     }
     f->ops->eval(f, LANES, g->part, g->u, g->w, 2, &g->q);
@@ -158,6 +159,7 @@ static void ways_leave_a_ball(void **state)
     own_ways y;
     (void)state;
     g.n = LANES;
+    hit_group_picked(&g);
     for (int i = 0; i < LANES; i++) {
         g.u[i] = (real)random_in(-3, 3);
         g.w[i] = (real)random_in(0.6, 2.5);
@@ -170,7 +172,7 @@ static void ways_leave_a_ball(void **state)
         bs_vec3 X = lane_get(&g.rough, i), n = lane_unit(lane_get(&g.n_smooth, i));
         bs_vec3 along = lane_unit(bs_cross(n, (bs_vec3){R(0.3), R(0.9), R(-0.2)}));
         const real sink = (real)random_in(-0.25, 0.1); /* the sine of the light's elevation */
-        lane_set(&g.x.s, i, (bs_vec3){-n.x, -n.y, -n.z});
+        lane_set(&g.picked.x.s, i, (bs_vec3){-n.x, -n.y, -n.z});
         lane_set(&g.to_light.r, i, X);
         lane_set(&g.to_light.s, i,
                  (bs_vec3){9 * (along.x + sink * n.x), 9 * (along.y + sink * n.y), 9 * (along.z + sink * n.z)});

@@ -26,24 +26,25 @@ static hit_group *wave(const bump *P, double side)
     hits h;
     assert_non_null(f);
     g.n = LANES;
+    hit_group_picked(&g);
     for (int i = 0; i < LANES; i++) {
         double px = random_in(0, 1), pz = random_in(0, 1);
-        g.x.s.x[i] = (real)random_in(-1, 1);
-        g.x.s.y[i] = (real)(-side * random_in(0.5, 1.5));
-        g.x.s.z[i] = (real)random_in(-1, 1);
-        g.x.r.x[i] = (real)px - 3 * g.x.s.x[i];
-        g.x.r.y[i] = (real)0.2 - 3 * g.x.s.y[i];
-        g.x.r.z[i] = (real)pz - 3 * g.x.s.z[i];
+        g.picked.x.s.x[i] = (real)random_in(-1, 1);
+        g.picked.x.s.y[i] = (real)(-side * random_in(0.5, 1.5));
+        g.picked.x.s.z[i] = (real)random_in(-1, 1);
+        g.picked.x.r.x[i] = (real)px - 3 * g.x->s.x[i];
+        g.picked.x.r.y[i] = (real)0.2 - 3 * g.x->s.y[i];
+        g.picked.x.r.z[i] = (real)pz - 3 * g.x->s.z[i];
         h.t[i] = REAL_FAR;
         h.id[i] = -1;
     }
-    f->ops->hit(f, LANES, &g.x, 7, &h);
+    f->ops->hit(f, LANES, g.x, 7, &h);
     for (int i = 0; i < LANES; i++)
         assert_int_equal(h.id[i], 7);
-    memcpy(g.t, h.t, sizeof g.t);
-    f->ops->locate(f, LANES, &g.x, g.t, g.part, g.u, g.w);
+    memcpy(g.picked.t, h.t, sizeof g.picked.t);
+    f->ops->locate(f, LANES, g.x, g.t, g.part, g.u, g.w);
     f->ops->eval(f, LANES, g.part, g.u, g.w, 2, &g.q);
-    P->ops->eval(P, LANES, g.u, g.w, 2, &g.bump);
+    P->ops->eval(P, LANES, g.u, g.w, 3, &g.bump);
     shift_normals(&g, P);
     surface_free(f);
     return &g;
@@ -53,7 +54,7 @@ static hit_group *wave(const bump *P, double side)
 static double miss(const hit_group *g, int i, const bump *P)
 {
     bs_view v =
-        bs_view_of(lane_get(&g->x.s, i), lane_get(&g->n_smooth, i), lane_get(&g->q.Qu, i), lane_get(&g->q.Qw, i));
+        bs_view_of(lane_get(&g->x->s, i), lane_get(&g->n_smooth, i), lane_get(&g->q.Qu, i), lane_get(&g->q.Qw, i));
     real u[LANES], w[LANES];
     static bump_values h;
     u[0] = g->u[i] + v.a * g->tau[i];
@@ -193,7 +194,7 @@ static void counts(void **state)
     assert_int_equal(shift_group(g, P, (method){METHOD_ORDER, 2}, true), 0);
     assert_int_equal(shift_group(g, P, (method){METHOD_ITER, 1}, true), 0);
     assert_int_equal(shift_group(g, P, (method){METHOD_ITER, 4}, true), 3 * LANES);
-    assert_int_equal(shift_group(g, P, (method){METHOD_MARCH, 4}, true), 5 * LANES);
+    BETWEEN(3 * LANES, shift_group(g, P, (method){METHOD_MARCH, 4}, true), 5 * LANES); /* until all have found it */
     bump_free(P);
     /* without bounds there is no slab to march through */
     P = function("0.1*u");
@@ -201,10 +202,35 @@ static void counts(void **state)
     shift_group(g, P, (method){METHOD_MARCH, 4}, true);
     for (int i = 0; i < LANES; i++) {
         bs_view v =
-            bs_view_of(lane_get(&g->x.s, i), lane_get(&g->n_smooth, i), lane_get(&g->q.Qu, i), lane_get(&g->q.Qw, i));
+            bs_view_of(lane_get(&g->x->s, i), lane_get(&g->n_smooth, i), lane_get(&g->q.Qu, i), lane_get(&g->q.Qw, i));
         assert_int_equal(g->order[i], 0);
         assert_true(fabs((double)(g->tau[i] - bs_tau0(v, g->bump.P[i]))) < 1e-6);
     }
+    bump_free(P);
+}
+
+/* Where P does not reach the top of the slab, march leaves step 0 out, to the same bytes. */
+static void march_below_the_top(void **state)
+{
+    (void)state;
+    int few = 0;
+    bump *P = function("0.05*sin(5*u)*cos(4*w) + 0.02*sin(11*u + 3*w)");
+    for (int round = 0; round < 16; round++)
+        for (int N = 1; N <= 8; N++) {
+            const method m = {METHOD_MARCH, N};
+            hit_group *g = wave(P, round % 2 ? 1 : -1);
+            real tau[LANES];
+            int32_t order[LANES];
+            P->peaked = false;
+            const long all = shift_group(g, P, m, true);
+            memcpy(tau, g->tau, sizeof tau);
+            memcpy(order, g->order, sizeof order);
+            P->peaked = true;
+            few += shift_group(g, P, m, true) < all;
+            assert_memory_equal(tau, g->tau, sizeof tau);
+            assert_memory_equal(order, g->order, sizeof order);
+        }
+    CHECK(few, >, 0);
     bump_free(P);
 }
 
@@ -219,7 +245,7 @@ static void guarded_shifts_stay_in_the_slab(void **state)
         for (int order = 0; order <= 3; order++) {
             shift_group(g, P, (method){METHOD_ORDER, order}, true);
             for (int i = 0; i < LANES; i++) {
-                bs_view v = bs_view_of(lane_get(&g->x.s, i), lane_get(&g->n_smooth, i), lane_get(&g->q.Qu, i),
+                bs_view v = bs_view_of(lane_get(&g->x->s, i), lane_get(&g->n_smooth, i), lane_get(&g->q.Qu, i),
                                        lane_get(&g->q.Qw, i));
                 bs_slab slab = bs_slab_of(v, P->Pmin, P->Pmax);
                 double slack = 4 * EPS * (double)real_abs(slab.back);
@@ -240,12 +266,13 @@ static void pole(void **state)
     surface *f = sphere_new((vec3){0, 0, 0}, 2);
     bump *P = function("0.1*sin(3*u)");
     g.n = 1;
-    g.x.r.x[0] = 0, g.x.r.y[0] = 5, g.x.r.z[0] = 0;
-    g.x.s.x[0] = 0, g.x.s.y[0] = -1, g.x.s.z[0] = 0;
-    g.t[0] = 3;
-    f->ops->locate(f, 1, &g.x, g.t, g.part, g.u, g.w);
+    hit_group_picked(&g);
+    g.picked.x.r.x[0] = 0, g.picked.x.r.y[0] = 5, g.picked.x.r.z[0] = 0;
+    g.picked.x.s.x[0] = 0, g.picked.x.s.y[0] = -1, g.picked.x.s.z[0] = 0;
+    g.picked.t[0] = 3;
+    f->ops->locate(f, 1, g.x, g.t, g.part, g.u, g.w);
     f->ops->eval(f, 1, g.part, g.u, g.w, 2, &g.q);
-    P->ops->eval(P, 1, g.u, g.w, 2, &g.bump);
+    P->ops->eval(P, 1, g.u, g.w, 3, &g.bump);
     shift_normals(&g, P);
     for (int k = 0; k < EVERY; k++) {
         shift_group(&g, P, every[k], true);
@@ -270,11 +297,17 @@ static void curvature_is_asked_for(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(curvature_is_asked_for),          cmocka_unit_test(no_bump_no_shift),
-        cmocka_unit_test(constant_is_exact_for_all),       cmocka_unit_test(linear_is_exact_from_order_1),
-        cmocka_unit_test(quadratic_is_exact_for_order_2),  cmocka_unit_test(lower_orders_are_not_exact),
-        cmocka_unit_test(march_and_iter_come_near),        cmocka_unit_test(counts),
-        cmocka_unit_test(guarded_shifts_stay_in_the_slab), cmocka_unit_test(pole),
+        cmocka_unit_test(curvature_is_asked_for),
+        cmocka_unit_test(no_bump_no_shift),
+        cmocka_unit_test(constant_is_exact_for_all),
+        cmocka_unit_test(linear_is_exact_from_order_1),
+        cmocka_unit_test(quadratic_is_exact_for_order_2),
+        cmocka_unit_test(lower_orders_are_not_exact),
+        cmocka_unit_test(march_and_iter_come_near),
+        cmocka_unit_test(counts),
+        cmocka_unit_test(guarded_shifts_stay_in_the_slab),
+        cmocka_unit_test(pole),
+        cmocka_unit_test(march_below_the_top),
     };
     return cmocka_run_group_tests_name("the method over waves", tests, NULL, NULL);
 }

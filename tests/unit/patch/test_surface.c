@@ -6,6 +6,7 @@
 
 #include "displaced/form.h"
 #include "support/golden_json.h"
+#include "support/bump_of_map.h"
 #include "wave/lane.h"
 #include "displaced/offset.h"
 #include "patch/patch_file.h"
@@ -560,8 +561,8 @@ static void rough_bounds(void **state)
         bump *P[] = {
             bumps(0.04, q[k]->u, q[k]->w),
             bump_function_new(expr_parse("noise(7*u,5*w)", &wrong), 0.05, q[k]->u, q[k]->w),
-            bump_map_new(&map, &(map_layout){{1.3, 0.7}, {0.1, 0}, MAP_REPEAT, false, 0.05, 0.2}),
-            bump_map_new(&map, &(map_layout){{1.3, 0.7}, {0.1, 0}, MAP_CLAMP, true, 0.05, 0.2}),
+            bump_of_map(&map, &(map_layout){{1.3, 0.7}, {0.1, 0}, MAP_REPEAT, false, 0.05, 0.2}),
+            bump_of_map(&map, &(map_layout){{1.3, 0.7}, {0.1, 0}, MAP_CLAMP, true, 0.05, 0.2}),
         };
         int boxes = 0, close = 0;
         for (int i = 0; i < 4; i++) {
@@ -705,7 +706,7 @@ static double error_of(surface *f, double A, int order, const rays *x, const hit
     f->ops->extent(f, 0, U, W);
     bump *P = bumps(A, U, W);
     surface *d = displace(f, P, &c);
-    P->ops->eval(P, LANES, u, w, 2, &p);
+    P->ops->eval(P, LANES, u, w, 3, &p);
     no_hits(&rough, LANES);
     d->ops->hit(d, LANES, x, 0, &rough);
     int n = 0;

@@ -97,7 +97,7 @@ static void shifted_place(void **state)
     trace(&tr, LANES, v);
     for (int i = 0; i < LANES; i++) {
         CHECK(v->g.t0[i], ==, v->g.t[i] + v->g.tau[i]);
-        NEAR(lane_at(&v->g.x, i, v->g.t0[i]).y, 0.25, 40 * EPS);
+        NEAR(lane_at(v->g.x, i, v->g.t0[i]).y, 0.25, 40 * EPS);
     }
     workspace_free(v);
     scene_free(s);

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #include "support/check.h"
+#include "support/bump_of_map.h"
 #include "texture/bump.h"
 
 #ifdef KAGE_DOUBLE
@@ -33,7 +34,7 @@ static void look(const bump *p, double u, double w, double out[6])
 {
     static bump_values h;
     real U[1] = {(real)u}, V[1] = {(real)w};
-    p->ops->eval(p, 1, U, V, 2, &h);
+    p->ops->eval(p, 1, U, V, 3, &h);
     const real v[6] = {h.P[0], h.Pu[0], h.Pw[0], h.Puu[0], h.Puw[0], h.Pww[0]};
     for (int k = 0; k < 6; k++)
         out[k] = (double)v[k];
@@ -107,7 +108,7 @@ static void at_the_samples(void **state)
     (void)state;
     for (int n = 0; n < LAYOUTS; n++) {
         const map_layout *l = &layouts[n];
-        bump *p = bump_map_new(data(), l);
+        bump *p = bump_of_map(data(), l);
         double got[6], want[6], size[6];
         sizes(l, size);
         for (int j = -2; j < H + 2; j++)
@@ -134,7 +135,7 @@ static void bilinear_between(void **state)
     (void)state;
     for (int n = 0; n < LAYOUTS; n++) {
         const map_layout *l = &layouts[n];
-        bump *p = bump_map_new(data(), l);
+        bump *p = bump_of_map(data(), l);
         double got[6], c[4][6], size[6];
         sizes(l, size);
         for (int k = 0; k < 500; k++) {
@@ -184,7 +185,7 @@ static void derivatives_are_differences(void **state)
         const map_layout *l = &layouts[n];
         const double du = l->size[0] / (W - l->corners), dw = l->size[1] / (H - l->corners),
                      half = l->corners ? 0 : 0.5;
-        bump *p = bump_map_new(data(), l);
+        bump *p = bump_of_map(data(), l);
         double got[6], want[6], size[6];
         int level[3] = {0, 0, 0};
         sizes(l, size);
@@ -227,7 +228,7 @@ static void clamped_ramp(void **state)
         char text[99];
         expr_error e;
         snprintf(text, sizeof text, "clamp((u-%.17g)/%.17g,0,1)", lo, hi - lo);
-        bump *map = bump_map_new(&m, &l), *function = bump_function_new(expr_parse(text, &e), 0.5, all, all);
+        bump *map = bump_of_map(&m, &l), *function = bump_function_new(expr_parse(text, &e), 0.5, all, all);
         for (int k = 0; k < 3000; k++) {
             const double u = k * 0.001 - 1, w = k % 17 * 0.1 - 0.3;
             double a[6], b[6];
@@ -249,7 +250,7 @@ static void anywhere(void **state)
     (void)state;
     const double far[] = {1e4, -1e4, 1e9, -1e9, 1e30, -1e30, (double)INFINITY, (double)NAN};
     for (int n = 0; n < LAYOUTS; n++) {
-        bump *p = bump_map_new(data(), &layouts[n]);
+        bump *p = bump_of_map(data(), &layouts[n]);
         for (size_t i = 0; i < 8; i++)
             for (size_t j = 0; j < 8; j++) {
                 double v[6];
@@ -265,7 +266,7 @@ static void map_bounds(void **state)
     (void)state;
     for (int n = 0; n < LAYOUTS; n++) {
         const map_layout *l = &layouts[n];
-        bump *p = bump_map_new(data(), l);
+        bump *p = bump_of_map(data(), l);
         double lo = HUGE_VAL, hi = -HUGE_VAL;
         for (int i = 0; i < W * H; i++) {
             int column = i % W, row = i / W;
@@ -289,14 +290,14 @@ static void orders(void **state)
     real u[LANES], w[LANES];
     const double extent[2] = {-HUGE_VAL, HUGE_VAL};
     expr_error e;
-    bump *ps[2] = {bump_map_new(data(), &layouts[0]),
+    bump *ps[2] = {bump_of_map(data(), &layouts[0]),
                    bump_function_new(expr_parse("sin(3*u)*cos(w) + u*w", &e), -0.3, extent, extent)};
     for (int i = 0; i < LANES; i++) {
         u[i] = (real)(i * 0.037 - 3);
         w[i] = (real)(i * 0.021 - 1);
     }
     for (int k = 0; k < 2; k++) {
-        ps[k]->ops->eval(ps[k], LANES, u, w, 2, &all);
+        ps[k]->ops->eval(ps[k], LANES, u, w, 3, &all);
         for (int order = 0; order < 3; order++) {
             for (int i = 0; i < LANES; i++)
                 some.Pu[i] = some.Pw[i] = some.Puu[i] = some.Puw[i] = some.Pww[i] = 77;
@@ -305,9 +306,8 @@ static void orders(void **state)
                 CHECK(some.P[i], ==, all.P[i]);
                 assert_true(order >= 1 ? some.Pu[i] == all.Pu[i] && some.Pw[i] == all.Pw[i]
                                        : some.Pu[i] == 77 && some.Pw[i] == 77);
-                assert_true(order == 2
-                                ? some.Puu[i] == all.Puu[i] && some.Puw[i] == all.Puw[i] && some.Pww[i] == all.Pww[i]
-                                : some.Puu[i] == 77 && some.Puw[i] == 77 && some.Pww[i] == 77);
+                assert_true(order == 2 ? some.Puu[i] == all.Puu[i] && some.Pww[i] == all.Pww[i]
+                                       : some.Puu[i] == 77 && some.Puw[i] == 77 && some.Pww[i] == 77);
             }
         }
         bump_free(ps[k]);
@@ -360,7 +360,7 @@ static void map_slopes(void **state)
     (void)state;
     for (int n = 0; n < LAYOUTS; n++) {
         const map_layout *l = &layouts[n];
-        bump *p = bump_map_new(data(), l);
+        bump *p = bump_of_map(data(), l);
         const double top[2] = {(double)p->Pu_max, (double)p->Pw_max};
         double steepest[2] = {0, 0}, size[6];
         sizes(l, size);
@@ -403,17 +403,17 @@ static void odd_map_slopes(void **state)
 {
     (void)state;
     map_layout l = layouts[0];
-    bump *p = bump_map_new(data(), &l), *q;
+    bump *p = bump_of_map(data(), &l), *q;
     l.scale = -l.scale;
     l.size[0] = -l.size[0];
-    q = bump_map_new(data(), &l);
+    q = bump_of_map(data(), &l);
     CHECK(q->Pu_max, ==, p->Pu_max);
     CHECK(q->Pw_max, ==, p->Pw_max);
     CHECK(p->Pu_max, >, 0);
     bump_free(p);
     bump_free(q);
     l.scale = 0;
-    p = bump_map_new(data(), &l);
+    p = bump_of_map(data(), &l);
     CHECK(p->Pu_max, ==, 0);
     CHECK(p->Pw_max, ==, 0);
     bump_free(p);
@@ -423,15 +423,15 @@ static void odd_map_slopes(void **state)
     image m = {2, 3, steps};
     const map_layout plain = {{1, 0.5}, {0, 0}, MAP_REPEAT, false, 2, 0},
                      clamped = {{1, 0.5}, {0, 0}, MAP_CLAMP, false, 2, 0};
-    p = bump_map_new(&m, &plain);
+    p = bump_of_map(&m, &plain);
     CHECK(p->Pu_max, ==, 0);
     near((double)p->Pw_max, 3 * 2 * 6, 36); /* a difference of 3, scale 2, 6 samples per unit */
     bump_free(p);
-    p = bump_map_new(&m, &clamped);
+    p = bump_of_map(&m, &clamped);
     near((double)p->Pw_max, 2 * 2 * 6, 24);
     bump_free(p);
     steps[3] = (float)NAN;
-    p = bump_map_new(&m, &plain);
+    p = bump_of_map(&m, &plain);
     assert_true(isinf(p->Pu_max) && isinf(p->Pw_max));
     bump_free(p);
 }
@@ -468,23 +468,57 @@ static void function_slopes(void **state)
     check_function("w+abs(u)", 1, -1, 1, 1, 1, ulps);
 }
 
+/* peaked: no two neighbours are both the highest or the lowest samples, also across the wrap. */
+static void peaks(void **state)
+{
+    (void)state;
+    static const struct {
+        int i, j; /* these samples become */
+        float to; /* this */
+        bool repeated, clamped;
+    } cases[] = {
+        {8, 8, 9, true, true},           /* one */
+        {8, 9, 9, false, false},         /* beside each other */
+        {8, 8 + W, -9, false, false},    /* one below the other */
+        {8, 8 + W + 1, 9, true, true},   /* across a corner: between them P is lower */
+        {W, 2 * W - 1, 9, false, false}, /* at both ends of a row */
+    };
+    for (size_t n = 0; n < sizeof cases / sizeof *cases; n++)
+        for (int clamp = 0; clamp < 2; clamp++) {
+            const map_layout l = {.size = {1, 1}, .wrap = clamp ? MAP_CLAMP : MAP_REPEAT, .scale = 0.1, .zero = 0.5};
+            image *m = data();
+            samples[2 * W + 3] = -8; /* the lowest is not at an end, beyond which a clamped P is constant */
+            samples[cases[n].i] = samples[cases[n].j] = cases[n].to;
+            bump *p = bump_of_map(m, &l);
+            assert_int_equal(p->peaked, clamp ? cases[n].clamped : cases[n].repeated);
+            bump_free(p);
+        }
+}
+
 static void too_small(void **state)
 {
     (void)state;
     image one = {1, 5, samples}, two = {5, 1, samples};
-    assert_null(bump_map_new(&one, &layouts[0]));
-    assert_null(bump_map_new(&two, &layouts[0]));
+    assert_null(bump_of_map(&one, &layouts[0]));
+    assert_null(bump_of_map(&two, &layouts[0]));
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(at_the_samples),  cmocka_unit_test(bilinear_between),
-        cmocka_unit_test(anywhere),        cmocka_unit_test(map_bounds),
-        cmocka_unit_test(orders),          cmocka_unit_test(functions),
-        cmocka_unit_test(map_slopes),      cmocka_unit_test(odd_map_slopes),
-        cmocka_unit_test(function_slopes), cmocka_unit_test(too_small),
-        cmocka_unit_test(clamped_ramp),    cmocka_unit_test(derivatives_are_differences),
+        cmocka_unit_test(at_the_samples),
+        cmocka_unit_test(bilinear_between),
+        cmocka_unit_test(anywhere),
+        cmocka_unit_test(map_bounds),
+        cmocka_unit_test(orders),
+        cmocka_unit_test(functions),
+        cmocka_unit_test(map_slopes),
+        cmocka_unit_test(odd_map_slopes),
+        cmocka_unit_test(function_slopes),
+        cmocka_unit_test(too_small),
+        cmocka_unit_test(peaks),
+        cmocka_unit_test(clamped_ramp),
+        cmocka_unit_test(derivatives_are_differences),
     };
     return cmocka_run_group_tests_name("heights", tests, NULL, NULL);
 }

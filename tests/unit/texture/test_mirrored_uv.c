@@ -19,7 +19,7 @@ static looked_up at(const bump *p, double u, double w)
 {
     static bump_values h;
     const real x = (real)u, y = (real)w;
-    p->ops->eval(p, 1, &x, &y, 2, &h);
+    p->ops->eval(p, 1, &x, &y, 3, &h);
     return (looked_up){(double)h.P[0],   (double)h.Pu[0],  (double)h.Pw[0],
                        (double)h.Puu[0], (double)h.Puw[0], (double)h.Pww[0]};
 }

@@ -2,6 +2,7 @@
 #include <stdlib.h>
 
 #include "support/check.h"
+#include "support/bump_of_map.h"
 #include "support/random_in.h"
 #include "texture/mirrored_uv.h"
 
@@ -14,7 +15,7 @@ static bump *map_of(const map_layout *l)
     const image m = {W, H, samples};
     for (int i = 0; i < W * H; i++)
         samples[i] = (float)random_in(0, 1);
-    return bump_map_new(&m, l);
+    return bump_of_map(&m, l);
 }
 
 static bump *function_of(const char *text, const double u[2], const double w[2])
@@ -147,7 +148,7 @@ static void bounds_are_close(void **state)
         ramp[i] = (float)(i % 64) / 64;
     const image m = {64, 64, ramp};
     const map_layout l = {{64, 64}, {0, 0}, MAP_CLAMP, false, 1, 0};
-    bump *p = bump_map_new(&m, &l);
+    bump *p = bump_of_map(&m, &l);
     assert_true(bump_prepare(p));
     for (int k = 0; k < 200; k++) {
         const double size = random_in(0.1, 20), at = random_in(1, 60 - size);

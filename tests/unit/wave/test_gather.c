@@ -44,7 +44,7 @@ static void groups_are_of_one_object(void **state)
             CHECK(i % 3, ==, id);
             CHECK(g.t[k], ==, i);
             CHECK(g.part[k], ==, 10 * i);
-            CHECK(g.x.s.x[k], ==, -i);
+            CHECK(g.x->s.x[k], ==, -i);
         }
     }
     assert_int_equal(groups, 3);
@@ -65,7 +65,7 @@ static void scatter_undoes_gather(void **state)
         t[i] = REAL_FAR;
     while (gather_next_group(LANES, &x, &h, &g) >= 0) {
         scatter(&g, g.t, t);
-        scatter_vec3s(&g, &g.x.r, &back);
+        scatter_vec3s(&g, &g.x->r, &back);
     }
     for (int i = 0; i < LANES; i++) {
         CHECK(t[i], ==, before.t[i]);

@@ -1,0 +1,314 @@
+/* Clusters of triangles and blocks of clusters: triangles are sorted along Morton's curve, then cut so that the boxes
+ * of the pieces are small. */
+#include "mesh/cluster.h"
+
+#include "base/real.h"
+#include "base/threads.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- the test ---- */
+
+/* What x = X - sx Z - cx of a corner may be wrong by, in the hierarchy's space, where X, Z and sx are at most 1 and cx
+ * at most 2. Rounding to float is an error of 6e-8 as a share. So X, sx Z by Z and by sx, and their product are wrong
+ * by 6e-8 each, cx by 1.2e-7, the first difference, at most 2, by 1.2e-7, and the second, which is small, by next to
+ * nothing: 4.8e-7 in all. The rest is for what double rounds: 1e-16 of the distance in radii that the ray comes from.
+ */
+#define ERROR 6e-7f
+
+/* A ray that meets a triangle is at most as far from its corners, in the plane across z, as its box is wide, in x or y
+ * and z together: M. Then U = x2 y1 - y2 x1 is wrong by 2 (2 M ERROR + ERROR^2), and by the rounding of three
+ * operations, 3 6e-8 2 M^2. */
+static float error_of(float wide) { return ERROR * (4 * wide + 4 * ERROR) + 4e-7f * wide * wide; }
+
+static inline float less(float x, float y) { return x < y ? x : y; }
+static inline float more(float x, float y) { return x > y ? x : y; }
+
+static const uint32_t bit[CLUSTER] = {1, 2, 4, 8, 16, 32, 64, 128};
+
+STAGE static void near_triangles(const mesh_cluster *restrict c, const cluster_rays *restrict k, uint32_t which,
+                                 uint32_t *restrict met)
+{
+    for (; which; which &= which - 1) {
+        const int r = lowest_bit(which), X = (k->z[r] + 1) % 3, Y = (k->z[r] + 2) % 3, Z = k->z[r];
+        const float sx = k->sx[r], sy = k->sy[r], cx = k->cx[r], cy = k->cy[r];
+        uint32_t some = 0;
+        for (int i = 0; i < CLUSTER; i++) {
+            const float za = c->at[0][Z][i], zb = c->at[1][Z][i], zc = c->at[2][Z][i];
+            const float xa = c->at[0][X][i] - sx * za - cx, ya = c->at[0][Y][i] - sy * za - cy;
+            const float xb = c->at[1][X][i] - sx * zb - cx, yb = c->at[1][Y][i] - sy * zb - cy;
+            const float xc = c->at[2][X][i] - sx * zc - cx, yc = c->at[2][Y][i] - sy * zc - cy;
+            const float U = xc * yb - yc * xb, V = xa * yc - ya * xc, W = xb * ya - yb * xa, e = c->error[i];
+            const float least = less(less(U, V), W), most = more(more(U, V), W);
+            some |= bit[i] & -(uint32_t)((least >= -e) | (most <= e));
+        }
+        met[r] = some;
+    }
+}
+
+void cluster_near(const mesh_cluster *c, const cluster_rays *k, uint32_t which, uint32_t met[BVH_PACKET])
+{
+    near_triangles(c, k, which, met);
+}
+
+/* As wrong as Embree's own test, three roundings of each t, for which the boxes have room. */
+STAGE static void near_boxes(const mesh_block *restrict c, const cluster_rays *restrict k, const float *restrict end,
+                             uint32_t which, uint32_t *restrict met)
+{
+    for (; which; which &= which - 1) {
+        const int r = lowest_bit(which);
+        const float ox = k->at[0][r], oy = k->at[1][r], oz = k->at[2][r], last = end[r];
+        const float ix = k->over[0][r], iy = k->over[1][r], iz = k->over[2][r];
+        uint32_t some = 0;
+        for (int i = 0; i < CLUSTER; i++) {
+            const float xa = (c->lo[0][i] - ox) * ix, xb = (c->hi[0][i] - ox) * ix;
+            const float ya = (c->lo[1][i] - oy) * iy, yb = (c->hi[1][i] - oy) * iy;
+            const float za = (c->lo[2][i] - oz) * iz, zb = (c->hi[2][i] - oz) * iz;
+            const float t0 = more(more(less(xa, xb), less(ya, yb)), more(less(za, zb), 0)),
+                        t1 = less(less(more(xa, xb), more(ya, yb)), less(more(za, zb), last));
+            some |= bit[i] & -(uint32_t)(t0 <= t1);
+        }
+        met[r] = some;
+    }
+}
+
+void block_near(const mesh_block *b, const cluster_rays *k, const float end[BVH_PACKET], uint32_t which,
+                uint32_t met[BVH_PACKET])
+{
+    near_boxes(b, k, end, which, met);
+}
+
+/* ---- sorting ---- */
+
+typedef struct key {
+    uint32_t code, index; /* Morton's code of the triangle's middle; the triangle */
+} key;
+
+/* The lowest 10 bits, with two zeros between them. */
+static uint32_t spread(uint32_t x)
+{
+    x = (x | x << 16) & 0x030000ffu;
+    x = (x | x << 8) & 0x0300f00fu;
+    x = (x | x << 4) & 0x030c30c3u;
+    return (x | x << 2) & 0x09249249u;
+}
+
+static bvh_box box_of(const mesh_data *d, const bvh_space *space, int32_t index)
+{
+    double lo[3], hi[3];
+    for (int a = 0; a < 3; a++) {
+        const double x = (double)d->at[index][0][a], y = (double)d->at[index][1][a], z = (double)d->at[index][2][a];
+        lo[a] = lesser(x, lesser(y, z));
+        hi[a] = greater(x, greater(y, z));
+    }
+    return bvh_box_in(space, lo, hi);
+}
+
+static key key_of(const bvh_box *b, int32_t index)
+{
+    uint32_t code = 0;
+    for (int a = 0; a < 3; a++) /* the middle is between -1 and 1 */
+        code |= spread((uint32_t)(511.5f * (0.5f * (b->lo[a] + b->hi[a]) + 1))) << a;
+    return (key){code, (uint32_t)index};
+}
+
+/* By code, then by index: by 10 bits at a time. */
+static void sort_keys(int n, key *k, key *other)
+{
+    enum { BITS = 10, SIZE = 1 << BITS };
+    for (int pass = 0; pass < 3; pass++) {
+        int first[SIZE + 1] = {0};
+        for (int i = 0; i < n; i++)
+            first[(k[i].code >> (BITS * pass) & (SIZE - 1)) + 1]++;
+        for (int i = 0; i < SIZE; i++)
+            first[i + 1] += first[i];
+        for (int i = 0; i < n; i++)
+            other[first[k[i].code >> (BITS * pass) & (SIZE - 1)]++] = k[i];
+        key *swap = k;
+        k = other;
+        other = swap;
+    }
+}
+
+static void add_box(bvh_box *to, const bvh_box *b)
+{
+    for (int a = 0; a < 3; a++) {
+        to->lo[a] = b->lo[a] < to->lo[a] ? b->lo[a] : to->lo[a];
+        to->hi[a] = b->hi[a] > to->hi[a] ? b->hi[a] : to->hi[a];
+    }
+}
+
+static float area_of(const bvh_box *b)
+{
+    const float x = b->hi[0] - b->lo[0], y = b->hi[1] - b->lo[1], z = b->hi[2] - b->lo[2];
+    return x * y + y * z + z * x;
+}
+
+/* ---- cutting ---- */
+
+enum { CHUNK = 1 << 13 }; /* boxes that are cut by themselves, each chunk by one thread */
+
+/* Cut the n boxes into groups of up to CLUSTER so that the sum of the groups' areas is least: the number of rays that
+ * reach a box is as its area, and a group takes the same time whether it is full or not. A group's box is tested as
+ * often as that of what is around it is reached; that costs a quarter of the area of CLUSTER boxes. size: of the group
+ * that ends behind each box, by the best cut of what is before it. start: 1 where a group starts. */
+static void cut(int n, const bvh_box *box, unsigned char *size, unsigned char *start)
+{
+    float sum[CHUNK + 1]; /* of the best cut of what is before */
+    sum[0] = 0;
+    for (int i = 0; i < n; i++) {
+        bvh_box all = box[i];
+        float area[CLUSTER], best = HUGE_VALF; /* of the last 1, 2 .. boxes */
+        int most = 0;
+        for (; most < CLUSTER && most <= i; most++) {
+            add_box(&all, &box[i - most]);
+            area[most] = area_of(&all);
+        }
+        for (int k = 0; k < most; k++)
+            if (sum[i - k] + area[k] <= best) {
+                best = sum[i - k] + area[k];
+                size[i] = (unsigned char)(k + 1);
+            }
+        sum[i + 1] = best + 0.25f * area[most - 1];
+    }
+    for (int i = n - 1; i >= 0; i -= size[i])
+        start[i - size[i] + 1] = 1;
+}
+
+/* Groups of boxes: group g is box[first[g]] to box[first[g + 1] - 1]. The caller frees `first`. NULL: out of memory. */
+static int32_t *cut_all(int n, const bvh_box *box, int threads, int *groups)
+{
+    unsigned char *size = malloc((size_t)n), *start = calloc((size_t)n, 1);
+    int32_t *first = NULL;
+    *groups = 0;
+    if (size && start) {
+#pragma omp parallel for num_threads(threads) schedule(static)
+        for (int a = 0; a < n; a += CHUNK)
+            cut(n - a < CHUNK ? n - a : CHUNK, box + a, size + a, start + a);
+        for (int i = 0; i < n; i++)
+            *groups += start[i];
+        first = malloc(sizeof *first * ((size_t)*groups + 1));
+    }
+    for (int i = 0, g = 0; first && i <= n; i++)
+        if (i == n || start[i])
+            first[g++] = i;
+    free(size);
+    free(start);
+    return first;
+}
+
+static bvh_box box_of_all(int n, const bvh_box *box)
+{
+    bvh_box all = box[0];
+    for (int i = 1; i < n; i++)
+        add_box(&all, &box[i]);
+    return all;
+}
+
+/* ---- filling ---- */
+
+static float widest(const bvh_box *b)
+{
+    const float x = b->hi[0] - b->lo[0], y = b->hi[1] - b->lo[1], z = b->hi[2] - b->lo[2];
+    return x + y + z - less(x, less(y, z)); /* the two that are widest */
+}
+
+static mesh_cluster cluster_of(const mesh_data *d, const bvh_space *space, int n, const key *sorted, const bvh_box *box)
+{
+    mesh_cluster to;
+    memset(&to, 0, sizeof to);
+    for (int i = 0; i < CLUSTER; i++) {
+        const int32_t index = (int32_t)sorted[i < n ? i : 0].index;
+        to.index[i] = index;
+        to.error[i] = i < n ? error_of(widest(&box[i])) : -1;
+        for (int c = 0; c < 3 && i < n; c++) {
+            const vec3 p = vec3_scale(vec3_sub(mesh_get(d->at[index][c]), space->centre), 1 / space->radius);
+            to.at[c][0][i] = (float)p.x;
+            to.at[c][1][i] = (float)p.y;
+            to.at[c][2][i] = (float)p.z;
+        }
+    }
+    return to;
+}
+
+static mesh_block block_of(int n, const bvh_box *box, int32_t first)
+{
+    mesh_block to = {.first = first};
+    for (int i = 0; i < CLUSTER; i++)
+        for (int a = 0; a < 3; a++) {
+            to.lo[a][i] = i < n ? box[i].lo[a] : 2; /* beyond all rays */
+            to.hi[a][i] = i < n ? box[i].hi[a] : 2;
+        }
+    return to;
+}
+
+/* The triangles' boxes, sorted. */
+static bool sort_triangles(const mesh_data *d, const bvh_space *space, int threads, key *sorted, bvh_box *box)
+{
+    key *keys = malloc(sizeof *keys * (size_t)d->n);
+    if (!keys)
+        return false;
+#pragma omp parallel for num_threads(threads) schedule(static)
+    for (int i = 0; i < d->n; i++) {
+        const bvh_box b = box_of(d, space, i);
+        keys[i] = key_of(&b, i);
+    }
+    sort_keys(d->n, keys, sorted);
+#pragma omp parallel for num_threads(threads) schedule(static)
+    for (int i = 0; i < d->n; i++)
+        box[i] = box_of(d, space, (int32_t)sorted[i].index);
+    free(keys);
+    return true;
+}
+
+/* From sorted triangles. box: of each; becomes those of the clusters, and then of the blocks. */
+static bool make(const mesh_data *d, const bvh_space *space, int threads, const key *sorted, bvh_box *box,
+                 mesh_clusters *out)
+{
+    int clusters, blocks;
+    int32_t *first = cut_all(d->n, box, threads, &clusters);
+    out->cluster = first ? malloc(sizeof *out->cluster * (size_t)clusters) : NULL;
+    if (out->cluster) {
+#pragma omp parallel for num_threads(threads) schedule(static)
+        for (int g = 0; g < clusters; g++)
+            out->cluster[g] = cluster_of(d, space, first[g + 1] - first[g], sorted + first[g], box + first[g]);
+        for (int g = 0; g < clusters; g++) /* first[g] >= g */
+            box[g] = box_of_all(first[g + 1] - first[g], box + first[g]);
+        free(first);
+        first = cut_all(clusters, box, threads, &blocks);
+        out->block = first ? malloc(sizeof *out->block * (size_t)blocks) : NULL;
+    }
+    for (int g = 0; out->block && g < blocks; g++) {
+        out->block[g] = block_of(first[g + 1] - first[g], box + first[g], first[g]);
+        box[g] = box_of_all(first[g + 1] - first[g], box + first[g]);
+        out->n = blocks;
+    }
+    free(first);
+    return out->block;
+}
+
+bool mesh_clusters_new(const mesh_data *d, const bvh_space *space, int threads, mesh_clusters *out, bvh_box **box)
+{
+    key *sorted = malloc(sizeof *sorted * (size_t)d->n);
+    *out = (mesh_clusters){0};
+    *box = malloc(sizeof **box * (size_t)d->n);
+    threads = threads_of(threads);
+    const bool good =
+        sorted && *box && sort_triangles(d, space, threads, sorted, *box) && make(d, space, threads, sorted, *box, out);
+    free(sorted);
+    if (good)
+        return true;
+    mesh_clusters_free(out);
+    free(*box);
+    *box = NULL;
+    return false;
+}
+
+void mesh_clusters_free(mesh_clusters *c)
+{
+    free(c->cluster);
+    free(c->block);
+    *c = (mesh_clusters){0};
+}
