@@ -1,43 +1,9 @@
 /* Objects: their shapes, materials, bumps and transforms, and copies of other objects. */
-#include "base/spelling.h"
 #include "displaced/displaced.h"
 #include "read/parts.h"
 
 #include <stdlib.h>
 #include <string.h>
-
-/* The name of thing i: each is a struct of `size` bytes that begins with its name, or NULL. */
-static const char *name_of(const void *things, size_t size, int i)
-{
-    return *(char *const *)(const void *)((const char *)things + (size_t)i * size);
-}
-
-/* The index of the thing that the node names. `what`: "the name of a material"; `among`: the key of the things. -1 with
- * an error. */
-static int find(reader *r, node *at, const char *what, const char *among, const void *things, size_t size, int n)
-{
-    const char *name = yaml_text(r->y, at, what), *thing = strrchr(what, ' ') + 1;
-    char near[64], *all;
-    size_t length = 1;
-    if (!name)
-        return -1;
-    for (int i = 0; i < n; i++) {
-        const char *its = name_of(things, size, i);
-        if (its && strcmp(name, its) == 0)
-            return i;
-        length += its ? strlen(its) + 1 : 0;
-    }
-    if ((all = calloc(1, length)))
-        for (int i = 0; i < n; i++)
-            if (name_of(things, size, i))
-                strcat(strcat(all, *all ? " " : ""), name_of(things, size, i));
-    spelling_nearest(name, all ? all : "", near, sizeof near);
-    yaml_error(r->y, at, "no %s '%.60s'%s%s%s%s", thing, name,
-               *near ? ", did you mean '" : ", expected one of those under '", *near ? near : among, "'",
-               *near ? "?" : "");
-    free(all);
-    return -1;
-}
 
 /* Objects are read in order, but an object is read before its copies. */
 typedef struct queue {
@@ -50,12 +16,6 @@ enum { WAITING, BEGUN, DONE };
 
 static void read_object(reader *r, const queue *q, int i);
 
-int reader_material(reader *r, node *at)
-{
-    const scene *s = r->s;
-    return find(r, at, "the name of a material", "materials", s->material, sizeof *s->material, s->materials);
-}
-
 /* The object that object i copies; reads it first if need be. NULL with an error. */
 static const object *read_original(reader *r, const queue *q, node *copy, int i)
 {
@@ -63,7 +23,7 @@ static const object *read_original(reader *r, const queue *q, node *copy, int i)
     const char *name = yaml_text(r->y, copy, "the name of an object");
     int k = name ? names_find(&q->names, s->object, name) : -1;
     if (name && k < 0)
-        find(r, copy, "the name of an object", "objects", s->object, sizeof *s->object, s->objects);
+        reader_find(r, copy, "the name of an object", "objects", s->object, sizeof *s->object, s->objects);
     if (k == i)
         yaml_error(r->y, copy, "'%s' copies itself, expected another object", s->object[i].name);
     else if (k >= 0 && q->state[k] == BEGUN)
