@@ -157,6 +157,7 @@ typedef struct kage_object_info {
     double map_range[2];          /* the lowest and highest sample, before `scale` and `zero` */
     double height[2];             /* bounds of the bump's height P, in scene units */
     int bounded;                  /* P has finite bounds */
+    int copies;                   /* how many copies of copy_of it is, from a list; 0: it is one object */
 } kage_object_info;
 
 typedef struct kage_scene_info {

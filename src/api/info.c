@@ -53,6 +53,7 @@ static kage_object_info of_object(const scene *s, const object *o, const kage_mo
         .mirrors = material_mirrors(m),
         .transparent = material_clear(m),
         .model = o->shape_spec.kind == SHAPE_MESH && !o->copy_of ? model : NULL,
+        .copies = o->crowd ? crowd_count(o->crowd, (int32_t)(o - s->object) - o->first) : 0,
     };
     if (o->bump)
         note_bump(o, &x);

@@ -20,7 +20,7 @@ enum { SAMPLES = 200, MOST_WARNINGS = 4 }; /* SAMPLES x SAMPLES rays over the pi
 /* What the rays have found on one object. */
 typedef struct seen {
     float *slope;
-    int n;
+    int n, room;
     long back[3]; /* samples where the orders 1 and 2 fell back */
 } seen;
 
@@ -37,8 +37,22 @@ static float slope(const hit_group *g, int i)
     return (float)(real_sqrt(bs_dot(c, c)) / bs_dot(n, np));
 }
 
-/* Trace the survey's rays by one order and count where it fell back. With order 2 also note the slopes. */
-static void look(const scene *s, int order, workspace *v, seen *all)
+/* False: out of memory. */
+static bool note_slope(seen *o, float x)
+{
+    if (o->n == o->room) {
+        float *more = realloc(o->slope, sizeof *more * (size_t)(o->room = o->room ? 2 * o->room : 64));
+        if (!more)
+            return false;
+        o->slope = more;
+    }
+    o->slope[o->n++] = x;
+    return true;
+}
+
+/* Trace the survey's rays by one order and count where it fell back. With order 2 also note the slopes. False: out of
+ * memory. */
+static bool look(const scene *s, int order, workspace *v, seen *all)
 {
     const tracer k = {.scene = s, .shadow = {METHOD_ORDER, order}, .guard = true};
     for (int first = 0; first < SAMPLES * SAMPLES; first += LANES) {
@@ -55,11 +69,12 @@ static void look(const scene *s, int order, workspace *v, seen *all)
             trace_group(&k, id, v);
             for (int i = 0; i < g->n; i++) {
                 o->back[order] += g->order[i] != order;
-                if (order == 2)
-                    o->slope[o->n++] = slope(g, i);
+                if (order == 2 && !note_slope(o, slope(g, i)))
+                    return false;
             }
         }
     }
+    return true;
 }
 
 static kage_bump_survey summary(seen *x)
@@ -117,18 +132,11 @@ kage_status kage_scene_survey(kage_scene *k, kage_survey **out, kage_errors **to
     const scene *s = k->first;
     workspace *v = workspace_new(&(tracer){.scene = s});
     seen *all = calloc((size_t)s->objects + 1, sizeof *all);
-    bool good = v && all;
     *out = NULL;
     if (to)
         *to = NULL;
-    for (int i = 0; good && i < s->objects; i++)
-        if (s->object[i].bump)
-            good = (all[i].slope = malloc(sizeof(float) * SAMPLES * SAMPLES)) != NULL;
-    if (good) {
-        look(s, 1, v, all);
-        look(s, 2, v, all);
+    if (v && all && look(s, 1, v, all) && look(s, 2, v, all))
         *out = report(k, all);
-    }
     for (int i = 0; all && i < s->objects; i++)
         free(all[i].slope);
     free(all);

@@ -77,8 +77,12 @@ static void print_light(const kage_light_info *l)
 
 static void print_object(const kage_object_info *o)
 {
-    printf("object %s: %s%s%s%s, material %s%s%s%s%s%s%s\n", o->name, o->shape, o->copy_of ? ", copy of " : "",
-           o->copy_of ? o->copy_of : "", o->transformed ? ", transformed" : "", o->material,
+    printf("object %s: ", o->name);
+    if (o->copies)
+        printf("%d copies of %s", o->copies, o->copy_of);
+    else
+        printf("%s%s%s", o->shape, o->copy_of ? ", copy of " : "", o->copy_of ? o->copy_of : "");
+    printf("%s, material %s%s%s%s%s%s%s\n", o->transformed ? ", transformed" : "", o->material,
            o->color ? ", color by " : "", o->color ? o->color : "", o->bump ? ", bump by " : "", o->bump ? o->bump : "",
            o->mirrors ? ", mirrors" : "", o->transparent ? ", transparent" : "");
 }

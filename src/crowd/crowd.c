@@ -8,23 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* ---- lanes ---- */
-
-/* The copies and the originals' parts of lanes on the crowd. */
-static void split_parts(const crowd *f, int n, const int32_t *part, int32_t *at, int32_t *its)
-{
-    for (int i = 0; i < n; i++) {
-        at[i] = crowd_copy_of(f, part[i]);
-        its[i] = part[i] - at[i] * f->parts;
-    }
-}
-
-static void join_parts(const crowd *f, int n, const int32_t *at, const int32_t *its, int32_t *part)
-{
-    for (int i = 0; i < n; i++)
-        part[i] = at[i] * f->parts + its[i];
-}
-
 STAGE static void crowd_mirror_u(const crowd *f, int n, const real *u, real *to)
 {
     const real mirror = f->mirror, sum = f->u_ends_sum;
@@ -39,11 +22,11 @@ static void crowd_locate(const surface *base, int n, const rays *x, const real *
     const crowd *f = (const crowd *)base;
     rays y;
     int32_t at[LANES], its[LANES];
-    split_parts(f, n, part, at, its);
+    crowd_split(f, n, part, at, its);
     crowd_rays_back(f, n, at, NULL, x, &y);
     f->from->ops->locate(f->from, n, &y, t, its, u, w);
     crowd_mirror_u(f, n, u, u);
-    join_parts(f, n, at, its, part);
+    crowd_join(f, n, at, its, part);
 }
 
 static void crowd_foot(const surface *base, int n, const rays *x, const real *t, int32_t *part, real *u, real *w)
@@ -51,11 +34,11 @@ static void crowd_foot(const surface *base, int n, const rays *x, const real *t,
     const crowd *f = (const crowd *)base;
     rays y;
     int32_t at[LANES], its[LANES];
-    split_parts(f, n, part, at, its);
+    crowd_split(f, n, part, at, its);
     crowd_rays_back(f, n, at, NULL, x, &y);
     f->from->ops->foot(f->from, n, &y, t, its, u, w);
     crowd_mirror_u(f, n, u, u);
-    join_parts(f, n, at, its, part);
+    crowd_join(f, n, at, its, part);
 }
 
 static void crowd_eval(const surface *base, int n, const int32_t *part, const real *u, const real *w, int order,
@@ -65,7 +48,7 @@ static void crowd_eval(const surface *base, int n, const int32_t *part, const re
     real v[LANES];
     int32_t at[LANES], its[LANES];
     crowd_maps k;
-    split_parts(f, n, part, at, its);
+    crowd_split(f, n, part, at, its);
     crowd_maps_to(f, n, at, &k);
     crowd_mirror_u(f, n, u, v);
     f->from->ops->eval(f->from, n, its, v, w, order, q);
@@ -84,7 +67,7 @@ static void crowd_occlude_own(const surface *base, int n, const rays *x, const i
     const crowd *f = (const crowd *)base;
     rays y;
     int32_t at[LANES], its[LANES];
-    split_parts(f, n, part, at, its);
+    crowd_split(f, n, part, at, its);
     crowd_rays_back(f, n, at, NULL, x, &y);
     f->from->ops->occlude_own(f->from, n, &y, its, lit);
 }
@@ -93,7 +76,7 @@ void crowd_occlude_same(const crowd *f, int n, const rays *x, const int32_t *par
 {
     rays y;
     int32_t at[LANES], its[LANES];
-    split_parts(f, n, part, at, its);
+    crowd_split(f, n, part, at, its);
     crowd_rays_back(f, n, at, NULL, x, &y);
     f->from->ops->occlude(f->from, n, &y, lit);
 }
@@ -121,6 +104,14 @@ static void crowd_free(surface *base)
 const crowd *crowd_of(const surface *f) { return f->ops->locate == crowd_locate ? (const crowd *)f : NULL; }
 
 size_t crowd_size(const crowd *f) { return sizeof *f + sizeof *f->copy * (size_t)f->n + wide_size(f->tree); }
+
+int32_t crowd_count(const crowd *f, int32_t kind)
+{
+    int32_t n = 0;
+    for (int32_t k = 0; k < f->n; k++)
+        n += f->copy[k].kind == kind;
+    return n;
+}
 
 affine crowd_map(const crowd *f, int32_t k)
 {

@@ -54,6 +54,9 @@ static inline int32_t crowd_copy_of(const crowd *f, int32_t part)
     return f->parts == 1 ? part : part / f->parts; /* a division costs as much as a hit */
 }
 
+/* How many copies are of a kind. */
+int32_t crowd_count(const crowd *f, int32_t kind);
+
 /* The map of copy k < n. */
 affine crowd_map(const crowd *f, int32_t k);
 

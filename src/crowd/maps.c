@@ -92,3 +92,17 @@ void crowd_places_to(const crowd_maps *f, int n, vec3s *v)
     crowd_vector_by(f, n, 1, v);
     crowd_move_by(f, n, v);
 }
+
+void crowd_split(const crowd *f, int n, const int32_t *part, int32_t *at, int32_t *its)
+{
+    for (int i = 0; i < n; i++) {
+        at[i] = crowd_copy_of(f, part[i]);
+        its[i] = part[i] - at[i] * f->parts;
+    }
+}
+
+void crowd_join(const crowd *f, int n, const int32_t *at, const int32_t *its, int32_t *part)
+{
+    for (int i = 0; i < n; i++)
+        part[i] = at[i] * f->parts + its[i];
+}

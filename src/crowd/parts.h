@@ -4,6 +4,10 @@
 
 #include "crowd/crowd.h"
 
+/* The copies and the originals' parts of lanes on the crowd; and back. */
+void crowd_split(const crowd *f, int n, const int32_t *part, int32_t *at, int32_t *its);
+void crowd_join(const crowd *f, int n, const int32_t *at, const int32_t *its, int32_t *part);
+
 /* The maps of some lanes, side by side. */
 typedef struct crowd_maps {
     real m[3][3][LANES], o[3][LANES];

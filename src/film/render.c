@@ -3,12 +3,13 @@
 
 #include "base/threads.h"
 #include "film/adaptive.h"
+#include "film/stream.h"
 #include "render/trace.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-enum { TILE = 16, TILE_ROWS = LANES / TILE, TIMED_TILES = 8 };
+enum { TILE = 16, TILE_ROWS = LANES / TILE, TIMED_TILES = 8, CHUNK = 4 /* tiles that a thread takes at once */ };
 
 /* Pictures of at most so many tiles may be done before another thread would have started. */
 enum { SMALL = 64 };
@@ -59,6 +60,7 @@ static inline void lay_rows(float *restrict to, size_t stride, int width, int he
                             float weight, bool add)
 {
     for (int k = 0; k < height; k++)
+#pragma omp simd
         for (int c = 0; c < width; c++) {
             float x = (float)v[k * width + c] * weight, *p = &to[(size_t)k * stride + (size_t)c];
             *p = add ? *p + x : x;
@@ -83,7 +85,11 @@ STAGE static void lay_more(float *restrict to, size_t stride, int width, int hei
 static void lay(film *f, int plane, const tile *b, const real *v, float weight, bool add)
 {
     float *to = f->plane[plane] + film_index(f, b->x0, b->y0);
-    (add ? lay_more : lay_first)(to, film_width(f), b->width, b->height, v, weight);
+    const size_t stride = film_width(f);
+    if (weight == 1 && !add && b->width == STREAM_ROW && stream_fits(to, stride))
+        stream_rows(to, stride, b->height, v); /* nothing is added later */
+    else
+        (add ? lay_more : lay_first)(to, stride, b->width, b->height, v, weight);
 }
 
 static void lay_layers(film *f, const tile *b, const workspace *v)
@@ -99,22 +105,9 @@ static void lay_layers(film *f, const tile *b, const workspace *v)
     lay(f, FILM_ORDER, b, order, 1, false);
 }
 
-/* Prefetch the rows that a tile will write; they are far apart and not in the cache. */
-static void fetch(const film *f, const tile *b)
-{
-#if defined(__GNUC__)
-    for (int p = FILM_R; p <= FILM_B; p++)
-        for (int k = 0; k < b->height; k++)
-            __builtin_prefetch(&f->plane[p][film_index(f, b->x0, b->y0 + k)], 1);
-#else
-    (void)f, (void)b;
-#endif
-}
-
 static void render_tile(const tracer *tr, int aa, const tile *b, film *f, workspace *v)
 {
     const float weight = 1.0f / (float)(aa * aa);
-    fetch(f, b);
     for (int j = 0; j < aa; j++)
         for (int i = 0; i < aa; i++) {
             const bool add = i + j > 0;
@@ -213,11 +206,15 @@ static void show(const render_options *o, pass *p, long done)
     }
 }
 
-static void note_tile(const render_options *o, pass *p)
+/* Tile n of `count` is done. They are noted by chunks: before an atomic addition the processor waits until all that was
+ * stored is in the cache, here the tile's rows. */
+static void note_tile(const render_options *o, pass *p, long n, long count)
 {
     long done;
+    if (n % CHUNK < CHUNK - 1 && n < count - 1)
+        return;
 #pragma omp atomic capture
-    done = ++p->done;
+    done = p->done += n % CHUNK + 1;
     show(o, p, done);
 }
 
@@ -235,7 +232,7 @@ static void render_nth(const tracer *tr, const render_options *o, pass *p, film 
         refine_tile(tr, p->aa, &b, p->marked, f, v);
     else
         render_tile(tr, p->aa, &b, f, v);
-    note_tile(o, p);
+    note_tile(o, p, n, tiles(part));
 }
 
 static workspace *tile_workspace(const tracer *tr)
@@ -256,6 +253,7 @@ static long run_alone(const tracer *tr, const render_options *o, pass *p, film *
     long n = 0;
     while (v && n < count && !p->stop && stats_clock() < end)
         render_nth(tr, o, p, f, n++, v);
+    stream_end();
     if (v)
         stats_add(sum, v->stats);
     workspace_free(v);
@@ -277,7 +275,7 @@ static bool run(const tracer *tr, const render_options *o, pass *p, film *f, sta
 #pragma omp atomic write
             good = false;
         }
-#pragma omp for schedule(dynamic, 4)
+#pragma omp for schedule(dynamic, CHUNK)
         for (long n = first; n < count; n++) {
             bool stop;
 #pragma omp atomic read
@@ -285,6 +283,7 @@ static bool run(const tracer *tr, const render_options *o, pass *p, film *f, sta
             if (v && !stop)
                 render_nth(tr, o, p, f, n, v);
         }
+        stream_end();
         if (v) {
 #pragma omp critical /* without a name, which would be a global variable */
             stats_add(sum, v->stats);

@@ -2,6 +2,7 @@
  * has a unit normal that does not face away. */
 #include "mesh/mesh_data.h"
 
+#include "base/threads.h"
 #include "base/vec3.h"
 #include "math/kmath.h"
 
@@ -32,7 +33,7 @@ static bool is_flat(float at[3][3], vec3 area)
     double longest = 0;
     for (int k = 0; k < 3; k++) {
         const vec3 side = vec3_sub(mesh_get(at[(k + 1) % 3]), mesh_get(at[k]));
-        longest = fmax(longest, vec3_dot(side, side));
+        longest = greater(longest, vec3_dot(side, side));
     }
     return !(vec3_length(area) > FLAT * longest);
 }
@@ -158,31 +159,35 @@ static vec3 weighted_normal(const mesh_data *d, int corner)
 /* Set the normals of those corners at one place that have none. least: the cosine of the crease angle. */
 static void smooth_place(mesh_data *d, const int32_t *corner, int n, double least)
 {
-    vec3 all = {0, 0, 0};
+    vec3 all = {0, 0, 0}, one[FAN], weighted[FAN];
     for (int i = 0; n > FAN && i < n; i++)
         all = vec3_add(all, weighted_normal(d, corner[i]));
+    for (int i = 0; n <= FAN && i < n; i++) {
+        one[i] = vec3_unit(area_of(d->at[corner[i] / 3]));
+        weighted[i] = weighted_normal(d, corner[i]);
+    }
     for (int i = 0; i < n; i++) {
-        const vec3 own = vec3_unit(area_of(d->at[corner[i] / 3]));
+        const vec3 own = n <= FAN ? one[i] : vec3_unit(area_of(d->at[corner[i] / 3]));
         vec3 sum = all;
         float *to = d->skin[corner[i] / 3].normal[corner[i] % 3];
         if (to[0] != 0 || to[1] != 0 || to[2] != 0)
             continue;
-        for (int j = 0; n <= FAN && j < n; j++) {
-            const vec3 one = vec3_unit(area_of(d->at[corner[j] / 3]));
-            if (i == j || vec3_dot(own, one) >= least)
-                sum = vec3_add(sum, weighted_normal(d, corner[j]));
-        }
+        for (int j = 0; n <= FAN && j < n; j++)
+            if (i == j || vec3_dot(own, one[j]) >= least)
+                sum = vec3_add(sum, weighted[j]);
         const double length = vec3_length(sum);
         mesh_set(to, length > SHORTEST ? vec3_scale(sum, 1 / length) : own);
     }
 }
 
-static bool smooth(mesh_data *d, double crease)
+static bool smooth(mesh_data *d, double crease, int threads)
 {
     places p;
     const bool good = find_places(d, &p);
     const double least = km_cos(crease * (KM_PI / 180)) - SAME_ANGLE;
-    for (int k = 0; good && k < p.n; k++)
+    const int n = good ? p.n : 0;
+#pragma omp parallel for num_threads(threads) schedule(static)
+    for (int k = 0; k < n; k++)
         smooth_place(d, p.corner + p.first[k], p.first[k + 1] - p.first[k], least);
     free_places(&p);
     return good;
@@ -242,7 +247,7 @@ static void replace_averted(mesh_data *d)
     }
 }
 
-bool mesh_clean(mesh_data *d, mesh_normals normals, double crease, double most, char why[MESH_WHY])
+bool mesh_clean(mesh_data *d, mesh_normals normals, double crease, double most, int threads, char why[MESH_WHY])
 {
     if (!check_numbers(d, most, why))
         return false;
@@ -255,7 +260,7 @@ bool mesh_clean(mesh_data *d, mesh_normals normals, double crease, double most, 
     count_bare(d);
     const bool given = keep_given(d, normals);
     flip_by_normals(d);
-    if (!given && normals != MESH_NORMALS_FLAT && !smooth(d, crease)) {
+    if (!given && normals != MESH_NORMALS_FLAT && !smooth(d, crease, threads_of(threads))) {
         snprintf(why, MESH_WHY, "out of memory");
         return false;
     }

@@ -1,4 +1,5 @@
-/* Clusters of triangles: sorted along Morton's curve, then cut so that the boxes of the pieces are small. */
+/* Clusters of triangles and blocks of clusters: triangles are sorted along Morton's curve, then cut so that the boxes
+ * of the pieces are small. */
 #include "mesh/cluster.h"
 
 #include "base/real.h"
@@ -25,15 +26,13 @@ static float error_of(float wide) { return ERROR * (4 * wide + 4 * ERROR) + 4e-7
 static inline float less(float x, float y) { return x < y ? x : y; }
 static inline float more(float x, float y) { return x > y ? x : y; }
 
-static const uint32_t bit[CLUSTER] = {1, 2, 4, 8, 16, 32, 64, 128};
-
-STAGE static void near_triangles(const mesh_cluster *restrict c, const cluster_rays *restrict k, int n,
-                                 const int32_t *restrict ray, uint32_t *restrict met)
+STAGE static void near_triangles(const mesh_cluster *restrict c, const cluster_rays *restrict k, uint32_t which,
+                                 uint32_t *restrict met)
 {
-    for (int j = 0; j < n; j++) {
-        const int r = ray[j], X = (k->z[r] + 1) % 3, Y = (k->z[r] + 2) % 3, Z = k->z[r];
+    for (; which; which &= which - 1) {
+        const int r = lowest_bit(which), X = (k->z[r] + 1) % 3, Y = (k->z[r] + 2) % 3, Z = k->z[r];
         const float sx = k->sx[r], sy = k->sy[r], cx = k->cx[r], cy = k->cy[r];
-        uint32_t some = 0;
+        const uint32_t one = which & -which;
         for (int i = 0; i < CLUSTER; i++) {
             const float za = c->at[0][Z][i], zb = c->at[1][Z][i], zc = c->at[2][Z][i];
             const float xa = c->at[0][X][i] - sx * za - cx, ya = c->at[0][Y][i] - sy * za - cy;
@@ -41,18 +40,45 @@ STAGE static void near_triangles(const mesh_cluster *restrict c, const cluster_r
             const float xc = c->at[2][X][i] - sx * zc - cx, yc = c->at[2][Y][i] - sy * zc - cy;
             const float U = xc * yb - yc * xb, V = xa * yc - ya * xc, W = xb * ya - yb * xa, e = c->error[i];
             const float least = less(less(U, V), W), most = more(more(U, V), W);
-            some |= bit[i] & -(uint32_t)((least >= -e) | (most <= e));
+            met[i] |= one & -(uint32_t)((least >= -e) | (most <= e));
         }
-        met[j] = some;
     }
 }
 
-void cluster_near(const mesh_cluster *c, const cluster_rays *k, int n, const int32_t *ray, uint32_t *met)
+void cluster_near(const mesh_cluster *c, const cluster_rays *k, uint32_t which, uint32_t met[CLUSTER])
 {
-    near_triangles(c, k, n, ray, met);
+    memset(met, 0, sizeof *met * CLUSTER);
+    near_triangles(c, k, which, met);
 }
 
-/* ---- making them ---- */
+/* As wrong as Embree's own test, three roundings of each t, for which the boxes have room. */
+STAGE static void near_boxes(const mesh_block *restrict c, const cluster_rays *restrict k, const float *restrict end,
+                             uint32_t which, uint32_t *restrict met)
+{
+    for (; which; which &= which - 1) {
+        const int r = lowest_bit(which);
+        const float ox = k->at[0][r], oy = k->at[1][r], oz = k->at[2][r], last = end[r];
+        const float ix = k->over[0][r], iy = k->over[1][r], iz = k->over[2][r];
+        const uint32_t one = which & -which;
+        for (int i = 0; i < CLUSTER; i++) {
+            const float xa = (c->lo[0][i] - ox) * ix, xb = (c->hi[0][i] - ox) * ix;
+            const float ya = (c->lo[1][i] - oy) * iy, yb = (c->hi[1][i] - oy) * iy;
+            const float za = (c->lo[2][i] - oz) * iz, zb = (c->hi[2][i] - oz) * iz;
+            const float t0 = more(more(less(xa, xb), less(ya, yb)), more(less(za, zb), 0)),
+                        t1 = less(less(more(xa, xb), more(ya, yb)), less(more(za, zb), last));
+            met[i] |= one & -(uint32_t)(t0 <= t1);
+        }
+    }
+}
+
+void block_near(const mesh_block *b, const cluster_rays *k, const float end[BVH_PACKET], uint32_t which,
+                uint32_t met[CLUSTER])
+{
+    memset(met, 0, sizeof *met * CLUSTER);
+    near_boxes(b, k, end, which, met);
+}
+
+/* ---- sorting ---- */
 
 typedef struct key {
     uint32_t code, index; /* Morton's code of the triangle's middle; the triangle */
@@ -120,148 +146,167 @@ static float area_of(const bvh_box *b)
 
 /* ---- cutting ---- */
 
-enum { CHUNK = 1 << 13 }; /* triangles that are cut by themselves, each chunk by one thread */
+enum { CHUNK = 1 << 13 }; /* boxes that are cut by themselves, each chunk by one thread */
 
-typedef struct cutting {
-    const mesh_data *d;
-    const bvh_space *space;
-    const bvh_box *box; /* of each triangle */
-    const key *sorted;
-    unsigned char *size;  /* of the cluster that ends behind each triangle, by the best cut of what is before it */
-    unsigned char *start; /* 1: a cluster starts here */
-} cutting;
-
-/* Cut triangles a to b - 1 so that the sum of the boxes' areas is least: the number of rays that reach a box is as its
- * area, and a cluster takes the same time whether it is full or not. A box takes time in the hierarchy, too, which
- * counts as the area of a triangle's box. */
-static int cut(const cutting *k, int a, int b)
+/* Cut the n boxes into groups of up to CLUSTER so that the sum of the groups' areas is least: the number of rays that
+ * reach a box is as its area, and a group takes the same time whether it is full or not. A group's box is tested as
+ * often as that of what is around it is reached; that costs a quarter of the area of CLUSTER boxes. size: of the group
+ * that ends behind each box, by the best cut of what is before it. start: 1 where a group starts. */
+static void cut(int n, const bvh_box *box, unsigned char *size, unsigned char *start)
 {
     float sum[CHUNK + 1]; /* of the best cut of what is before */
-    int n = 0;
     sum[0] = 0;
-    for (int i = a; i < b; i++) {
-        bvh_box all = k->box[k->sorted[i].index];
-        const float own = area_of(&all);
-        float best = HUGE_VALF;
-        for (int j = i; j >= a && j > i - CLUSTER; j--) {
-            add_box(&all, &k->box[k->sorted[j].index]);
-            const float now = sum[j - a] + area_of(&all) + own;
-            if (now <= best) {
-                best = now;
-                k->size[i] = (unsigned char)(i - j + 1);
-            }
+    for (int i = 0; i < n; i++) {
+        bvh_box all = box[i];
+        float area[CLUSTER], best = HUGE_VALF; /* of the last 1, 2 .. boxes */
+        int most = 0;
+        for (; most < CLUSTER && most <= i; most++) {
+            add_box(&all, &box[i - most]);
+            area[most] = area_of(&all);
         }
-        sum[i - a + 1] = best;
+        for (int k = 0; k < most; k++)
+            if (sum[i - k] + area[k] <= best) {
+                best = sum[i - k] + area[k];
+                size[i] = (unsigned char)(k + 1);
+            }
+        sum[i + 1] = best + 0.25f * area[most - 1];
     }
-    for (int i = b - 1; i >= a; i -= k->size[i], n++)
-        k->start[i - k->size[i] + 1] = 1;
-    return n;
+    for (int i = n - 1; i >= 0; i -= size[i])
+        start[i - size[i] + 1] = 1;
 }
+
+/* Groups of boxes: group g is box[first[g]] to box[first[g + 1] - 1]. The caller frees `first`. NULL: out of memory. */
+static int32_t *cut_all(int n, const bvh_box *box, int threads, int *groups)
+{
+    unsigned char *size = malloc((size_t)n), *start = calloc((size_t)n, 1);
+    int32_t *first = NULL;
+    *groups = 0;
+    if (size && start) {
+#pragma omp parallel for num_threads(threads) schedule(static)
+        for (int a = 0; a < n; a += CHUNK)
+            cut(n - a < CHUNK ? n - a : CHUNK, box + a, size + a, start + a);
+        for (int i = 0; i < n; i++)
+            *groups += start[i];
+        first = malloc(sizeof *first * ((size_t)*groups + 1));
+    }
+    for (int i = 0, g = 0; first && i <= n; i++)
+        if (i == n || start[i])
+            first[g++] = i;
+    free(size);
+    free(start);
+    return first;
+}
+
+static bvh_box box_of_all(int n, const bvh_box *box)
+{
+    bvh_box all = box[0];
+    for (int i = 1; i < n; i++)
+        add_box(&all, &box[i]);
+    return all;
+}
+
+/* ---- filling ---- */
 
 static float widest(const bvh_box *b)
 {
     const float x = b->hi[0] - b->lo[0], y = b->hi[1] - b->lo[1], z = b->hi[2] - b->lo[2];
-    return (x > y ? x : y) + (x > y ? (y > z ? y : z) : (x > z ? x : z)); /* the two that are widest */
+    return x + y + z - less(x, less(y, z)); /* the two that are widest */
 }
 
-/* The clusters of triangles a to b - 1. */
-static void fill(const cutting *k, int a, int b, mesh_cluster *to, bvh_box *box)
+static mesh_cluster cluster_of(const mesh_data *d, const bvh_space *space, int n, const key *sorted, const bvh_box *box)
 {
-    int n = 0;
-    to--, box--;
-    for (int i = a; i < b; i++) {
-        const int32_t index = (int32_t)k->sorted[i].index;
-        if (k->start[i]) {
-            to++, box++;
-            n = 0;
-            *box = k->box[index];
-            for (int j = 0; j < CLUSTER; j++) {
-                to->index[j] = index;
-                to->error[j] = -1;
-                memset(to->at, 0, sizeof to->at);
-            }
+    mesh_cluster to;
+    memset(&to, 0, sizeof to);
+    for (int i = 0; i < CLUSTER; i++) {
+        const int32_t index = (int32_t)sorted[i < n ? i : 0].index;
+        to.index[i] = index;
+        to.error[i] = i < n ? error_of(widest(&box[i])) : -1;
+        for (int c = 0; c < 3 && i < n; c++) {
+            const vec3 p = vec3_scale(vec3_sub(mesh_get(d->at[index][c]), space->centre), 1 / space->radius);
+            to.at[c][0][i] = (float)p.x;
+            to.at[c][1][i] = (float)p.y;
+            to.at[c][2][i] = (float)p.z;
         }
-        add_box(box, &k->box[index]);
-        for (int c = 0; c < 3; c++) {
-            const vec3 p = vec3_scale(vec3_sub(mesh_get(k->d->at[index][c]), k->space->centre), 1 / k->space->radius);
-            to->at[c][0][n] = (float)p.x;
-            to->at[c][1][n] = (float)p.y;
-            to->at[c][2][n] = (float)p.z;
-        }
-        to->index[n] = index;
-        to->error[n++] = error_of(widest(&k->box[index]));
     }
+    return to;
 }
 
-/* Cut all chunks, into first[0..chunks]: the number of clusters before each. */
-static void cut_all(const cutting *k, int chunks, int threads, int *first)
+static mesh_block block_of(int n, const bvh_box *box, int32_t first)
 {
+    mesh_block to = {.first = first};
+    for (int i = 0; i < CLUSTER; i++)
+        for (int a = 0; a < 3; a++) {
+            to.lo[a][i] = i < n ? box[i].lo[a] : 2; /* beyond all rays */
+            to.hi[a][i] = i < n ? box[i].hi[a] : 2;
+        }
+    return to;
+}
+
+/* The triangles' boxes, sorted. */
+static bool sort_triangles(const mesh_data *d, const bvh_space *space, int threads, key *sorted, bvh_box *box)
+{
+    key *keys = malloc(sizeof *keys * (size_t)d->n);
+    if (!keys)
+        return false;
 #pragma omp parallel for num_threads(threads) schedule(static)
-    for (int c = 0; c < chunks; c++) {
-        const int end = (c + 1) * CHUNK;
-        first[c + 1] = cut(k, c * CHUNK, end < k->d->n ? end : k->d->n);
+    for (int i = 0; i < d->n; i++) {
+        const bvh_box b = box_of(d, space, i);
+        keys[i] = key_of(&b, i);
     }
-    first[0] = 0;
-    for (int c = 0; c < chunks; c++)
-        first[c + 1] += first[c];
+    sort_keys(d->n, keys, sorted);
+#pragma omp parallel for num_threads(threads) schedule(static)
+    for (int i = 0; i < d->n; i++)
+        box[i] = box_of(d, space, (int32_t)sorted[i].index);
+    free(keys);
+    return true;
 }
 
-static bool make_all(const cutting *k, int threads, mesh_clusters *out, bvh_box **box)
+/* From sorted triangles. box: of each; becomes those of the clusters, and then of the blocks. */
+static bool make(const mesh_data *d, const bvh_space *space, int threads, const key *sorted, bvh_box *box,
+                 mesh_clusters *out)
 {
-    const int n = k->d->n, chunks = (n + CHUNK - 1) / CHUNK;
-    int *first = malloc(sizeof *first * ((size_t)chunks + 1));
-    if (first) {
-        cut_all(k, chunks, threads, first);
-        out->n = first[chunks];
-        out->cluster = malloc(sizeof *out->cluster * (size_t)out->n);
-        *box = malloc(sizeof **box * (size_t)out->n);
+    int clusters, blocks;
+    int32_t *first = cut_all(d->n, box, threads, &clusters);
+    out->cluster = first ? malloc(sizeof *out->cluster * (size_t)clusters) : NULL;
+    if (out->cluster) {
+#pragma omp parallel for num_threads(threads) schedule(static)
+        for (int g = 0; g < clusters; g++)
+            out->cluster[g] = cluster_of(d, space, first[g + 1] - first[g], sorted + first[g], box + first[g]);
+        for (int g = 0; g < clusters; g++) /* first[g] >= g */
+            box[g] = box_of_all(first[g + 1] - first[g], box + first[g]);
+        free(first);
+        first = cut_all(clusters, box, threads, &blocks);
+        out->block = first ? malloc(sizeof *out->block * (size_t)blocks) : NULL;
     }
-    const bool good = first && out->cluster && *box;
-#pragma omp parallel for num_threads(threads) schedule(static) if (good)
-    for (int c = 0; c < chunks; c++)
-        if (good) {
-            const int end = (c + 1) * CHUNK;
-            fill(k, c * CHUNK, end < n ? end : n, out->cluster + first[c], *box + first[c]);
-        }
+    for (int g = 0; out->block && g < blocks; g++) {
+        out->block[g] = block_of(first[g + 1] - first[g], box + first[g], first[g]);
+        box[g] = box_of_all(first[g + 1] - first[g], box + first[g]);
+        out->n = blocks;
+    }
     free(first);
-    return good;
+    return out->block;
 }
 
 bool mesh_clusters_new(const mesh_data *d, const bvh_space *space, int threads, mesh_clusters *out, bvh_box **box)
 {
-    const size_t n = (size_t)d->n;
-    bvh_box *each = malloc(sizeof *each * n);
-    key *keys = malloc(sizeof *keys * n), *sorted = malloc(sizeof *sorted * n);
-    unsigned char *size = malloc(n), *start = calloc(n, 1);
-    const cutting k = {d, space, each, sorted, size, start};
-    bool good = each && keys && sorted && size && start;
+    key *sorted = malloc(sizeof *sorted * (size_t)d->n);
     *out = (mesh_clusters){0};
-    *box = NULL;
+    *box = malloc(sizeof **box * (size_t)d->n);
     threads = threads_of(threads);
-    if (good) {
-#pragma omp parallel for num_threads(threads) schedule(static)
-        for (int i = 0; i < d->n; i++) {
-            each[i] = box_of(d, space, i);
-            keys[i] = key_of(&each[i], i);
-        }
-        sort_keys(d->n, keys, sorted);
-        good = make_all(&k, threads, out, box);
-    }
-    free(each);
-    free(keys);
+    const bool good =
+        sorted && *box && sort_triangles(d, space, threads, sorted, *box) && make(d, space, threads, sorted, *box, out);
     free(sorted);
-    free(size);
-    free(start);
-    if (!good) {
-        mesh_clusters_free(out);
-        free(*box);
-        *box = NULL;
-    }
-    return good;
+    if (good)
+        return true;
+    mesh_clusters_free(out);
+    free(*box);
+    *box = NULL;
+    return false;
 }
 
 void mesh_clusters_free(mesh_clusters *c)
 {
     free(c->cluster);
+    free(c->block);
     *c = (mesh_clusters){0};
 }

@@ -1,5 +1,6 @@
-/* Clusters: up to eight triangles that are near each other, under one box of the hierarchy. Of those that a ray comes
- * near to, a test in float that is one vector operation leaves out nearly all that it misses.
+/* Clusters: up to eight triangles that are near each other; and blocks of up to eight clusters. A ray is tested against
+ * all boxes of a block at once, and then against all triangles of a cluster at once, in float, which leaves out nearly
+ * all that it misses.
  *
  * The test is a bound, not a choice: it never leaves out a triangle that Woop's test in double (intersect.c) meets. So
  * hits do not depend on it. See cluster_near.
@@ -21,13 +22,21 @@ typedef struct mesh_cluster {
     int32_t index[CLUSTER];  /* of the triangle in mesh_data */
 } mesh_cluster;
 
+/* Up to eight clusters, which are cluster[first] and those behind it, under one box of the hierarchy. */
+typedef struct mesh_block {
+    float lo[3][CLUSTER], hi[3][CLUSTER]; /* of the clusters' boxes by axis */
+    int32_t first;
+} mesh_block;
+
 typedef struct mesh_clusters {
-    int n;
-    mesh_cluster *cluster; /* owned */
+    int n; /* blocks */
+    mesh_block *block;
+    mesh_cluster *cluster;
+    /* both are owned */
 } mesh_clusters;
 
-/* Make the clusters, and the box of each. The caller frees *box. The result does not depend on the threads (0: one for
- * each processor). False: out of memory. */
+/* Make the clusters and blocks, and the box of each block. The caller frees *box. The result does not depend on the
+ * threads (0: one for each processor). False: out of memory. */
 bool mesh_clusters_new(const mesh_data *d, const bvh_space *space, int threads, mesh_clusters *out, bvh_box **box);
 void mesh_clusters_free(mesh_clusters *c);
 
@@ -36,9 +45,17 @@ void mesh_clusters_free(mesh_clusters *c);
 typedef struct cluster_rays {
     int32_t z[BVH_PACKET];
     float sx[BVH_PACKET], sy[BVH_PACKET], cx[BVH_PACKET], cy[BVH_PACKET];
+    float at[3][BVH_PACKET], over[3][BVH_PACKET]; /* as in bvh_packet; 1 / way */
 } cluster_rays;
 
-/* Into met[0..n-1] the triangles that the lines of the rays ray[0..n-1] may meet, bit i for index[i]. */
-void cluster_near(const mesh_cluster *c, const cluster_rays *k, int n, const int32_t *ray, uint32_t *met);
+static inline int lowest_bit(uint32_t x) { return __builtin_ctz(x); }
+
+/* Of the rays in `which`, bit i for ray i, into met[j] those that may pass the box of the j-th cluster before end[i].
+ */
+void block_near(const mesh_block *b, const cluster_rays *k, const float end[BVH_PACKET], uint32_t which,
+                uint32_t met[CLUSTER]);
+
+/* The same for those whose lines may meet the triangle index[j]. */
+void cluster_near(const mesh_cluster *c, const cluster_rays *k, uint32_t which, uint32_t met[CLUSTER]);
 
 #endif

@@ -203,13 +203,15 @@ static void mesh_box(const surface *base, double lo[3], double hi[3])
 static void set_box(mesh *f)
 {
     for (int a = 0; a < 3; a++) {
-        f->lo[a] = HUGE_VAL;
-        f->hi[a] = -HUGE_VAL;
-        for (int k = 0; k < 3 * f->d.n; k++) {
-            const double x = (double)f->d.at[k / 3][k % 3][a];
-            f->lo[a] = x < f->lo[a] ? x : f->lo[a];
-            f->hi[a] = x > f->hi[a] ? x : f->hi[a];
-        }
+        double lo = HUGE_VAL, hi = -HUGE_VAL;
+        for (int k = 0; k < f->d.n; k++)
+            for (int i = 0; i < 3; i++) {
+                const double x = (double)f->d.at[k][i][a];
+                lo = lesser(lo, x);
+                hi = greater(hi, x);
+            }
+        f->lo[a] = lo;
+        f->hi[a] = hi;
     }
 }
 

@@ -25,7 +25,7 @@ typedef struct mesh {
     double lo[3], hi[3]; /* the box of all vertices */
     bvh_space space;     /* the sphere about all vertices */
     mesh_clusters clusters;
-    bvh *tree; /* over the clusters, in `space` */
+    bvh *tree; /* over the blocks of clusters, in `space` */
 } mesh;
 
 /* Owns *d, also on failure. *d has been through mesh_clean. threads: those that build the hierarchy, 0: one for each

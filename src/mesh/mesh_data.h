@@ -62,7 +62,8 @@ bool mesh_file_read(const char *path, const char *reader, const progress *w, fil
 
 /* Check the numbers, remove triangles without an area, and find a normal for every corner: the file's where it is
  * usable, otherwise the mean over the triangles about the vertex that are within `crease` degrees of this one. False,
- * with the reason: a coordinate beyond `most`, no triangle left, or out of memory. (clean.c) */
-bool mesh_clean(mesh_data *d, mesh_normals normals, double crease, double most, char why[MESH_WHY]);
+ * with the reason: a coordinate beyond `most`, no triangle left, or out of memory. The result does not depend on the
+ * threads, 0: one for each processor. (clean.c) */
+bool mesh_clean(mesh_data *d, mesh_normals normals, double crease, double most, int threads, char why[MESH_WHY]);
 
 #endif

@@ -11,8 +11,6 @@
 #define WIDER (1 + 1e-6f) /* float's rounding of t, as a share */
 #define OWN_ERROR 1e-12   /* 1e-16, of double, over a sine of 1e-4; of the size and place of the mesh */
 
-static int lowest_bit(uint32_t x) { return __builtin_ctz(x); }
-
 /* ---- rays as axes ---- */
 
 STAGE static void shear_rays(const bvh_space *restrict space, mesh_packet *restrict k)
@@ -55,6 +53,17 @@ STAGE static void shear_rays(const bvh_space *restrict space, mesh_packet *restr
     }
 }
 
+/* 1 / way, where a way of 0 is next to it, so that no t is NaN. */
+STAGE static void over_way(const bvh_packet *restrict x, cluster_rays *restrict k)
+{
+    for (int a = 0; a < 3; a++)
+        for (int i = 0; i < BVH_PACKET; i++) {
+            const float way = x->way[a][i];
+            k->at[a][i] = x->at[a][i];
+            k->over[a][i] = 1 / (fabsf(way) > 1e-18f ? way : 1e-18f);
+        }
+}
+
 /* ---- triangles ---- */
 
 /* Whether ray i meets a triangle, and t there, also below 0. */
@@ -93,19 +102,26 @@ static float test(mesh_packet *k, int i, int32_t index, float end)
 
 /* ---- the hierarchy ---- */
 
+static void visit_cluster(mesh_packet *k, const mesh_cluster *c, uint32_t which, float end[BVH_PACKET])
+{
+    uint32_t met[CLUSTER];
+    cluster_near(c, &k->axis, which, met);
+    for (int j = 0; j < CLUSTER; j++)
+        for (; met[j]; met[j] &= met[j] - 1) {
+            const int i = lowest_bit(met[j]);
+            end[i] = end[i] >= 0 ? test(k, i, c->index[j], end[i]) : end[i];
+        }
+}
+
 static void visit(void *user, int32_t index, uint32_t which, float end[BVH_PACKET])
 {
     mesh_packet *k = user;
-    const mesh_cluster *c = &k->f->clusters.cluster[index];
-    int32_t ray[BVH_PACKET] = {0};
-    uint32_t met[BVH_PACKET];
-    int n = 0;
-    for (; which; which &= which - 1)
-        ray[n++] = lowest_bit(which);
-    cluster_near(c, &k->axis, n, ray, met);
-    for (int j = 0; j < n; j++)
-        for (const int i = ray[j]; met[j] && end[i] >= 0; met[j] &= met[j] - 1)
-            end[i] = test(k, i, c->index[lowest_bit(met[j])], end[i]);
+    const mesh_block *b = &k->f->clusters.block[index];
+    uint32_t met[CLUSTER];
+    block_near(b, &k->axis, end, which, met);
+    for (int j = 0; j < CLUSTER; j++)
+        if (met[j])
+            visit_cluster(k, &k->f->clusters.cluster[b->first + j], met[j], end);
 }
 
 void mesh_packet_intersect(mesh_packet *k)
@@ -125,6 +141,7 @@ void mesh_packet_intersect(mesh_packet *k)
     bvh_enter_packet(&k->f->space, k->f->space.radius, (const double(*)[BVH_PACKET])k->r,
                      (const double(*)[BVH_PACKET])k->s, k->enter, leave, &k->x);
     shear_rays(&k->f->space, k);
+    over_way(&k->x, &k->axis);
     bvh_packet_toward(k->f->tree, &k->x, visit, k);
 }
 

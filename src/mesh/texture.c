@@ -24,18 +24,17 @@ void mesh_lay_bare(mesh *f)
 
 static void find_range(mesh *f)
 {
-    f->u[0] = f->w[0] = HUGE_VAL;
-    f->u[1] = f->w[1] = -HUGE_VAL;
-    for (int k = 0; k < f->d.n; k++)
-        for (int i = 0; i < 3; i++) {
-            const float *uv = f->d.skin[k].uv[i];
-            f->u[0] = fmin(f->u[0], (double)uv[0]);
-            f->u[1] = fmax(f->u[1], (double)uv[0]);
-            f->w[0] = fmin(f->w[0], (double)uv[1]);
-            f->w[1] = fmax(f->w[1], (double)uv[1]);
-        }
-    f->u[1] = fmax(f->u[1], f->u[0] + LEAST_RANGE);
-    f->w[1] = fmax(f->w[1], f->w[0] + LEAST_RANGE);
+    for (int a = 0; a < 2; a++) {
+        double lo = HUGE_VAL, hi = -HUGE_VAL, *range = a == 0 ? f->u : f->w;
+        for (int k = 0; k < f->d.n; k++)
+            for (int i = 0; i < 3; i++) {
+                const double x = (double)f->d.skin[k].uv[i][a];
+                lo = lesser(lo, x);
+                hi = greater(hi, x);
+            }
+        range[0] = lo;
+        range[1] = greater(hi, lo + LEAST_RANGE);
+    }
 }
 
 /* Twice the area on the texture; below 0 where it is mirrored. */
@@ -73,7 +72,7 @@ void mesh_lay_texture(mesh *f)
         double longest = 0;
         for (int i = 0; i < 3; i++)
             for (int a = 0; a < 2; a++)
-                longest = fmax(longest, fabs((double)x->uv[i][a] - (double)x->uv[(i + 1) % 3][a]));
+                longest = greater(longest, fabs((double)x->uv[i][a] - (double)x->uv[(i + 1) % 3][a]));
         if (!(fabs(texture_area(x)) > THIN * most * longest)) {
             spread(x, (float)step);
             f->d.notes.spread++;

@@ -220,26 +220,60 @@ STAGE static void march_end(const ray_walk *restrict walk, const march_lanes *re
     }
 }
 
+/* Look P up at a step, and take it. */
+static int march_look(const hit_group *g, const bump *P, int step, int steps, march_lanes *x, ray_walk *walk)
+{
+    march_place(g, x, step, steps, walk);
+    P->ops->eval(P, g->n, walk->u, walk->w, 0, &walk->h);
+    return march_step(g->n, walk, x);
+}
+
+/* Step 0 of a peaked P, where the ray is above the surface: the gap alone. */
+STAGE static void march_top(int n, const ray_walk *restrict walk, march_lanes *restrict m)
+{
+    for (int i = 0; i < n; i++) {
+        bs_view v = {walk->sn[i], 0, 0};
+        real gap = bs_gap(v, walk->curvature[i], walk->tau[i], walk->h.P[i]);
+        m->gap[i] = v.sn < 0 ? gap : -gap;
+    }
+}
+
+/* A peaked P is below the top of the slab, but for single points. So step 0 finds nothing, and its gap matters only to
+ * lanes that step 1 finds: the waves that have some look it up then. Returns how many lanes are looking. */
+static int march_below_top(const hit_group *g, const bump *P, int steps, march_lanes *x, ray_walk *walk, long *looked)
+{
+    int looking = march_look(g, P, 1, steps, x, walk);
+    *looked += g->n;
+    if (looking == g->n)
+        return looking;
+    march_start(g->n, walk, P->Pmin, P->Pmax, x);
+    march_place(g, x, 0, steps, walk);
+    P->ops->eval(P, g->n, walk->u, walk->w, 0, &walk->h);
+    march_top(g->n, walk, x);
+    *looked += 2L * g->n;
+    return march_look(g, P, 1, steps, x, walk);
+}
+
 /* Until all lanes have found the surface: those of a wave are next to each other, and find it at nearly the same step.
  */
 static long march(hit_group *g, const bump *P, method m)
 {
     ray_walk walk;
     march_lanes x;
+    long looked = 0;
     walk_start(g, &walk);
     if (g->flat)
         fill(g->n, 0, walk.curvature);
     else
         walk_curvature(g, &walk);
     march_start(g->n, &walk, P->Pmin, P->Pmax, &x);
-    int step = 0;
-    for (int looking = g->n; step <= m.n && looking > 0; step++) {
-        march_place(g, &x, step, m.n, &walk);
-        P->ops->eval(P, g->n, walk.u, walk.w, 0, &walk.h);
-        looking = march_step(g->n, &walk, &x);
+    int looking = P->peaked ? march_below_top(g, P, m.n, &x, &walk, &looked) : g->n;
+    for (int step = P->peaked ? 2 : 0; step <= m.n && looking > 0; step++) {
+        looking = march_look(g, P, step, m.n, &x, &walk);
+        looked += g->n;
     }
     march_end(&walk, &x, method_code(m), g);
-    return (long)step * g->n;
+    return looked;
 }
 
 long shift_group(hit_group *g, const bump *P, method m, bool guard)

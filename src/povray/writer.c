@@ -90,6 +90,31 @@ static bool put_displaced(pov_text *t, const scene *s, int k, pov_report *report
     return pov_mesh(t, s, o, report);
 }
 
+/* One object, or the declared original of copies. False: out of memory. */
+static bool put_object(pov_text *t, const scene *s, const pov_options *how, int k, pov_report *report)
+{
+    const object *const of = &s->object[k];
+    const object one = of->crowd ? pov_original(of) : *of, *const o = &one;
+    bool good = true;
+    pov_identifier name = pov_identify("Copies", of->name, k);
+    pov_print(t, "// object %s: %s%s%s\n", o->name, of->shape->ops->kind, o->bump ? ", bump by " : "",
+              o->bump ? o->bump->ops->kind : "");
+    if (of->crowd)
+        pov_print(t, "#declare %s =\n", name.text);
+    if (pov_is_patch(s, o))
+        good = pov_patch(t, s, o);
+    else if (o->shape_spec.kind == SHAPE_MESH)
+        good = pov_triangle_mesh(t, s, o);
+    else if (s->displaced && o->bump)
+        good = put_displaced(t, s, k, report);
+    else
+        pov_smooth(t, s, o);
+    put_object_end(t, s, how, o);
+    if (of->crowd)
+        pov_copies(t, of, k - of->first, name.text);
+    return good;
+}
+
 bool pov_write(const scene *s, const pov_options *how, const char *path, pov_report *report, errors *e)
 {
     pov_text t;
@@ -103,19 +128,7 @@ bool pov_write(const scene *s, const pov_options *how, const char *path, pov_rep
         put_light(&t, &s->light[k]);
     pov_print(&t, "\n");
     pov_materials(&t, s);
-    for (int k = 0; good && k < s->objects; k++) {
-        const object *o = &s->object[k];
-        pov_print(&t, "// object %s: %s%s%s\n", o->name, o->shape->ops->kind, o->bump ? ", bump by " : "",
-                  o->bump ? o->bump->ops->kind : "");
-        if (pov_is_patch(s, o))
-            good = pov_patch(&t, s, o);
-        else if (o->shape_spec.kind == SHAPE_MESH)
-            good = pov_triangle_mesh(&t, s, o);
-        else if (s->displaced && o->bump)
-            good = put_displaced(&t, s, k, report);
-        else
-            pov_smooth(&t, s, o);
-        put_object_end(&t, s, how, o);
-    }
+    for (int k = 0; good && k < s->objects; k++)
+        good = put_object(&t, s, how, k, report);
     return pov_end(&t, good ? NULL : "out of memory", e);
 }

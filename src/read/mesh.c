@@ -8,11 +8,12 @@
 static bool is_large(const mesh_data *d)
 {
     double lo[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, hi[3] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}, size = 0;
-    for (int k = 0; k < 9 * d->n; k++) {
-        const double x = (double)d->at[k / 9][k % 9 / 3][k % 3];
-        lo[k % 3] = fmin(lo[k % 3], x);
-        hi[k % 3] = fmax(hi[k % 3], x);
-    }
+    for (int k = 0; k < d->n; k++)
+        for (int i = 0; i < 9; i++) {
+            const double x = (double)d->at[k][i / 3][i % 3];
+            lo[i % 3] = lesser(lo[i % 3], x);
+            hi[i % 3] = greater(hi[i % 3], x);
+        }
     for (int a = 0; a < 3; a++)
         size = fmax(size, hi[a] - lo[a]);
     return size >= SMALL;
@@ -34,7 +35,7 @@ surface *reader_mesh(reader *r, node *at, shape_spec *spec)
     bool good = path && mesh_file_read(path, r->from->model_reader, r->from->progress, &r->s->made_from, &d, why);
     if (good)
         progress_show(r->from->progress, "checking", 1);
-    good = good && mesh_clean(&d, (mesh_normals)normals, crease, BIG, why);
+    good = good && mesh_clean(&d, (mesh_normals)normals, crease, BIG, r->from->threads, why);
     if (path && !good)
         yaml_error(r->y, file, "'%s' can't be used: %s", name, why);
     else if (path && !is_large(&d))

@@ -40,6 +40,7 @@ typedef struct bump_ops {
 struct bump {
     const bump_ops *ops;
     real Pmin, Pmax; /* bounds of P; infinite where none are known */
+    bool peaked;     /* P is at these in single points alone, if at all. False where that is not known */
 
     /* Lipschitz constants of P: for any two places on the surface
      *     |P(u,w) - P(u',w')| <= Pu_max |u - u'| + Pw_max |w - w'|

@@ -207,6 +207,7 @@ void bump_map_end(bump *p, int threads)
     const heights_bounds b = heights_wrap(h, threads);
     p->Pmin = b.lo;
     p->Pmax = b.hi;
+    p->peaked = b.peaked;
     p->Pu_max = bump_slope(b.du, (double)h->grid.ku); /* rounded, as the stages use it */
     p->Pw_max = bump_slope(b.dw, (double)h->grid.kw);
 }

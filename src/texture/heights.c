@@ -1,10 +1,12 @@
 /* Central differences of heights, interpolated bilinearly. Both are sums of products of a weight along u and one along
  * w, so a look-up goes first down the columns of the 4 x 4 samples, then across the four results.
  */
+#define _DEFAULT_SOURCE /* madvise; the name is glibc's */
 #include "texture/heights.h"
 
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 
 #include "base/threads.h"
 
@@ -116,6 +118,15 @@ static void look_bent(const heights *h, int n, const int32_t *at, const real *a,
         heights_twist_across(n, g->ku, g->kw, a, (const real(*)[AROUND])c.d, out->Puw);
 }
 
+/* Ask for the rows around each cell before the first is needed, as a large map's are in lines of memory of their own.
+ */
+static void fetch(const heights *h, int n, const int32_t *at, int first, int rows)
+{
+    for (int i = 0; i < n; i++)
+        for (int k = first; k < first + rows; k++)
+            __builtin_prefetch(h->v + (size_t)at[i] + (size_t)k * (size_t)h->pitch + 1);
+}
+
 void heights_look(const heights *h, int n, const real *u, const real *w, int order, bump_values *out)
 {
     const table_grid *g = &h->grid;
@@ -123,6 +134,8 @@ void heights_look(const heights *h, int n, const real *u, const real *w, int ord
     int32_t at[LANES];
     real a[LANES], b[LANES];
     table_cells(g, h->pitch, n, u, w, at, a, b);
+    if (h->large)
+        fetch(h, n, at, order == 0, order == 0 ? 2 : AROUND);
     if (order == 0) {
         real pair[LANES][2];
         heights_pair_down(h->v, pitch, n, at, b, pair);
@@ -137,14 +150,36 @@ void heights_look(const heights *h, int n, const real *u, const real *w, int ord
 
 /* ---- filling ---- */
 
+enum {
+    LINE = 64 / sizeof(real), /* heights in a line of cache; a row is an odd number of lines, so that the samples of a
+                                 column are not all in the same few places of a cache */
+    LARGE = 1 << 24           /* bytes: more than a core's own caches */
+};
+
+/* Memory in pages of 2 MiB, where the system has such: they are touched for the first time, and found at a look-up,
+ * with less work. */
+static void *large_pages(size_t size)
+{
+    enum { PAGE = 1 << 21 };
+    void *p = NULL;
+    if (size < PAGE || posix_memalign(&p, PAGE, size) != 0)
+        return malloc(size);
+#ifdef MADV_HUGEPAGE
+    madvise(p, size, MADV_HUGEPAGE); /* a wish; without it all is the same but slower */
+#endif
+    return p;
+}
+
 bool heights_new(heights *h, int width, int height, const map_layout *l)
 {
     *h = (heights){.layout = *l, .width = width, .height = height};
     if (!table_lay(&h->grid, width, height, l))
         return false;
-    h->pitch = h->grid.columns + HEIGHTS_BEFORE + HEIGHTS_BEHIND;
-    const size_t rows = (size_t)h->grid.rows + HEIGHTS_BEFORE + HEIGHTS_BEHIND;
-    h->v = malloc(rows * (size_t)h->pitch * sizeof *h->v);
+    const int lines = (h->grid.columns + HEIGHTS_BEFORE + HEIGHTS_BEHIND + LINE - 1) / LINE;
+    h->pitch = (lines | 1) * LINE;
+    const int64_t numbers = (int64_t)h->pitch * (h->grid.rows + HEIGHTS_BEFORE + HEIGHTS_BEHIND);
+    h->large = numbers > LARGE / (int64_t)sizeof *h->v;
+    h->v = numbers <= INT32_MAX ? large_pages((size_t)numbers * sizeof *h->v) : NULL; /* indices have 32 bits */
     return h->v;
 }
 
@@ -223,7 +258,7 @@ static void join(const extremes *x, heights_bounds *b)
 
 static heights_bounds bounds_of(const heights *h, int threads)
 {
-    heights_bounds all = {REAL_FAR, -REAL_FAR, 0, 0};
+    heights_bounds all = {REAL_FAR, -REAL_FAR, 0, 0, false};
 #pragma omp parallel num_threads(threads)
     {
         extremes x;
@@ -242,6 +277,27 @@ static heights_bounds bounds_of(const heights *h, int threads)
     return all;
 }
 
+/* Whether two neighbours, one of them in the n columns of a row, are both at lo or both at hi. */
+STAGE static int heights_level(int n, real lo, real hi, const real *restrict v, const real *restrict below)
+{
+    int some = 0;
+    for (int i = 0; i < n; i++) {
+        const real most = real_max(v[i + 1], below[i]), least = real_min(v[i + 1], below[i]);
+        some |= ((v[i] >= hi) & (most >= hi)) | ((v[i] <= lo) & (least <= lo));
+    }
+    return some;
+}
+
+static bool is_peaked(const heights *h, const heights_bounds *b)
+{
+    const real rounding = R(8 * REAL_ROUNDING) * (real_abs(b->lo) + real_abs(b->hi));
+    for (int row = 0; row <= h->grid.rows; row++)
+        if (heights_level(h->grid.columns + 1, b->lo + rounding, b->hi - rounding, place(h, row, 0),
+                          place(h, row + 1, 0)))
+            return false;
+    return true;
+}
+
 heights_bounds heights_wrap(heights *h, int threads)
 {
     for (int row = 0; row < h->height; row++)
@@ -249,5 +305,7 @@ heights_bounds heights_wrap(heights *h, int threads)
     copy_row(h, -1);
     for (int row = h->height - 1; row < h->grid.rows + HEIGHTS_BEHIND; row++)
         copy_row(h, row);
-    return bounds_of(h, threads_of(threads));
+    heights_bounds b = bounds_of(h, threads_of(threads));
+    b.peaked = is_peaked(h, &b);
+    return b;
 }

@@ -16,14 +16,17 @@ typedef struct heights {
     map_layout layout;
     int width, height; /* of the map, in samples */
     int pitch;         /* numbers from row to row of the table */
+    bool large;        /* more than the caches hold */
     real *v;           /* (grid.rows + HEIGHTS_BEFORE + HEIGHTS_BEHIND) x pitch */
 } heights;
 
 /* Bounds of the heights, and the most that neighbours differ by along u and along w. Where a sample is NaN or infinite,
- * the differences are infinite. */
+ * the differences are infinite. peaked: no two neighbours are at one bound, so that heights are there in single points
+ * alone. */
 typedef struct heights_bounds {
     real lo, hi;
     double du, dw;
+    bool peaked;
 } heights_bounds;
 
 /* A table for a map of width x height samples, not yet filled. h->v: free(). False: out of memory, or table_lay has

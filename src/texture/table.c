@@ -3,13 +3,20 @@
 
 #include <stddef.h>
 
+/* real_floor without its choice for a distant x. */
+static inline real near_floor(real x)
+{
+    real f = (x + REAL_INTEGER) - REAL_INTEGER;
+    return f > x ? f - 1 : f;
+}
+
 /* The cell i of a coordinate, 0 <= i < n, and its fraction in the cell, 0..1; for any x, also NaN. */
 static inline int cell_of(real x, int n, int repeat, real *fraction)
 {
-    real N = (real)n, iN = 1 / N, y = repeat ? x - real_floor(x * iN) * N : x;
+    real N = (real)n, iN = 1 / N, y = repeat ? x - near_floor(x * iN) * N : x;
     y = real_min(real_max(y, 0), N); /* without a meaning for a distant x or NaN */
-    int i = (int)y;                  /* y >= 0, so this is the floor */
-    i = i < n ? i : n - 1;
+    int i = (int)y, last = n - 1;    /* y >= 0, so this is the floor */
+    i = i < last ? i : last;
     *fraction = y - (real)i;
     return i;
 }

@@ -528,6 +528,45 @@ static void exr_of_other_kinds_is_refused(void **state)
     free(bytes);
 }
 
+/* The samples, the range and the first of several errors are the same for any number of threads. */
+static void threads_make_no_difference(void **state)
+{
+    (void)state;
+    static const char *const files[] = {"tiled.exr", "half-zips.exr", "half-no.exr", "window-tiled.exr"};
+    for (size_t k = 0; k < sizeof files / sizeof *files; k++) {
+        image one, many;
+        float range[2], same[2];
+        errors e = {0};
+        assert_true(image_whole(in_data(files[k]), NULL, 1, &one, range, &e));
+        for (int threads = 2; threads < 9; threads++) {
+            assert_true(image_whole(in_data(files[k]), NULL, threads, &many, same, &e));
+            assert_memory_equal(one.v, many.v, SAMPLES * sizeof *one.v);
+            assert_memory_equal(range, same, sizeof range);
+            free(many.v);
+        }
+        free(one.v);
+    }
+    size_t size;
+    unsigned char *bytes = slurp(in_data("half-no.exr"), &size);
+    const char *path = in_folder("bad-lines.exr");
+    unsigned char *lines = bytes + size - HEIGHT * (8 + 2 * WIDTH);
+    for (int y = 3; y < HEIGHT; y++)
+        lines[y * (8 + 2 * WIDTH) + 8 + 1] = 0x7c; /* infinite or NaN */
+    lines[5 * (8 + 2 * WIDTH)] ^= 1;               /* the number of a line */
+    spill(path, bytes, size);
+    for (int threads = 1; threads < 9; threads++)
+        for (int again = 0; again < 20; again++) {
+            image m;
+            float range[2];
+            errors e = {0};
+            assert_false(image_whole(path, NULL, threads, &m, range, &e));
+            assert_non_null(strstr(e.text, "column 0 of row 3"));
+            errors_free(&e);
+        }
+    unlink(path);
+    free(bytes);
+}
+
 static void damaged_exr_is_refused(void **state)
 {
     (void)state;
@@ -959,6 +998,7 @@ int main(void)
         cmocka_unit_test(every_half_is_read_exactly),
         cmocka_unit_test(exr_of_other_kinds_is_refused),
         cmocka_unit_test(damaged_exr_is_refused),
+        cmocka_unit_test(threads_make_no_difference),
         cmocka_unit_test(exr_round_trip_keeps_every_bit),
         cmocka_unit_test(same_image_same_bytes),
         cmocka_unit_test(file_is_replaced_whole),

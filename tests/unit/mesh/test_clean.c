@@ -23,7 +23,7 @@ static mesh_data triangles(int n)
 static void refused(mesh_data *d, const char *expected)
 {
     char why[MESH_WHY];
-    assert_false(mesh_clean(d, MESH_NORMALS_FILE, 40, 1e6, why));
+    assert_false(mesh_clean(d, MESH_NORMALS_FILE, 40, 1e6, 2, why));
     assert_string_equal(why, expected);
     mesh_data_free(d);
 }
@@ -31,7 +31,7 @@ static void refused(mesh_data *d, const char *expected)
 static void clean(mesh_data *d)
 {
     char why[MESH_WHY];
-    if (!mesh_clean(d, MESH_NORMALS_FILE, 40, 1e6, why))
+    if (!mesh_clean(d, MESH_NORMALS_FILE, 40, 1e6, 2, why))
         fail_msg("%s", why);
 }
 
@@ -163,7 +163,7 @@ static void check_cube(double crease, bool smooth)
             d.at[k][i][(axis + 1) % 3] = (float)(2 * (high ? b : c) - 1);
             d.at[k][i][(axis + 2) % 3] = (float)(2 * (high ? c : b) - 1);
         }
-    assert_true(mesh_clean(&d, MESH_NORMALS_FILE, crease, 1e6, why));
+    assert_true(mesh_clean(&d, MESH_NORMALS_FILE, crease, 1e6, 2, why));
     for (int k = 0; k < 12; k++)
         for (int i = 0; i < 3; i++)
             for (int a = 0; a < 3; a++) {

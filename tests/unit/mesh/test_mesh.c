@@ -62,7 +62,7 @@ static mesh_data grid(model *of, int n, int m)
 static mesh *mesh_from(mesh_data d, mesh_normals normals, double crease)
 {
     char why[MESH_WHY];
-    assert_true(mesh_clean(&d, normals, crease, 1e6, why));
+    assert_true(mesh_clean(&d, normals, crease, 1e6, 2, why));
     surface *f = mesh_new(&d, 1, NULL);
     assert_non_null(f);
     return (mesh *)f;

@@ -209,6 +209,31 @@ static void counts(void **state)
     bump_free(P);
 }
 
+/* Where P does not reach the top of the slab, march leaves step 0 out, to the same bytes. */
+static void march_below_the_top(void **state)
+{
+    (void)state;
+    int few = 0;
+    bump *P = function("0.05*sin(5*u)*cos(4*w) + 0.02*sin(11*u + 3*w)");
+    for (int round = 0; round < 16; round++)
+        for (int N = 1; N <= 8; N++) {
+            const method m = {METHOD_MARCH, N};
+            hit_group *g = wave(P, round % 2 ? 1 : -1);
+            real tau[LANES];
+            int32_t order[LANES];
+            P->peaked = false;
+            const long all = shift_group(g, P, m, true);
+            memcpy(tau, g->tau, sizeof tau);
+            memcpy(order, g->order, sizeof order);
+            P->peaked = true;
+            few += shift_group(g, P, m, true) < all;
+            assert_memory_equal(tau, g->tau, sizeof tau);
+            assert_memory_equal(order, g->order, sizeof order);
+        }
+    CHECK(few, >, 0);
+    bump_free(P);
+}
+
 /* The guard keeps every shift within the slab. */
 static void guarded_shifts_stay_in_the_slab(void **state)
 {
@@ -272,11 +297,17 @@ static void curvature_is_asked_for(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(curvature_is_asked_for),          cmocka_unit_test(no_bump_no_shift),
-        cmocka_unit_test(constant_is_exact_for_all),       cmocka_unit_test(linear_is_exact_from_order_1),
-        cmocka_unit_test(quadratic_is_exact_for_order_2),  cmocka_unit_test(lower_orders_are_not_exact),
-        cmocka_unit_test(march_and_iter_come_near),        cmocka_unit_test(counts),
-        cmocka_unit_test(guarded_shifts_stay_in_the_slab), cmocka_unit_test(pole),
+        cmocka_unit_test(curvature_is_asked_for),
+        cmocka_unit_test(no_bump_no_shift),
+        cmocka_unit_test(constant_is_exact_for_all),
+        cmocka_unit_test(linear_is_exact_from_order_1),
+        cmocka_unit_test(quadratic_is_exact_for_order_2),
+        cmocka_unit_test(lower_orders_are_not_exact),
+        cmocka_unit_test(march_and_iter_come_near),
+        cmocka_unit_test(counts),
+        cmocka_unit_test(guarded_shifts_stay_in_the_slab),
+        cmocka_unit_test(pole),
+        cmocka_unit_test(march_below_the_top),
     };
     return cmocka_run_group_tests_name("the method over waves", tests, NULL, NULL);
 }

@@ -91,13 +91,15 @@ static const map_layout layouts[] = {
     {{2, 3}, {0, 0}, MAP_REPEAT, false, 0.1, 0.5},     {{2, 3}, {0.3, -0.2}, MAP_CLAMP, false, 0.1, 0.5},
     {{0.7, 0.9}, {-1, 2}, MAP_MIRROR, false, -0.3, 0}, {{2, 3}, {0.5, 0.25}, MAP_REPEAT, true, 0.1, 0.25},
     {{2, 3}, {0, 0}, MAP_CLAMP, true, 0.1, 0.5},       {{5, 1}, {0, 0}, MAP_MIRROR, true, 2, 1},
+    {{-2, 3}, {0, 0}, MAP_REPEAT, false, 0.1, 0.5},    {{2, -3}, {0.3, -0.2}, MAP_CLAMP, false, 0.1, 0.5},
+    {{-0.7, -3}, {0, 1}, MAP_MIRROR, true, 0.1, 0.5},
 };
 enum { LAYOUTS = sizeof layouts / sizeof *layouts };
 
 /* The scale of each value: the height's, over the sample distance to the power of the derivative. */
 static void sizes(const map_layout *l, double s[6])
 {
-    double du = l->size[0] / W, dw = l->size[1] / H, k = fabs(l->scale);
+    double du = fabs(l->size[0]) / W, dw = fabs(l->size[1]) / H, k = fabs(l->scale);
     const double v[6] = {k, k / du, k / dw, k / du / du, k / du / dw, k / dw / dw};
     for (int i = 0; i < 6; i++)
         s[i] = 4 * v[i];
@@ -365,7 +367,7 @@ static void map_slopes(void **state)
         double steepest[2] = {0, 0}, size[6];
         sizes(l, size);
         /* a place rounds as its sample number does: up to 3 copies of W samples */
-        const double rounding = TOLERANCE * (size[0] + (top[0] * l->size[0] + top[1] * l->size[1]) * 3);
+        const double rounding = TOLERANCE * (size[0] + (top[0] * fabs(l->size[0]) + top[1] * fabs(l->size[1])) * 3);
         for (int k = 0; k < 100000; k++) {
             double u = l->offset[0] + l->size[0] * draw_in(-1.2, 2.2),
                    w = l->offset[1] + l->size[1] * draw_in(-1.2, 2.2);
@@ -388,9 +390,9 @@ static void map_slopes(void **state)
                 double u = l->offset[0] + (i + half) * d[0], w = l->offset[1] + (j + half) * d[1], a[6], b[6];
                 look(p, u, w, a);
                 look(p, u + d[0], w, b);
-                steepest[0] = fmax(steepest[0], fabs(b[0] - a[0]) / d[0]);
+                steepest[0] = fmax(steepest[0], fabs((b[0] - a[0]) / d[0]));
                 look(p, u, w + d[1], b);
-                steepest[1] = fmax(steepest[1], fabs(b[0] - a[0]) / d[1]);
+                steepest[1] = fmax(steepest[1], fabs((b[0] - a[0]) / d[1]));
             }
         for (int k = 0; k < 2; k++)
             near(top[k], steepest[k], size[1 + k] * 8);
@@ -468,6 +470,33 @@ static void function_slopes(void **state)
     check_function("w+abs(u)", 1, -1, 1, 1, 1, ulps);
 }
 
+/* peaked: no two neighbours are both the highest or the lowest samples, also across the wrap. */
+static void peaks(void **state)
+{
+    (void)state;
+    static const struct {
+        int i, j; /* these samples become */
+        float to; /* this */
+        bool repeated, clamped;
+    } cases[] = {
+        {8, 8, 9, true, true},           /* one */
+        {8, 9, 9, false, false},         /* beside each other */
+        {8, 8 + W, -9, false, false},    /* one below the other */
+        {8, 8 + W + 1, 9, true, true},   /* across a corner: between them P is lower */
+        {W, 2 * W - 1, 9, false, false}, /* at both ends of a row */
+    };
+    for (size_t n = 0; n < sizeof cases / sizeof *cases; n++)
+        for (int clamp = 0; clamp < 2; clamp++) {
+            const map_layout l = {.size = {1, 1}, .wrap = clamp ? MAP_CLAMP : MAP_REPEAT, .scale = 0.1, .zero = 0.5};
+            image *m = data();
+            samples[2 * W + 3] = -8; /* the lowest is not at an end, beyond which a clamped P is constant */
+            samples[cases[n].i] = samples[cases[n].j] = cases[n].to;
+            bump *p = bump_of_map(m, &l);
+            assert_int_equal(p->peaked, clamp ? cases[n].clamped : cases[n].repeated);
+            bump_free(p);
+        }
+}
+
 static void too_small(void **state)
 {
     (void)state;
@@ -479,12 +508,19 @@ static void too_small(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(at_the_samples),  cmocka_unit_test(bilinear_between),
-        cmocka_unit_test(anywhere),        cmocka_unit_test(map_bounds),
-        cmocka_unit_test(orders),          cmocka_unit_test(functions),
-        cmocka_unit_test(map_slopes),      cmocka_unit_test(odd_map_slopes),
-        cmocka_unit_test(function_slopes), cmocka_unit_test(too_small),
-        cmocka_unit_test(clamped_ramp),    cmocka_unit_test(derivatives_are_differences),
+        cmocka_unit_test(at_the_samples),
+        cmocka_unit_test(bilinear_between),
+        cmocka_unit_test(anywhere),
+        cmocka_unit_test(map_bounds),
+        cmocka_unit_test(orders),
+        cmocka_unit_test(functions),
+        cmocka_unit_test(map_slopes),
+        cmocka_unit_test(odd_map_slopes),
+        cmocka_unit_test(function_slopes),
+        cmocka_unit_test(too_small),
+        cmocka_unit_test(peaks),
+        cmocka_unit_test(clamped_ramp),
+        cmocka_unit_test(derivatives_are_differences),
     };
     return cmocka_run_group_tests_name("heights", tests, NULL, NULL);
 }
