@@ -10,7 +10,7 @@ static void circle(double degrees, double *c, double *s)
 {
     const double quarter = km_floor(degrees / 90 + 0.5), rest = (degrees - 90 * quarter) * (KM_PI / 180);
     const int k = (int)(quarter - 4 * km_floor(quarter / 4));
-    const double x = km_cos(rest), y = km_sin(rest);
+    const double x = rest == 0 ? 1 : km_cos(rest), y = rest == 0 ? 0 : km_sin(rest);
     *c = k == 0 ? x : k == 1 ? -y : k == 2 ? -x : y;
     *s = k == 0 ? y : k == 1 ? x : k == 2 ? -y : -x;
 }
