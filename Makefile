@@ -25,7 +25,9 @@ comma    := ,
 # As many jobs as processors, unless make was told how many.
 JOBS      = $(if $(findstring jobserver,$(MAKEFLAGS)),,-j$(shell nproc 2>/dev/null || echo 1))
 
-PKGS      = libpng libfyaml OpenEXR
+# OpenEXR 3.2 brought libdeflate along; an older one is given it by us.
+DEFLATE  := $(shell pkg-config --exists 'OpenEXR >= 3.2' || echo libdeflate)
+PKGS      = libpng libfyaml OpenEXR $(DEFLATE)
 WARNINGS  = -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wdouble-promotion -Wmissing-prototypes \
             -Wstrict-prototypes -Wwrite-strings -Wundef
 # No -ffast-math: these three keep sums as written (the same bytes on every processor), while loops vectorise.
@@ -55,7 +57,7 @@ EMBREE     := $(firstword $(foreach v,4 3,$(shell printf '\043include <embree$(v
                   $(CC) -fsyntax-only -x c - 2>/dev/null && echo $(v))))
 DEFINES    += -DKAGE_EMBREE=$(or $(EMBREE),0)
 PKG_LIBS   := $(shell pkg-config --libs-only-L OpenEXR 2>/dev/null) -lOpenEXRCore \
-              $(shell pkg-config --libs libpng libfyaml 2>/dev/null)
+              $(shell pkg-config --libs libpng libfyaml $(DEFLATE) 2>/dev/null)
 # All objects can go into the shared library, and only what kage.h declares can be seen from outside.
 VISIBILITY = -fPIC -fvisibility=hidden
 override CFLAGS  += -Iinclude -Isrc $(STANDARD) $(OPTIMISE) $(VISIBILITY) $(THREADS) $(WARNINGS) $(DEFINES) \

@@ -39,7 +39,7 @@ int main(int argc, char **argv)
     if (status == KAGE_OK)
         status = kage_render(scene, &options, &film, &errors);
     if (status == KAGE_OK)
-        status = kage_film_write_png(film, argv[2], 8, &errors);
+        status = kage_film_write(film, argv[2], NULL, &errors);
     if (status == KAGE_OK)
         fprintf(stderr, "\r%d x %d pixels in %.2f s\n", kage_film_width(film), kage_film_height(film),
                 kage_film_get_stats(film)->seconds);

@@ -5,7 +5,7 @@
  *     kage_errors *errors;
  *     if (kage_scene_load("scene.yaml", NULL, &scene, &errors) != KAGE_OK) ...
  *     if (kage_render(scene, NULL, &film, &errors) != KAGE_OK) ...
- *     kage_film_write_png(film, "picture.png", 8, &errors);
+ *     kage_film_write(film, "picture.png", NULL, &errors);
  *
  * docs/library.md shows whole programs, docs/scene.md describes scenes, docs/method.md the methods.
  *
@@ -91,8 +91,8 @@ KAGE_API void kage_errors_free(kage_errors *errors); /* NULL: nothing */
 typedef struct kage_scene kage_scene;
 
 /* Called now and then during a long call, in the caller's thread. what: the current step ("objects", "reading",
- * "unpacking", "checking", "building", "rendering"); share: how much of it is done, 0..1. If it returns nonzero, the
- * call ends soon with KAGE_CANCELLED. It may call the library. */
+ * "unpacking", "checking", "building", "rendering", "writing"); share: how much of it is done, 0..1. If it returns
+ * nonzero, the call ends soon with KAGE_CANCELLED. It may call the library. */
 typedef int kage_progress(void *user, const char *what, double share);
 
 typedef struct kage_load_options {
@@ -182,7 +182,7 @@ KAGE_API const kage_scene_info *kage_scene_get_info(const kage_scene *scene);
 KAGE_API int kage_scene_uses_file(const kage_scene *scene, const char *path);
 
 /* Whether `word` is "color", the name of a plane of the scene's films, or what stands before its dot ("N", "uw",
- * "visibility"): what kage_film_write_exr takes as a layer. */
+ * "visibility"): what kage_write_options.layers has. */
 KAGE_API int kage_scene_has_layer(const kage_scene *scene, const char *word);
 
 /* ---- rendering ---- */
@@ -215,10 +215,10 @@ typedef struct kage_render_options {
 
 typedef struct kage_film kage_film;
 
-/* Render the scene into a new film. options: NULL for the defaults. The bytes of a film depend neither on the threads
- * nor on the crop. The first render with another value of `displaced`, with `exact`, `auto` or `horizon`, reads the
- * scene again from its text and files, which must be unchanged; errors then are KAGE_BAD_INPUT. Several threads may
- * render one scene without a lock. The film may outlive the scene. */
+/* Render the scene into a new film, of at most 2^28 pixels. options: NULL for the defaults. The bytes of a film depend
+ * neither on the threads nor on the crop. The first render with another value of `displaced`, with `exact`, `auto` or
+ * `horizon`, reads the scene again from its text and files, which must be unchanged; errors then are KAGE_BAD_INPUT.
+ * Several threads may render one scene without a lock. The film may outlive the scene. */
 KAGE_API kage_status kage_render(kage_scene *scene, const kage_render_options *options, kage_film **film,
                                  kage_errors **errors);
 
@@ -240,15 +240,43 @@ KAGE_API const char *kage_film_plane_name(const kage_film *film, int index); /* 
 /* The values of a plane, not a copy: height x width, row by row from the top. NULL: no such plane. */
 KAGE_API const float *kage_film_plane(const kage_film *film, const char *name);
 
-/* Write R, G and B as a PNG of 8 or 16 bits (0: 8) in sRGB. The file appears whole or not at all, and replaces an older
- * one. Like an EXR it contains the scene's text, the changes and options, but no path, time or host name. */
-KAGE_API kage_status kage_film_write_png(const kage_film *film, const char *path, int bits, kage_errors **errors);
+/* ---- files ---- */
 
-/* Write planes as an OpenEXR of 32-bit floats, linear. layers: names for kage_scene_has_layer with commas between them;
- * NULL: all planes. A name that the film does not have is KAGE_BAD_OPTION. threads: 0 for all processors; the bytes are
- * the same. Otherwise as kage_film_write_png. */
-KAGE_API kage_status kage_film_write_exr(const kage_film *film, const char *path, const char *layers, int threads,
-                                         kage_errors **errors);
+typedef struct kage_write_options {
+    int bits;                /* of a PNG: 8 or 16; 0: 8 */
+    const char *layers;      /* of an EXR: names for kage_scene_has_layer with commas between them; NULL: all planes */
+    int threads;             /* 0: as many as there are processors; the bytes are the same */
+    kage_progress *progress; /* NULL: none */
+    void *user;              /* for progress */
+    int keep;                /* not 0: see kage_render_file */
+    int resume;              /* not 0: see kage_render_file */
+    int band;                /* of kage_render_file: rows of a band, in 16s; 0: 64 MiB or more */
+    void *reserved[7];
+} kage_write_options;
+
+/* Write a film. Where `path` ends in ".png": R, G and B in sRGB; in ".exr": planes as 32-bit floats, linear, ZIP. The
+ * file appears whole or not at all, and replaces an older one; neither is there when the call is cancelled. It contains
+ * the scene's text, the changes and options, but no path, time or host name. options: NULL for the defaults. Another
+ * ending, or a layer that the film does not have, is KAGE_BAD_OPTION. */
+KAGE_API kage_status kage_film_write(const kage_film *film, const char *path, const kage_write_options *options,
+                                     kage_errors **errors);
+
+/* Render the scene and write it, as kage_render and kage_film_write, but in bands: a film of some rows is rendered,
+ * written, and used again. So memory does not bound the picture, and a picture may have KAGE_MAX_SIDE pixels along both
+ * sides. The bytes of the file are the same. The progress callback is that of `render`; its share is that of the whole.
+ *
+ * An EXR of which `write` says keep or resume has the name PATH.part until it is finished, and stays there when the
+ * call is cancelled or fails, or the process is killed. resume: go on with the rows that are whole in PATH.part, to the
+ * same bytes. Its header must be the same, else the call fails (KAGE_NOT_WRITTEN): the scene's text, options, size and
+ * layers, and the version. Files that the scene names are not compared. keep alone: begin anew.
+ *
+ * film: the last band, with the counts of all bands that this call has rendered; NULL: not wanted. */
+KAGE_API kage_status kage_render_file(kage_scene *scene, const kage_render_options *render, const char *path,
+                                      const kage_write_options *write, kage_film **film, kage_errors **errors);
+
+/* Whether a picture could be written at `path` now: its folder is there and may be written, and so may an older file.
+ * Nothing is changed. */
+KAGE_API kage_status kage_file_probe(const char *path, kage_errors **errors);
 
 /* Whether the file is a PNG that kage has written, of any version. */
 KAGE_API int kage_file_is_picture(const char *path);

@@ -7,6 +7,7 @@
 
 #include "kage.h"
 #include "film/film.h"
+#include "image/image.h"
 #include "scene/scene.h"
 
 /* The C locale for numbers, in this thread, from begin to end; the process may have set another. */
@@ -68,5 +69,28 @@ struct kage_film {
     kage_stage *stages;
     kage_order_count orders[ORDER_CODES];
 };
+
+/* Whether a word of n letters names a plane: its whole name, the part before the dot (N for N.X), or `color` for R, G
+ * and B; and whether it names one of a film's. */
+bool film_names_plane(const char *word, size_t n, const char *plane);
+bool film_has_layer(const film *f, const char *word, size_t n);
+
+/* A picture's file that is being written, and the planes of films that go into it. */
+typedef struct picture {
+    image_writer *writer;
+    int planes, *plane;
+    const float **row; /* of each of these planes, the rows to be added */
+} picture;
+
+/* Begin a file with a part of the picture, of which f is a window or all. Not KAGE_OK: an error is in *e, and nothing
+ * is open. */
+kage_status picture_begin(picture *p, const kage_film *f, window part, const char *path, const kage_write_options *o,
+                          errors *e);
+
+/* Add the rows of a film, the next ones of the picture. False: stopped or failed. */
+bool picture_add(picture *p, const film *f, const progress *show);
+
+/* End the file; whole: all rows are added, else it is deleted or kept as a part. */
+kage_status picture_end(picture *p, bool whole, errors *e);
 
 #endif

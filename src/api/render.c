@@ -1,7 +1,8 @@
-/* kage_render: check the options, apply them to a copy of the scene's settings, render, and report the counts. */
+/* kage_render and kage_render_file: check the options, apply them to a copy of the scene's settings, render a film or
+ * band by band, and report the counts. */
 #include "api/api.h"
 
-#include "image/image.h"
+#include "base/threads.h"
 #include "film/render.h"
 
 #include <stdarg.h>
@@ -33,10 +34,8 @@ static bool options_are_good(const kage_render_options *o, errors *e)
     if (!is_choice(o->guard) || !is_choice(o->displaced) || !is_choice(o->self_shadow) || !is_choice(o->shifted))
         good = errors_add(e, "no choice, expected KAGE_AS_SCENE, KAGE_YES or KAGE_NO");
     if ((o->width != 0 || o->height != 0) &&
-        (o->width < 1 || o->height < 1 || o->width > KAGE_MAX_SIDE || o->height > KAGE_MAX_SIDE ||
-         (long)o->width * o->height > IMAGE_MAX_PIXELS))
-        good = errors_add(e, "a picture of %d x %d pixels, expected 1 to %d each, and %ld in all", o->width, o->height,
-                          KAGE_MAX_SIDE, IMAGE_MAX_PIXELS);
+        (o->width < 1 || o->height < 1 || o->width > KAGE_MAX_SIDE || o->height > KAGE_MAX_SIDE))
+        good = errors_add(e, "a picture of %d x %d pixels, expected 1 to %d each", o->width, o->height, KAGE_MAX_SIDE);
     if (o->aa < 0 || o->aa > KAGE_MAX_AA)
         good = errors_add(e, "%d samples along a pixel's side, expected 1 to %d", o->aa, KAGE_MAX_AA);
     if (!(o->aa_threshold >= 0 && o->aa_threshold <= 3))
@@ -201,7 +200,9 @@ static void set_stats(kage_film *f, const stats *t, double seconds)
     };
 }
 
-static bool fill(kage_film *f, const job *j, const kage_render_options *o, watch *w, errors *e)
+/* Render the film's window, and add to the counts and the time. */
+static bool fill(kage_film *f, const job *j, const kage_render_options *o, const progress *p, stats *sum,
+                 double *seconds, errors *e)
 {
     const scene *s = &j->view;
     const tracer k = {.scene = s,
@@ -212,13 +213,23 @@ static bool fill(kage_film *f, const job *j, const kage_render_options *o, watch
                       .layers = j->layers,
                       .displaced = s->displaced,
                       .self_shadow = s->self_shadow};
-    const progress p = watch_progress(w);
-    const render_options how = {s->aa, s->aa_threshold, o->threads, o->timing != 0, w->call ? &p : NULL};
+    const render_options how = {s->aa, s->aa_threshold, o->threads, o->timing != 0, p};
     stats t;
     const double start = stats_clock();
     const bool good = render(&k, &how, f->film, &t, e);
-    set_stats(f, &t, stats_clock() - start);
-    return good && !w->cancelled;
+    stats_add(sum, &t);
+    *seconds += stats_clock() - start;
+    set_stats(f, sum, *seconds);
+    return good;
+}
+
+/* A picture of this part is not too large for a film. */
+static bool fits_film(window w, errors *e)
+{
+    const long pixels = (long)(w.x1 - w.x0) * (w.y1 - w.y0);
+    return pixels <= IMAGE_MAX_PIXELS ||
+           errors_add(e, "a film of %ld pixels, expected at most %ld, or to be written in bands (kage_render_file)",
+                      pixels, IMAGE_MAX_PIXELS);
 }
 
 kage_status kage_render(kage_scene *k, const kage_render_options *given, kage_film **out, kage_errors **to)
@@ -226,16 +237,111 @@ kage_status kage_render(kage_scene *k, const kage_render_options *given, kage_fi
     const kage_render_options o = given ? *given : (kage_render_options){0};
     errors e = {0};
     job j;
+    stats t = {0};
+    double seconds = 0;
     c_locale l = c_locale_begin();
     watch w = {o.progress, o.user, &l, false};
+    const progress p = watch_progress(&w);
     kage_status status = settle(k, &o, &j, &e);
+    if (status == KAGE_OK && !fits_film(j.part, &e))
+        status = KAGE_BAD_OPTION;
     kage_film *f = status == KAGE_OK ? new_film(k, &o, &j, &e) : NULL;
-    const bool good = f && fill(f, &j, &o, &w, &e);
+    const bool good = f && fill(f, &j, &o, w.call ? &p : NULL, &t, &seconds, &e) && !w.cancelled;
     c_locale_end(&l);
     if (!good) {
         kage_film_free(f);
         status = status == KAGE_OK ? KAGE_NO_MEMORY : status;
     }
     *out = good ? f : NULL;
+    return errors_give(&e, status, &w, to);
+}
+
+/* ---- in bands ---- */
+
+/* The rows of a band: 64 MiB of film, or more where many threads share them, but not above 1 GiB. */
+static int band_rows(const job *j, int threads)
+{
+    enum { MIB = 1 << 20, LEAST = 64, MOST = 1024, CHUNKS = 2 };
+    const long planes = j->layers ? FILM_LIGHTS + j->view.lights : FILM_PICTURE;
+    const long row = planes * (j->part.x1 - j->part.x0) * (long)sizeof(float);
+    const long busy = (long)CHUNKS * threads_of(threads) * IMAGE_ROWS, most = (long)MOST * MIB / row;
+    long rows = (long)LEAST * MIB / row;
+    rows = rows < busy ? busy : rows;
+    rows = rows > most ? most : rows;
+    return rows > IMAGE_ROWS ? (int)(rows - rows % IMAGE_ROWS) : IMAGE_ROWS;
+}
+
+/* A stretch of the work, whose progress is shown as that of the whole. */
+typedef struct stretch {
+    const progress *whole;
+    double from, to;
+} stretch;
+
+static bool show_stretch(void *user, const char *what, double share)
+{
+    const stretch *s = user;
+    (void)what;
+    return progress_show(s->whole, "rendering", s->from + (s->to - s->from) * share);
+}
+
+/* Render and write the rows that are not in the file yet. */
+static bool fill_bands(kage_film *f, const job *j, const kage_render_options *o, int rows, picture *to,
+                       const progress *p, errors *e)
+{
+    const window part = j->part;
+    const double all = part.y1 - part.y0;
+    stats t = {0};
+    double seconds = 0;
+    bool good = true;
+    for (int y = part.y0 + image_writer_rows(to->writer), next; good && y < part.y1; y = next) {
+        next = part.y1 - y < rows ? part.y1 : y + rows;
+        const double from = (y - part.y0) / all, end = (next - part.y0) / all, half = (from + end) / 2;
+        stretch first = {p, from, half}, second = {p, half, end};
+        const progress rendering = {show_stretch, &first}, writing = {show_stretch, &second};
+        film_move(f->film, y, next);
+        good = fill(f, j, o, p ? &rendering : NULL, &t, &seconds, e) && picture_add(to, f->film, p ? &writing : NULL);
+    }
+    return good;
+}
+
+static kage_film *new_band(const kage_scene *k, const kage_render_options *o, const job *j, int rows, errors *e)
+{
+    job band = *j;
+    if (j->part.y1 - j->part.y0 > rows)
+        band.part.y1 = j->part.y0 + rows;
+    return new_film(k, o, &band, e);
+}
+
+kage_status kage_render_file(kage_scene *k, const kage_render_options *given, const char *path,
+                             const kage_write_options *how, kage_film **out, kage_errors **to)
+{
+    const kage_render_options o = given ? *given : (kage_render_options){0};
+    const kage_write_options write = how ? *how : (kage_write_options){0};
+    errors e = {0};
+    job j;
+    picture file;
+    c_locale l = c_locale_begin();
+    watch w = {o.progress, o.user, &l, false};
+    const progress p = watch_progress(&w);
+    kage_status status = settle(k, &o, &j, &e);
+    if (status == KAGE_OK && (write.band < 0 || write.band % IMAGE_ROWS != 0)) {
+        errors_add(&e, "a band of %d rows, expected a multiple of %d", write.band, IMAGE_ROWS);
+        status = KAGE_BAD_OPTION;
+    }
+    const int rows = status != KAGE_OK ? 0 : write.band ? write.band : band_rows(&j, o.threads);
+    kage_film *f = status == KAGE_OK ? new_band(k, &o, &j, rows, &e) : NULL;
+    if (status == KAGE_OK)
+        status = f ? picture_begin(&file, f, j.part, path, &write, &e) : KAGE_NO_MEMORY;
+    if (status == KAGE_OK) {
+        const bool good = fill_bands(f, &j, &o, rows, &file, w.call ? &p : NULL, &e) && !w.cancelled;
+        status = picture_end(&file, good, &e);
+    }
+    c_locale_end(&l);
+    if (status != KAGE_OK || !out) {
+        kage_film_free(f);
+        f = NULL;
+    }
+    if (out)
+        *out = f;
     return errors_give(&e, status, &w, to);
 }

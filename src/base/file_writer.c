@@ -92,6 +92,83 @@ bool file_writer_write(file_writer *f, const void *data, size_t size, uint64_t o
     return !f->error;
 }
 
+/* Is the open file empty, or does it begin with these bytes? */
+static bool begins_with(int fd, const char magic[4])
+{
+    char found[4];
+    const ssize_t n = pread(fd, found, sizeof found, 0);
+    return n == 0 || (n == sizeof found && memcmp(found, magic, sizeof found) == 0);
+}
+
+/* Lock the open file f->aside against other processes, and see how much is in it. False: f->error, or a message. */
+static bool take_part(file_writer *f, bool resume, const char magic[4], errors *e)
+{
+    struct flock lock = {.l_type = F_WRLCK, .l_whence = SEEK_SET};
+    struct stat st;
+    if (fcntl(f->fd, F_SETLK, &lock) != 0)
+        return errno == EACCES || errno == EAGAIN ? fail(f->aside, "another process writes it", e)
+                                                  : fail(f->aside, strerror(errno), e);
+    if (!begins_with(f->fd, magic))
+        return fail(f->aside, "there is a file that is no unfinished picture, expected none", e);
+    if (fstat(f->fd, &st) != 0 || (!resume && ftruncate(f->fd, 0) != 0))
+        return fail(f->aside, strerror(errno), e);
+    f->size = resume ? (uint64_t)st.st_size : 0;
+    return true;
+}
+
+bool file_writer_open_part(file_writer *f, const char *path, bool resume, const char magic[4], errors *e)
+{
+    struct stat st;
+    const bool exists = stat(path, &st) == 0;
+    *f = (file_writer){.path = path, .fd = -1, .keep = true};
+    if (exists && !S_ISREG(st.st_mode))
+        return fail(path, S_ISDIR(st.st_mode) ? strerror(EISDIR) : "an unfinished picture needs a regular file", e);
+    if (exists && access(path, W_OK) != 0)
+        return fail(path, strerror(errno), e);
+    f->target = exists ? realpath(path, NULL) : strdup(path);
+    const size_t room = f->target ? strlen(f->target) + sizeof ".part" : 0;
+    f->aside = f->target ? malloc(room) : NULL;
+    bool good = f->aside != NULL;
+    if (good) {
+        snprintf(f->aside, room, "%s.part", f->target);
+        f->fd = open(f->aside, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    }
+    if (f->fd < 0)
+        good = fail(path, strerror(errno), e);
+    else if (!take_part(f, resume, magic, e)) {
+        close(f->fd);
+        good = false;
+    }
+    if (!good) {
+        free(f->aside);
+        free(f->target);
+    }
+    return good;
+}
+
+bool file_writer_read(const file_writer *f, void *data, size_t size, uint64_t offset)
+{
+    char *to = data;
+    while (size > 0) {
+        const ssize_t n = pread(f->fd, to, size, (off_t)offset);
+        if (n == 0 || (n < 0 && errno != EINTR))
+            return false;
+        if (n > 0) {
+            to += n;
+            offset += (uint64_t)n;
+            size -= (size_t)n;
+        }
+    }
+    return true;
+}
+
+bool file_writer_cut(file_writer *f, uint64_t size)
+{
+    if (!f->error && ftruncate(f->fd, (off_t)size) != 0)
+        f->error = errno;
+    return !f->error;
+}
+
 /* Copy all of `from` into `path`. 0, or errno. */
 static int copy_to(const char *path, int from)
 {
@@ -117,11 +194,11 @@ bool file_writer_close(file_writer *f, const char *why, errors *e)
         f->error = errno;
     if (!why && !f->error && f->target && rename(f->aside, f->target) != 0)
         f->error = errno;
-    if ((why || f->error) && f->aside)
+    if ((why || f->error) && f->aside && !f->keep)
         unlink(f->aside);
     free(f->aside);
     free(f->target);
     if (f->error)
         return fail(f->path, strerror(f->error), e);
-    return !why || fail(f->path, why, e);
+    return !why || (*why && fail(f->path, why, e));
 }

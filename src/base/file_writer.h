@@ -15,17 +15,30 @@ typedef struct file_writer {
     char *target;     /* path with all links followed; NULL: not a regular file */
     char *aside;      /* the temporary name; NULL: the file has none */
     int fd;
-    int error; /* errno of the first write that failed; 0: none */
+    bool keep;     /* an unfinished file stays under its temporary name */
+    uint64_t size; /* of the unfinished file that was there */
+    int error;     /* errno of the first write that failed; 0: none */
 } file_writer;
 
 /* Start. `path` must outlive f. False, with a message in *e: f need not be closed. */
 bool file_writer_open(file_writer *f, const char *path, errors *e);
 
+/* Start, or go on: the temporary name is PATH.part, and the file stays there until it is finished. resume: keep what is
+ * in it, f->size bytes; else begin it anew, but only if there is nothing or a file that begins with these 4 bytes. No
+ * two processes write it at a time. `path` must be a regular file or absent. */
+bool file_writer_open_part(file_writer *f, const char *path, bool resume, const char magic[4], errors *e);
+
+/* Read what was there. False: it could not be read. */
+bool file_writer_read(const file_writer *f, void *data, size_t size, uint64_t offset);
+
+/* Cut off what is after the first `size` bytes. A failure is kept in f->error. */
+bool file_writer_cut(file_writer *f, uint64_t size);
+
 /* Put `size` bytes at `offset`. A failure is kept in f->error. */
 bool file_writer_write(file_writer *f, const void *data, size_t size, uint64_t offset);
 
-/* Finish the file if `why` is NULL, else delete it. False, with one message in *e: the system's reason if a write
- * failed, else `why`. */
+/* Finish the file if `why` is NULL, else delete it, unless it is kept. False, with one message in *e: the system's
+ * reason if a write failed, else `why`, unless that is empty. */
 bool file_writer_close(file_writer *f, const char *why, errors *e);
 
 #endif

@@ -42,13 +42,8 @@ typedef void bvh_visit(void *user, int32_t box);
 bvh *bvh_new(int n, const bvh_box *box, int threads, const progress *w);
 void bvh_free(bvh *b);
 
-/* Visit the boxes that r + s t, 0 <= t <= end, passes. Reentrant, as are bvh_toward and bvh_around. */
+/* Visit the boxes that r + s t, 0 <= t <= end, passes. Reentrant, as are bvh_packet_toward and bvh_around. */
 void bvh_along(const bvh *b, const float r[3], const float s[3], float end, bvh_visit *visit, void *user);
-
-/* The same, roughly from near to far. `visit` returns the new end of the ray, at most `end`, or a negative number to
- * stop. Boxes beyond the new end may still be visited. */
-typedef float bvh_shorten(void *user, int32_t box, float end);
-void bvh_toward(const bvh *b, const float r[3], const float s[3], float end, bvh_shorten *visit, void *user);
 
 /* Rays at + way x, 0 <= x <= end. end < 0: there is no such ray. */
 enum { BVH_PACKET = 16 };
@@ -65,8 +60,8 @@ void bvh_enter_packet(const bvh_space *p, double reach, const double r[3][BVH_PA
  * end[i] of these rays; a negative number stops the ray. Boxes beyond the new end may still be visited. */
 typedef void bvh_meet(void *user, int32_t box, uint32_t which, float end[BVH_PACKET]);
 
-/* As bvh_toward, for rays that go nearly the same way: they share the hierarchy's memory and the calls. x->end becomes
- * where each ray ended. */
+/* Visit the boxes of a packet's rays, roughly from near to far. Rays that go nearly the same way share the hierarchy's
+ * memory and the calls. x->end becomes where each ray ended. */
 void bvh_packet_toward(const bvh *b, bvh_packet *x, bvh_meet *visit, void *user);
 
 /* Visit the boxes that are within `radius` of p. */

@@ -13,6 +13,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 
 #include "base/threads.h"
 
@@ -38,7 +39,6 @@ typedef struct walk {
     struct RTCIntersectContext context;
 #endif
     bvh_visit *visit;
-    bvh_shorten *shorten;
     bvh_meet *meet; /* for packets */
     const bvh *b;
     const packet_rays *x; /* the packet's rays */
@@ -74,20 +74,22 @@ STAGE static uint32_t pass_box(const bvh_box *restrict box, const packet_rays *r
     return which;
 }
 
-/* Some rays of a packet, N in Embree's arrays (rtcore_ray.h has functions for these, in C++ only), reach a box. */
-static void met_packet(const walk *k, unsigned box, const int *valid, unsigned N, void *rays)
+/* Some rays of a packet, N in Embree's arrays (rtcore_ray.h has functions for these, in C++ only), reach a box. No hit
+ * is reported, only the new ends of the rays. */
+static void met_packet(const struct RTCIntersectFunctionNArguments *a)
 {
-    float *tfar = (float *)rays + 8 * N;
-    const unsigned *id = (const unsigned *)rays + 10 * N;
+    const walk *k = (const walk *)(const void *)a->context;
+    float *tfar = (float *)(void *)a->rayhit + 8 * a->N;
+    const unsigned *id = (const unsigned *)(const void *)a->rayhit + 10 * a->N;
     uint32_t which = 0;
-    for (unsigned i = 0; i < N; i++)
-        which |= valid[i] ? 1u << id[i] : 0;
-    which &= pass_box(&k->b->box[box], k->x, k->end);
+    for (unsigned i = 0; i < a->N; i++)
+        which |= a->valid[i] ? 1u << id[i] : 0;
+    which &= pass_box(&k->b->box[a->primID], k->x, k->end);
     if (!which)
         return;
-    k->meet(k->user, (int32_t)box, which, k->end);
-    for (unsigned i = 0; i < N; i++)
-        if (valid[i])
+    k->meet(k->user, (int32_t)a->primID, which, k->end);
+    for (unsigned i = 0; i < a->N; i++)
+        if (a->valid[i])
             tfar[i] = k->end[id[i]] < 0 ? -HUGE_VALF : k->end[id[i]];
 }
 
@@ -97,17 +99,6 @@ static void met(const struct RTCOccludedFunctionNArguments *a)
     const walk *k = (const walk *)(const void *)a->context;
     if (a->valid[0])
         k->visit(k->user, (int32_t)a->primID);
-}
-
-/* For bvh_toward: no hit is reported either, only the new end of the ray. */
-static void met_toward(const struct RTCIntersectFunctionNArguments *a)
-{
-    const walk *k = (const walk *)(const void *)a->context;
-    struct RTCRay *x = &((struct RTCRayHit *)(void *)a->rayhit)->ray;
-    if (k->meet)
-        met_packet(k, a->primID, a->valid, a->N, a->rayhit);
-    else if (a->valid[0])
-        x->tfar = k->shorten(k->user, (int32_t)a->primID, x->tfar);
 }
 
 static bool near_one(struct RTCPointQueryFunctionArguments *a)
@@ -133,13 +124,33 @@ static bool report_progress(void *user, double share)
     return true;
 }
 
-/* Threads cost more than they save where there are few boxes. */
+enum { MANY = 1 << 14 }; /* boxes; for fewer threads cost more than they save */
+
+/* A limit of addresses, as by ulimit -v. */
+static bool is_limited(void)
+{
+    struct rlimit l;
+    return getrlimit(RLIMIT_AS, &l) == 0 && l.rlim_cur != RLIM_INFINITY;
+}
+
+/* Where Embree runs out of memory while it builds, TBB may end the process. So whether there is room is tried first:
+ * Embree takes up to 160 bytes a box, for few boxes 250. Where addresses are limited, so are the 128 MiB of them that
+ * one of the two sets aside. */
+static bool has_room(int n)
+{
+    const size_t mib = (size_t)1 << 20, aside = n >= MANY && is_limited() ? 192 * mib : 16 * mib;
+    void *volatile room = malloc(aside + 256 * (size_t)n); /* volatile: else gcc leaves it out */
+    const bool good = room;
+    free(room);
+    return good;
+}
+
+/* NULL: out of memory. */
 static RTCDevice device_with(int threads, int n)
 {
-    enum { MANY = 1 << 14 };
     char how[32];
-    snprintf(how, sizeof how, "threads=%d", n < MANY ? 1 : threads_of(threads));
-    return rtcNewDevice(how);
+    snprintf(how, sizeof how, "threads=%d", n < MANY || is_limited() ? 1 : threads_of(threads));
+    return has_room(n) ? rtcNewDevice(how) : NULL;
 }
 
 bvh *bvh_new(int n, const bvh_box *box, int threads, const progress *w)
@@ -162,7 +173,7 @@ bvh *bvh_new(int n, const bvh_box *box, int threads, const progress *w)
     rtcSetGeometryUserData(g, b);
     rtcSetGeometryBoundsFunction(g, bounds, NULL);
     rtcSetGeometryOccludedFunction(g, met);
-    rtcSetGeometryIntersectFunction(g, met_toward);
+    rtcSetGeometryIntersectFunction(g, met_packet);
     rtcCommitGeometry(g);
     rtcAttachGeometry(b->scene, g);
     rtcReleaseGeometry(g);
@@ -217,22 +228,6 @@ void bvh_along(const bvh *b, const float r[3], const float s[3], float end, bvh_
 #else
     rtcInitIntersectContext(&k.context);
     rtcOccluded1(b->scene, &k.context, &x);
-#endif
-}
-
-void bvh_toward(const bvh *b, const float r[3], const float s[3], float end, bvh_shorten *visit, void *user)
-{
-    walk k = {.shorten = visit, .user = user};
-    struct RTCRayHit x = {.ray = ray_of(r, s, end), .hit = {.geomID = RTC_INVALID_GEOMETRY_ID}};
-#if KAGE_EMBREE == 4
-    struct RTCIntersectArguments how;
-    rtcInitIntersectArguments(&how);
-    rtcInitRayQueryContext(&k.context);
-    how.context = &k.context;
-    rtcIntersect1(b->scene, &x, &how);
-#else
-    rtcInitIntersectContext(&k.context);
-    rtcIntersect1(b->scene, &k.context, &x);
 #endif
 }
 

@@ -207,6 +207,7 @@ static const option options[] = {
     {"--no-self-shadow", PICTURES, NULL, {"render.self_shadow=false"}, 0},
     {"--no-cast", COMMAND_POV, NULL, {NULL}, offsetof(arguments, no_cast)},
     {"--overwrite", COMMAND_RENDER, NULL, {NULL}, offsetof(arguments, overwrite)},
+    {"--resume", COMMAND_RENDER, NULL, {NULL}, offsetof(arguments, resume)},
     {"--stats", COMMAND_RENDER, NULL, {NULL}, offsetof(arguments, stats)},
     {"--quiet", COMMAND_RENDER, NULL, {NULL}, offsetof(arguments, quiet)},
 };

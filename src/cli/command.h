@@ -33,7 +33,7 @@ typedef struct arguments {
     int crop[4];
     const char *layers; /* of an EXR, with commas; NULL: all */
     int threads, bits;
-    bool stats, quiet, no_cast, overwrite;
+    bool stats, quiet, no_cast, overwrite, resume;
 } arguments;
 
 /* Parse a command's arguments. False: the mistake is on stderr. Call arguments_free in either case. */
@@ -76,6 +76,7 @@ typedef struct progress_bar {
     long pixels;         /* of the picture; 0: loading */
     const char *name;    /* of the scene */
     char what[16];       /* the current step */
+    double first;        /* share that was done when it began: not 0 where a picture is resumed */
 } progress_bar;
 
 void progress_bar_start(progress_bar *p, bool quiet, const char *name, long pixels);

@@ -36,6 +36,7 @@ static const char help[] =
     "  --crop X0,Y0,X1,Y1   only this part of the picture, in pixels from the top left, X1 and Y1 exclusive\n"
     "  --layers A,B,...     of an EXR: color, Z, P, N, uw, height, tau, order, visibility (all)\n"
     "  --bits 8|16          of a PNG (8)\n"
+    "  --resume             go on with an EXR that was interrupted, from FILE.part; one output\n"
     "  --threads N          number of threads (as many as there are processors)\n"
     "  --stats              time and count each stage\n"
     "  --quiet              no progress bar, no closing line\n"

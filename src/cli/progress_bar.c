@@ -27,16 +27,22 @@ int progress_bar_show(void *user, const char *what, double share)
     if (!p->on || strcmp(what, "objects") == 0) /* objects: too fast to see */
         return 0;
     const bool first = strcmp(p->what, what) != 0; /* of this step: draw at once, unless it is the render */
-    const double now = clock_now(), gone = now - p->start;
+    const double now = clock_now();
+    if (first) {
+        p->first = share;
+        p->start = now;
+    }
+    const double gone = now - p->start, done = share - p->first; /* of this step */
     snprintf(p->what, sizeof p->what, "%s", what);
     if (now - p->shown < 0.1 && (p->pixels || !first))
         return 0;
     p->shown = now;
     for (int k = 0; k < WIDTH; k++)
         bar[k] = k < (int)(share * WIDTH) ? '#' : '.';
-    snprintf(rate, sizeof rate, "%.1f Mpixel/s  %.1f s left", share * (double)p->pixels / gone / 1e6,
-             gone / share - gone);
-    fprintf(stderr, "\r%.24s [%s] %3.0f %%  %s \033[K", p->name, bar, 100 * share, p->pixels ? rate : what);
+    snprintf(rate, sizeof rate, "%.1f Mpixel/s  %.1f s left", done * (double)p->pixels / gone / 1e6,
+             gone / done * (1 - share));
+    const bool rated = p->pixels && done > 0 && strcmp(what, "rendering") == 0;
+    fprintf(stderr, "\r%.24s [%s] %3.0f %%  %s \033[K", p->name, bar, 100 * share, rated ? rate : what);
     return 0;
 }
 

@@ -52,17 +52,70 @@ static bool has_exr(const arguments *a)
     return false;
 }
 
+/* Whether the film needs other planes than R, G and B. */
+static bool wants_layers(const arguments *a)
+{
+    for (const char *word = a->layers; word; word = strchr(word, ',') ? strchr(word, ',') + 1 : NULL)
+        if (strncmp(word, "color", 5) != 0 && !(strchr("RGB", *word) && strchr(",", word[1])))
+            return has_exr(a);
+    return has_exr(a) && !a->layers;
+}
+
+/* The pixels of the picture, or of its crop. */
+static long pixels_of(const kage_scene *s, const arguments *a)
+{
+    const kage_scene_info *i = kage_scene_get_info(s);
+    const int *c = a->crop;
+    return c[2] > 0 ? (long)(c[2] - c[0]) * (c[3] - c[1]) : (long)i->width * i->height;
+}
+
+/* A single large picture is rendered and written in bands, and so is one that is resumed. */
+static bool in_bands(const kage_scene *s, const arguments *a)
+{
+    enum { LARGE = 1 << 24 };
+    return a->resume || (a->outputs == 1 && pixels_of(s, a) > LARGE);
+}
+
+/* The name of an unfinished picture is no input either. */
+static bool part_spares_inputs(const kage_scene *s, const char *output)
+{
+    const size_t room = strlen(output) + sizeof ".part";
+    char *part = malloc(room);
+    if (!part)
+        return usage_error("out of memory");
+    snprintf(part, room, "%s.part", output);
+    const char *const name[] = {part};
+    const bool good = outputs_spare_inputs(s, name, 1);
+    free(part);
+    return good;
+}
+
 /* Options that depend on the scene or on each other. */
 static bool check_options(const kage_scene *s, const arguments *a)
 {
     const kage_scene_info *i = kage_scene_get_info(s);
     const int *c = a->crop;
+    const long most = 1L << 28;
     if (c[2] > i->width || c[3] > i->height)
         return usage_error("--crop %d,%d,%d,%d: the picture is %d x %d pixels", c[0], c[1], c[2], c[3], i->width,
                            i->height);
     if (a->layers && !has_exr(a))
         return usage_error("--layers %s: only an EXR has layers, expected -o with a name that ends in .exr", a->layers);
-    return check_layers(a->layers, s);
+    if (a->resume && (a->outputs != 1 || !has_exr(a)))
+        return usage_error("--resume: expected one -o, with a name that ends in .exr");
+    if (pixels_of(s, a) > most && !in_bands(s, a))
+        return usage_error("-o %s: a second output of %ld pixels, expected one, or at most %ld pixels", a->output[1],
+                           pixels_of(s, a), most);
+    return check_layers(a->layers, s) && (!in_bands(s, a) || part_spares_inputs(s, a->output[0]));
+}
+
+/* Errors of outputs come before the work. Special files are left alone. */
+static kage_status probe_outputs(const arguments *a, kage_errors **e)
+{
+    kage_status status = KAGE_OK;
+    for (int k = 0; status == KAGE_OK && k < a->outputs; k++)
+        status = kage_file_probe(a->output[k], e);
+    return status;
 }
 
 static void print_stages(const kage_stats *t)
@@ -100,35 +153,76 @@ static void print_stats(const kage_stats *t, double output)
         printf("hits of displaced surfaces that Newton's iteration did not confirm: %ld\n", (long)t->unconfirmed);
 }
 
-/* Ctrl-C while files are written takes effect after the current one, so each file is whole or absent. */
+/* ---- Ctrl-C ---- */
+
+/* While files are written the signal only asks the library to end, so that each file is whole or absent. */
 static volatile sig_atomic_t stopped;
 
 static void stop(int signal) { stopped = signal; }
 
-static void hold_signals(const int held[2], struct sigaction before[2])
+enum { HELD = 2 };
+static const int held[HELD] = {SIGINT, SIGTERM};
+
+static void hold_signals(struct sigaction before[HELD])
 {
     struct sigaction hold = {.sa_handler = stop, .sa_flags = SA_RESTART};
     sigemptyset(&hold.sa_mask);
-    for (int k = 0; k < 2; k++) {
+    for (int k = 0; k < HELD; k++) {
         sigaction(held[k], NULL, &before[k]);
         if (before[k].sa_handler != SIG_IGN)
             sigaction(held[k], &hold, NULL);
     }
 }
 
-static kage_status write_outputs(const arguments *a, const kage_film *f, kage_errors **e)
+/* End as the signal would have ended the program. */
+static void release_signals(const struct sigaction before[HELD])
 {
-    static const int held[2] = {SIGINT, SIGTERM};
-    struct sigaction before[2];
-    kage_status status = KAGE_OK;
-    hold_signals(held, before);
-    for (int k = 0; status == KAGE_OK && !stopped && k < a->outputs; k++)
-        status = has_ending(a->output[k], ".png") ? kage_film_write_png(f, a->output[k], a->bits, e)
-                                                  : kage_film_write_exr(f, a->output[k], a->layers, a->threads, e);
-    for (int k = 0; k < 2; k++)
+    for (int k = 0; k < HELD; k++)
         sigaction(held[k], &before[k], NULL);
     if (stopped)
         raise(stopped);
+}
+
+static int show_and_listen(void *user, const char *what, double share)
+{
+    return stopped || progress_bar_show(user, what, share);
+}
+
+/* ---- the work ---- */
+
+static kage_status write_outputs(const arguments *a, const kage_film *f, progress_bar *p, kage_errors **e)
+{
+    const kage_write_options o = {
+        .bits = a->bits, .layers = a->layers, .threads = a->threads, .progress = show_and_listen, .user = p};
+    struct sigaction before[HELD];
+    kage_status status = KAGE_OK;
+    hold_signals(before);
+    for (int k = 0; status == KAGE_OK && k < a->outputs; k++) {
+        kage_write_options each = o;
+        each.layers = has_ending(a->output[k], ".exr") ? o.layers : NULL;
+        status = kage_film_write(f, a->output[k], &each, e);
+    }
+    progress_bar_end(p);
+    release_signals(before);
+    return status;
+}
+
+/* What is done of an EXR is kept when this is interrupted. */
+static kage_status render_in_bands(kage_scene *s, const arguments *a, const kage_render_options *how, progress_bar *p,
+                                   kage_film **f, kage_errors **e)
+{
+    const bool exr = has_exr(a);
+    const kage_write_options w = {
+        .bits = a->bits, .layers = a->layers, .threads = a->threads, .keep = exr, .resume = a->resume};
+    kage_render_options o = *how;
+    struct sigaction before[HELD];
+    o.progress = show_and_listen;
+    hold_signals(before);
+    const kage_status status = kage_render_file(s, &o, a->output[0], &w, f, e);
+    progress_bar_end(p);
+    if (status == KAGE_CANCELLED && exr && !a->quiet)
+        fprintf(stderr, "%s: interrupted; --resume goes on with %s.part\n", base_name(a->operand[0]), a->output[0]);
+    release_signals(before);
     return status;
 }
 
@@ -146,37 +240,48 @@ static void print_end(const arguments *a, const kage_stats *t, const char *name,
                 (long)t->unconfirmed);
 }
 
+static int status_of(kage_status status, kage_errors *e)
+{
+    if (status == KAGE_OK)
+        return 0;
+    return print_errors(e, status == KAGE_BAD_INPUT || status == KAGE_BAD_OPTION ? EXIT_INPUT : EXIT_OUTPUT);
+}
+
 static int render_outputs(kage_scene *s, const arguments *a)
 {
-    const kage_scene_info *i = kage_scene_get_info(s);
-    const char *name = base_name(i->path);
+    const char *name = base_name(kage_scene_get_info(s)->path);
     const int *c = a->crop;
-    const bool cropped = c[2] > 0;
-    kage_errors *e;
-    kage_film *f;
+    kage_errors *e = NULL;
+    kage_film *f = NULL;
     progress_bar p;
     if (!check_options(s, a))
         return EXIT_INPUT;
-    progress_bar_start(&p, a->quiet, name, cropped ? (long)(c[2] - c[0]) * (c[3] - c[1]) : (long)i->width * i->height);
+    kage_status status = probe_outputs(a, &e);
+    if (status != KAGE_OK)
+        return status_of(status, e);
+    progress_bar_start(&p, a->quiet, name, pixels_of(s, a));
     const kage_render_options o = {.crop = {c[0], c[1], c[2], c[3]},
-                                   .layers = has_exr(a),
+                                   .layers = wants_layers(a),
                                    .timing = a->stats,
                                    .threads = a->threads,
                                    .progress = progress_bar_show,
                                    .user = &p};
-    kage_status status = kage_render(s, &o, &f, &e);
-    progress_bar_end(&p);
     const double start = clock_now();
-    if (status == KAGE_OK)
-        status = write_outputs(a, f, &e);
+    if (in_bands(s, a))
+        status = render_in_bands(s, a, &o, &p, &f, &e);
+    else {
+        status = kage_render(s, &o, &f, &e);
+        if (status == KAGE_OK)
+            status = write_outputs(a, f, &p, &e);
+    }
     if (status == KAGE_OK) {
         const kage_stats *t = kage_film_get_stats(f);
         print_end(a, t, name, p.on);
         if (a->stats)
-            print_stats(t, clock_now() - start);
+            print_stats(t, clock_now() - start - t->seconds);
     }
     kage_film_free(f);
-    return status == KAGE_OK ? 0 : print_errors(e, EXIT_OUTPUT);
+    return status_of(status, e);
 }
 
 int command_render(const arguments *given)

@@ -52,6 +52,12 @@ film *film_new(const scene *s, window part, bool layers, errors *e)
     return NULL;
 }
 
+void film_move(film *f, int y0, int y1)
+{
+    f->part.y0 = y0;
+    f->part.y1 = y1;
+}
+
 void film_copy(film *f, const film *from)
 {
     const window w = f->part;

@@ -39,6 +39,9 @@ static inline size_t film_index(const film *f, int x, int y)
 /* All values 0. NULL: out of memory, with a message. */
 film *film_new(const scene *s, window part, bool layers, errors *e);
 
+/* Move the film down to the rows y0 to y1 of the picture, at most as many as it was made for. */
+void film_move(film *f, int y0, int y1);
+
 /* Copy f's pixels from a film with the same planes that contains f's part. */
 void film_copy(film *f, const film *from);
 

@@ -16,7 +16,7 @@ bool image_refuse(char *why, const char *fmt, ...)
     return false;
 }
 
-const char *image_refuse_size(int64_t width, int64_t height)
+static const char *refuse_size(int64_t width, int64_t height)
 {
     if (width < 1 || height < 1)
         return "the image has no samples";
@@ -27,7 +27,7 @@ const char *image_refuse_size(int64_t width, int64_t height)
 
 bool image_begin(image_stream *s, int64_t width, int64_t height, char *why)
 {
-    const char *refused = image_refuse_size(width, height);
+    const char *refused = refuse_size(width, height);
     s->width = (int)width;
     s->height = (int)height;
     s->range[0] = INFINITY;
@@ -82,4 +82,30 @@ bool image_pass(const image_stream *s, int x, int y, int n, const float *v, floa
     }
     s->to->take(s->to->user, x, y, n, v);
     return true;
+}
+
+/* ---- writing ---- */
+
+const char *image_refuse_form(const image_form *form)
+{
+    if (form->width < 1 || form->height < 1)
+        return "the image has no samples";
+    if (form->width > IMAGE_MAX_SIDE || form->height > IMAGE_MAX_SIDE)
+        return "the image is too large: the limit is 65536 samples a side";
+    return form->channels < 1 ? "the image has no channels" : NULL;
+}
+
+int image_writer_rows(const image_writer *w) { return w->rows; }
+
+bool image_writer_add(image_writer *w, int rows, const float *const *plane, const progress *p)
+{
+    w->failed = w->failed || !w->add(w, rows, plane, p);
+    if (!w->failed)
+        w->rows += rows;
+    return !w->failed;
+}
+
+bool image_writer_close(image_writer *w, bool whole, errors *e)
+{
+    return w->close(w, whole && !w->failed && w->rows == w->height, e);
 }

@@ -13,8 +13,16 @@ enum { IMAGE_WHY = 512 };
 /* Format a reason into why[IMAGE_WHY], unless there is one already. Always false. */
 bool image_refuse(char *why, const char *fmt, ...) KAGE_PRINTF(2, 3);
 
-/* NULL, or why an image of this size is neither read nor written. */
-const char *image_refuse_size(int64_t width, int64_t height);
+/* What all writers share, at the beginning of each's own struct. */
+struct image_writer {
+    int width, height, rows; /* rows that are in the file */
+    bool failed;
+    bool (*add)(image_writer *w, int rows, const float *const *plane, const progress *p);
+    bool (*close)(image_writer *w, bool whole, errors *e); /* frees w, too */
+};
+
+/* NULL, or why a picture cannot be written. */
+const char *image_refuse_form(const image_form *form);
 
 /* The samples on their way to the taker. values: of a pixel, 1 or 4. */
 typedef struct image_stream {

@@ -7,6 +7,7 @@
 #include <stdbool.h>
 
 #include "base/errors.h"
+#include "base/progress.h"
 
 /* An image in colour: four values a pixel. */
 typedef struct image {
@@ -14,7 +15,8 @@ typedef struct image {
     float *v; /* height x width x 4 values; free() */
 } image;
 
-/* The most samples a side and in all of an image that is read or written. */
+/* The most samples a side and in all of an image that is read; a picture that is written has only the
+ * limit of its sides. */
 enum { IMAGE_MAX_SIDE = 65536 };
 #define IMAGE_MAX_PIXELS ((long)1 << 28)
 
@@ -57,22 +59,44 @@ typedef struct image_text {
     const char *key, *value;
 } image_text;
 
-/* A channel to write: height x width samples. */
-typedef struct image_channel {
-    const char *name;
-    const float *v;
-} image_channel;
+/* What a picture's file holds, and how it is written. */
+typedef struct image_form {
+    int width, height;
+    int channels;            /* a PNG has 3: red, green and blue */
+    const char *const *name; /* of each channel of an EXR, in any order */
+    int texts;
+    const image_text *text;
+    int bits;    /* of a PNG: 8 or 16 */
+    int threads; /* that compress an EXR; 0: one for each processor */
+    bool keep;   /* an EXR that is not finished stays, as PATH.part */
+    bool resume; /* an EXR: go on with PATH.part, if there is one from the same header */
+} image_form;
 
-/* Write an OpenEXR file of float32 channels (scanlines, ZIP), given in any order, with the texts as string attributes.
- * The file appears complete or not at all (file_writer.h). The bytes do not depend on the clock or on `threads` (0: one
- * for each processor). False, with a message in *e that names the file. */
-bool image_write_exr(const char *path, int threads, int width, int height, int channels, const image_channel *channel,
-                     int texts, const image_text *text, errors *e);
+/* A file to which rows are added from the top on. It appears complete or not at all (file_writer.h). The bytes depend
+ * neither on the clock, nor on the threads, nor on how many rows are added at a time. */
+typedef struct image_writer image_writer;
 
-/* Write a PNG of 8 or 16 bits from linear R, G, B in 0..1 (clamped; NaN becomes 0) through the sRGB transfer
- * function, marked as sRGB, rounded to nearest, without dither. Otherwise as image_write_exr. */
-bool image_write_png(const char *path, int width, int height, int bits, const float *r, const float *g, const float *b,
-                     int texts, const image_text *text, errors *e);
+/* OpenEXR: float32 channels (scanlines, ZIP), with the texts as string attributes. `path` must outlive the writer.
+ * NULL, with a message in *e that names the file. */
+image_writer *image_writer_exr(const char *path, const image_form *form, errors *e);
+
+/* PNG, from linear light in 0..1 (clamped; NaN becomes 0) through the sRGB transfer function, marked as sRGB, rounded
+ * to nearest, without dither. Otherwise as image_writer_exr. */
+image_writer *image_writer_png(const char *path, const image_form *form, errors *e);
+
+/* How many rows are in the file. */
+int image_writer_rows(const image_writer *w);
+
+/* Rows are added in multiples of this, but for the last ones. */
+enum { IMAGE_ROWS = 16 };
+
+/* Add rows; plane[c]: rows x width samples of channel c. p, or NULL, is called as "writing" in the caller's thread with
+ * the share of these rows that is done. False: stopped by p, or failed, for a reason that image_writer_close tells. */
+bool image_writer_add(image_writer *w, int rows, const float *const *plane, const progress *p);
+
+/* Free w. whole: finish the file, with all rows in it; else delete it, or keep the rows in PATH.part. False: not
+ * written, with a message in *e that names the file if something failed. */
+bool image_writer_close(image_writer *w, bool whole, errors *e);
 
 /* Is the file a PNG whose text Software names this program, of any version? */
 bool image_png_is_from(const char *path, const char *program);

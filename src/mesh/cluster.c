@@ -26,15 +26,13 @@ static float error_of(float wide) { return ERROR * (4 * wide + 4 * ERROR) + 4e-7
 static inline float less(float x, float y) { return x < y ? x : y; }
 static inline float more(float x, float y) { return x > y ? x : y; }
 
-static const uint32_t bit[CLUSTER] = {1, 2, 4, 8, 16, 32, 64, 128};
-
 STAGE static void near_triangles(const mesh_cluster *restrict c, const cluster_rays *restrict k, uint32_t which,
                                  uint32_t *restrict met)
 {
     for (; which; which &= which - 1) {
         const int r = lowest_bit(which), X = (k->z[r] + 1) % 3, Y = (k->z[r] + 2) % 3, Z = k->z[r];
         const float sx = k->sx[r], sy = k->sy[r], cx = k->cx[r], cy = k->cy[r];
-        uint32_t some = 0;
+        const uint32_t one = which & -which;
         for (int i = 0; i < CLUSTER; i++) {
             const float za = c->at[0][Z][i], zb = c->at[1][Z][i], zc = c->at[2][Z][i];
             const float xa = c->at[0][X][i] - sx * za - cx, ya = c->at[0][Y][i] - sy * za - cy;
@@ -42,14 +40,14 @@ STAGE static void near_triangles(const mesh_cluster *restrict c, const cluster_r
             const float xc = c->at[2][X][i] - sx * zc - cx, yc = c->at[2][Y][i] - sy * zc - cy;
             const float U = xc * yb - yc * xb, V = xa * yc - ya * xc, W = xb * ya - yb * xa, e = c->error[i];
             const float least = less(less(U, V), W), most = more(more(U, V), W);
-            some |= bit[i] & -(uint32_t)((least >= -e) | (most <= e));
+            met[i] |= one & -(uint32_t)((least >= -e) | (most <= e));
         }
-        met[r] = some;
     }
 }
 
-void cluster_near(const mesh_cluster *c, const cluster_rays *k, uint32_t which, uint32_t met[BVH_PACKET])
+void cluster_near(const mesh_cluster *c, const cluster_rays *k, uint32_t which, uint32_t met[CLUSTER])
 {
+    memset(met, 0, sizeof *met * CLUSTER);
     near_triangles(c, k, which, met);
 }
 
@@ -61,22 +59,22 @@ STAGE static void near_boxes(const mesh_block *restrict c, const cluster_rays *r
         const int r = lowest_bit(which);
         const float ox = k->at[0][r], oy = k->at[1][r], oz = k->at[2][r], last = end[r];
         const float ix = k->over[0][r], iy = k->over[1][r], iz = k->over[2][r];
-        uint32_t some = 0;
+        const uint32_t one = which & -which;
         for (int i = 0; i < CLUSTER; i++) {
             const float xa = (c->lo[0][i] - ox) * ix, xb = (c->hi[0][i] - ox) * ix;
             const float ya = (c->lo[1][i] - oy) * iy, yb = (c->hi[1][i] - oy) * iy;
             const float za = (c->lo[2][i] - oz) * iz, zb = (c->hi[2][i] - oz) * iz;
             const float t0 = more(more(less(xa, xb), less(ya, yb)), more(less(za, zb), 0)),
                         t1 = less(less(more(xa, xb), more(ya, yb)), less(more(za, zb), last));
-            some |= bit[i] & -(uint32_t)(t0 <= t1);
+            met[i] |= one & -(uint32_t)(t0 <= t1);
         }
-        met[r] = some;
     }
 }
 
 void block_near(const mesh_block *b, const cluster_rays *k, const float end[BVH_PACKET], uint32_t which,
-                uint32_t met[BVH_PACKET])
+                uint32_t met[CLUSTER])
 {
+    memset(met, 0, sizeof *met * CLUSTER);
     near_boxes(b, k, end, which, met);
 }
 

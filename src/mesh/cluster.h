@@ -50,13 +50,12 @@ typedef struct cluster_rays {
 
 static inline int lowest_bit(uint32_t x) { return __builtin_ctz(x); }
 
-/* For each ray i in `which` (bit i), into met[i] the clusters whose boxes it may pass before end[i], bit j for the
- * j-th.
+/* Of the rays in `which`, bit i for ray i, into met[j] those that may pass the box of the j-th cluster before end[i].
  */
 void block_near(const mesh_block *b, const cluster_rays *k, const float end[BVH_PACKET], uint32_t which,
-                uint32_t met[BVH_PACKET]);
+                uint32_t met[CLUSTER]);
 
-/* The same for the triangles that its line may meet, bit j for index[j]. */
-void cluster_near(const mesh_cluster *c, const cluster_rays *k, uint32_t which, uint32_t met[BVH_PACKET]);
+/* The same for those whose lines may meet the triangle index[j]. */
+void cluster_near(const mesh_cluster *c, const cluster_rays *k, uint32_t which, uint32_t met[CLUSTER]);
 
 #endif

@@ -104,26 +104,24 @@ static float test(mesh_packet *k, int i, int32_t index, float end)
 
 static void visit_cluster(mesh_packet *k, const mesh_cluster *c, uint32_t which, float end[BVH_PACKET])
 {
-    uint32_t met[BVH_PACKET];
+    uint32_t met[CLUSTER];
     cluster_near(c, &k->axis, which, met);
-    for (; which; which &= which - 1)
-        for (const int i = lowest_bit(which); met[i] && end[i] >= 0; met[i] &= met[i] - 1)
-            end[i] = test(k, i, c->index[lowest_bit(met[i])], end[i]);
+    for (int j = 0; j < CLUSTER; j++)
+        for (; met[j]; met[j] &= met[j] - 1) {
+            const int i = lowest_bit(met[j]);
+            end[i] = end[i] >= 0 ? test(k, i, c->index[j], end[i]) : end[i];
+        }
 }
 
 static void visit(void *user, int32_t index, uint32_t which, float end[BVH_PACKET])
 {
     mesh_packet *k = user;
     const mesh_block *b = &k->f->clusters.block[index];
-    uint32_t met[BVH_PACKET], some[CLUSTER] = {0}, any = 0; /* the clusters of each ray; the rays of each cluster */
+    uint32_t met[CLUSTER];
     block_near(b, &k->axis, end, which, met);
-    for (; which; which &= which - 1)
-        for (uint32_t left = met[lowest_bit(which)]; left; left &= left - 1) {
-            some[lowest_bit(left)] |= which & -which;
-            any |= left;
-        }
-    for (; any; any &= any - 1)
-        visit_cluster(k, &k->f->clusters.cluster[b->first + lowest_bit(any)], some[lowest_bit(any)], end);
+    for (int j = 0; j < CLUSTER; j++)
+        if (met[j])
+            visit_cluster(k, &k->f->clusters.cluster[b->first + j], met[j], end);
 }
 
 void mesh_packet_intersect(mesh_packet *k)

@@ -1,65 +1,29 @@
 /* Objects: their shapes, materials, bumps and transforms, and copies of other objects. */
-#include "base/spelling.h"
 #include "displaced/displaced.h"
 #include "read/parts.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-/* The name of thing i: each is a struct of `size` bytes that begins with its name, or NULL. */
-static const char *name_of(const void *things, size_t size, int i)
-{
-    return *(char *const *)(const void *)((const char *)things + (size_t)i * size);
-}
-
-/* The index of the thing that the node names. `what`: "the name of a material"; `among`: the key of the things. -1 with
- * an error. */
-static int find(reader *r, node *at, const char *what, const char *among, const void *things, size_t size, int n)
-{
-    const char *name = yaml_text(r->y, at, what), *thing = strrchr(what, ' ') + 1;
-    char near[64], *names;
-    size_t length = 1;
-    if (!name)
-        return -1;
-    for (int i = 0; i < n; i++) {
-        const char *its = name_of(things, size, i);
-        if (its && strcmp(name, its) == 0)
-            return i;
-        length += its ? strlen(its) + 1 : 0;
-    }
-    if ((names = calloc(1, length)))
-        for (int i = 0; i < n; i++)
-            if (name_of(things, size, i))
-                strcat(strcat(names, *names ? " " : ""), name_of(things, size, i));
-    spelling_nearest(name, names ? names : "", near, sizeof near);
-    yaml_error(r->y, at, "no %s '%.60s'%s%s%s%s", thing, name,
-               *near ? ", did you mean '" : ", expected one of those under '", *near ? near : among, "'",
-               *near ? "?" : "");
-    free(names);
-    return -1;
-}
-
 /* Objects are read in order, but an object is read before its copies. */
 typedef struct queue {
-    node *at;
-    char *state; /* of each object */
+    node **key, **at; /* of each object */
+    char *state;
+    names names;
 } queue;
 
 enum { WAITING, BEGUN, DONE };
 
 static void read_object(reader *r, const queue *q, int i);
 
-int reader_material(reader *r, node *at)
-{
-    const scene *s = r->s;
-    return find(r, at, "the name of a material", "materials", s->material, sizeof *s->material, s->materials);
-}
-
 /* The object that object i copies; reads it first if need be. NULL with an error. */
 static const object *read_original(reader *r, const queue *q, node *copy, int i)
 {
     const scene *s = r->s;
-    const int k = find(r, copy, "the name of an object", "objects", s->object, sizeof *s->object, s->objects);
+    const char *name = yaml_text(r->y, copy, "the name of an object");
+    int k = name ? names_find(&q->names, s->object, name) : -1;
+    if (name && k < 0)
+        reader_find(r, copy, "the name of an object", "objects", s->object, sizeof *s->object, s->objects);
     if (k == i)
         yaml_error(r->y, copy, "'%s' copies itself, expected another object", s->object[i].name);
     else if (k >= 0 && q->state[k] == BEGUN)
@@ -135,7 +99,7 @@ static void read_object(reader *r, const queue *q, int i)
 {
     scene *s = r->s;
     object *o = &s->object[i];
-    node *key, *v = yaml_pair(q->at, i, &key), *m, *at_bump, *copy;
+    node *v = q->at[i], *m, *at_bump, *copy;
     int k;
     q->state[i] = BEGUN;
     o->placed = affine_identity();
@@ -229,28 +193,41 @@ static void arrange(reader *r)
     free(to);
 }
 
+static void read_names(reader *r, queue *q)
+{
+    scene *s = r->s;
+    for (int i = 0; i < s->objects; i++) {
+        s->object[i].name = reader_plain_name(r, q->key[i]);
+        if (s->object[i].name && !names_add(&q->names, s->object, i))
+            reader_second(r, q->key[i], s->object[i].name);
+    }
+}
+
 void reader_objects(reader *r)
 {
     scene *s = r->s;
-    queue q = {reader_named(r, "objects", SCENE_MAX_OBJECTS, sizeof *s->object, &s->object, &s->objects), NULL};
-    node *key;
+    node *at = reader_named(r, "objects", SCENE_MAX_OBJECTS, sizeof *s->object, &s->object, &s->objects);
+    const size_t n = (size_t)s->objects + 1;
     s->kept = s->objects;
-    if (!q.at)
+    if (!at)
         return;
-    if (!(q.state = reader_made(r, calloc((size_t)s->objects + 1, 1))))
-        return;
-    for (int i = 0; i < s->objects; i++) {
-        yaml_pair(q.at, i, &key);
-        s->object[i].name = reader_name(r, q.at, key);
-    }
-    for (int i = 0; i < s->objects; i++) {
-        if (!progress_show(r->from->progress, PROGRESS_OBJECTS, (double)i / s->objects)) {
-            errors_add(r->e, "cancelled");
-            break;
+    queue q = {.key = malloc(n * sizeof(node *)), .at = malloc(n * sizeof(node *)), .state = calloc(n, 1)};
+    if (reader_made(r, q.key) && reader_made(r, q.at) && reader_made(r, q.state) &&
+        (names_begin(&q.names, s->objects) || reader_made(r, NULL))) {
+        yaml_pairs(at, q.key, q.at);
+        read_names(r, &q);
+        for (int i = 0; i < s->objects; i++) {
+            if (!progress_show(r->from->progress, PROGRESS_OBJECTS, (double)i / s->objects)) {
+                errors_add(r->e, "cancelled");
+                break;
+            }
+            if (q.state[i] == WAITING)
+                read_object(r, &q, i);
         }
-        if (q.state[i] == WAITING)
-            read_object(r, &q, i);
     }
+    free(q.key);
+    free(q.at);
     free(q.state);
+    names_free(&q.names);
     arrange(r);
 }

@@ -32,6 +32,30 @@ bool reader_textured(reader *r, node *at, const object *o);
 bump *reader_mirror_bump(reader *r, const object *o, bump *p);
 color_texture *reader_mirror_color(reader *r, const object *o, color_texture *c);
 
+/* ---- names.c: the names of things ---- */
+
+typedef struct names {
+    uint32_t size;
+    int32_t *slot; /* an object's index + 1; 0: free */
+} names;
+
+/* Make room for the names of `count` objects. False: out of memory. */
+bool names_begin(names *n, int count);
+void names_free(names *n);
+
+/* Add object i, which has a name. False: another one has it. */
+bool names_add(names *n, const object *o, int i);
+
+/* The index of the object with a name; -1: there is none. */
+int names_find(const names *n, const object *o, const char *name);
+
+/* The index of the thing that the node names. `what`: "the name of a material"; `among`: the key of the things. -1
+ * with an error. */
+int reader_find(reader *r, node *at, const char *what, const char *among, const void *things, size_t size, int n);
+
+/* The index of the material that a node names; -1 with an error. */
+int reader_material(reader *r, node *at);
+
 /* ---- the parts of an object ---- */
 
 /* Set the object's color texture if its material has a pattern. `at`: the object's material. */
@@ -46,9 +70,6 @@ affine reader_rotation(const double degrees[3]);
 /* Make the object's shape from its own by the transform `placed`, after the bump; as a patch if true displacement needs
  * one. */
 bool reader_place(reader *r, node *at, object *o);
-
-/* The index of the material that a node names; -1 with an error. */
-int reader_material(reader *r, node *at);
 
 /* The copies of object i from the list under its key `copies`. */
 void reader_copies(reader *r, node *v, int i);

@@ -131,18 +131,30 @@ char *reader_beside(reader *r, const char *file)
 }
 
 /* Few letters are allowed: names are used in --set and as layers of the image. */
-char *reader_name(reader *r, node *map, node *key)
+char *reader_plain_name(reader *r, node *key)
 {
     const char *name = yaml_text(r->y, key, "a name");
     if (!name)
         return NULL;
-    if (strlen(name) > 59 || name[strspn(name, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-")])
-        yaml_error(r->y, key, "'%.60s' can't be a name, expected up to 59 letters, digits, _ and -", name);
-    else if (yaml_first(map, name) != key)
-        yaml_error(r->y, key, "a second '%s', expected each name once", name);
-    else
+    if (strlen(name) <= 59 && !name[strspn(name, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-")])
         return reader_copy(r, name);
+    yaml_error(r->y, key, "'%.60s' can't be a name, expected up to 59 letters, digits, _ and -", name);
     return NULL;
+}
+
+char *reader_name(reader *r, node *map, node *key)
+{
+    char *name = reader_plain_name(r, key);
+    if (!name || yaml_first(map, name) == key)
+        return name;
+    reader_second(r, key, name);
+    free(name);
+    return NULL;
+}
+
+bool reader_second(reader *r, node *key, const char *name)
+{
+    return yaml_error(r->y, key, "a second '%s', expected each name once", name);
 }
 
 node *reader_named(reader *r, const char *key, int most, size_t size, void *array, int *count)

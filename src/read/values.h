@@ -67,8 +67,14 @@ bool reader_look(reader *r, node *map, const char *who, const char *what, vec3 *
 /* Add the error that `up` has the direction of the view. Always false. */
 bool reader_up_along(reader *r, node *map);
 
-/* The name that is a key of the map; owned by the caller. NULL with an error. */
+/* The name that a node is, of letters that names have; owned by the caller. NULL with an error. */
+char *reader_plain_name(reader *r, node *key);
+
+/* The name that is a key of the map, the first one of it; owned by the caller. NULL with an error. */
 char *reader_name(reader *r, node *map, node *key);
+
+/* Add the error that a name is there twice. Always false. */
+bool reader_second(reader *r, node *key, const char *name);
 
 /* The map of at most `most` named things under a required key of the scene. Sets *array to one zeroed item of `size`
  * bytes for each, owned by the scene. NULL with an error; *count is then unchanged. */

@@ -8,10 +8,7 @@ static void read_image(reader *r)
     int size[2] = {640, 480};
     if (at && yaml_map(r->y, at, "image", "size background")) {
         reader_color(r, at, "background", &s->background);
-        if (reader_counts(r, at, "size", SCENE_MAX_SIDE, "[width, height] in pixels, from 1 to 32768", size) &&
-            (long)size[0] * size[1] > IMAGE_MAX_PIXELS)
-            yaml_error(r->y, yaml_get(at, "size"), "%ld pixels, expected at most %ld", (long)size[0] * size[1],
-                       IMAGE_MAX_PIXELS);
+        reader_counts(r, at, "size", SCENE_MAX_SIDE, "[width, height] in pixels, from 1 to 32768", size);
     }
     s->width = size[0];
     s->height = size[1];

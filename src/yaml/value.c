@@ -88,6 +88,16 @@ node *yaml_pair(node *map, int i, node **key)
     return fy_node_pair_value(p);
 }
 
+void yaml_pairs(node *map, node **key, node **value)
+{
+    void *next = NULL;
+    struct fy_node_pair *p;
+    for (int i = 0; (p = fy_node_mapping_iterate(map, &next)); i++) {
+        key[i] = fy_node_pair_key(p);
+        value[i] = fy_node_pair_value(p);
+    }
+}
+
 const char *yaml_text(yaml *y, node *at, const char *what)
 {
     const char *text = text_of(at);

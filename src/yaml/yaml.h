@@ -19,7 +19,7 @@ struct fy_node;
 typedef struct fy_node node;
 typedef struct yaml yaml;
 
-enum { YAML_MAX_BYTES = 1 << 22 };
+enum { YAML_MAX_BYTES = 1 << 26 };
 
 /* Read the file at `path`, or `text` of `size` bytes if that is not NULL (then `path` is only its name), and make the
  * changes PATH=VALUE (PATH: keys and indices with dots between them; VALUE: YAML). A change may create the top-level
@@ -44,6 +44,9 @@ node *yaml_first(node *map, const char *key);                           /* the n
 node *yaml_need(yaml *y, node *map, const char *key, const char *what); /* NULL, with an error: not there */
 int yaml_size(node *map);
 node *yaml_pair(node *map, int i, node **key);
+
+/* All of the map's pairs: yaml_size(map) keys and values. Where there are many, yaml_pair would look for each. */
+void yaml_pairs(node *map, node **key, node **value);
 
 /* Scalars. y owns the texts. NULL or false, with an error: not such a scalar. */
 const char *yaml_text(yaml *y, node *at, const char *what);

@@ -46,7 +46,8 @@ def same(a: dict[str, np.ndarray], b: dict[str, np.ndarray]) -> bool:
 def test_help_and_version(kage: Kage) -> None:
     text = kage.good("--help")
     for word in ("render", "check", "pixel", "methods", "--set", "--size", "-o", "--shadow", "--no-guard", "--aa",
-                 "--aa-threshold", "--crop", "--layers", "--bits", "--overwrite", "--threads", "--stats", "--quiet"):
+                 "--aa-threshold", "--crop", "--layers", "--bits", "--overwrite", "--resume", "--threads", "--stats",
+                 "--quiet"):
         assert word in text
     assert max(map(len, text.splitlines())) <= 120
     assert kage.good("-h") == text == kage.good("render", "--help")
@@ -457,6 +458,120 @@ def test_interrupt_leaves_no_half_file(kage: Kage, wait: float) -> None:
             assert exr(path)["R"].shape == (1200, 1600)
         else:
             assert png(path).shape == (1200, 1600, 3)
+
+
+def test_interrupt_while_writing_is_quick(kage: Kage) -> None:
+    """All layers of a 4k picture take two seconds to write; Ctrl-C ends that within 0.2, where nothing else runs, and
+    leaves no file."""
+    command = [PROGRAM, "render", CUBE, "--size", "3840x2160", "--threads", "2", "-o", "a.exr"]
+    stats = kage.good(*command[1:], "--stats")
+    writing = float(re.findall(r"^output +([\d.]+) ms", stats, re.MULTILINE)[0]) / 1e3
+    (kage.folder / "a.exr").unlink()
+    waits = []
+    for _ in range(6):
+        process = start(command, cwd=kage.folder, stderr=subprocess.PIPE)
+        while not any(path.stat().st_size > 1 << 22 for path in kage.folder.glob(".kage-*")):
+            assert process.poll() is None
+            time.sleep(0.01)
+        begin = time.monotonic()
+        process.send_signal(signal.SIGINT)
+        process.communicate(timeout=60)
+        waits.append(time.monotonic() - begin)
+        assert process.returncode == -signal.SIGINT
+        assert kage.files() == set()
+    assert min(waits) < max(0.2, writing / 8), (waits, writing)
+
+
+@pytest.mark.parametrize("name", ["none/a.png", "none/a.exr"])
+def test_outputs_are_probed_before_the_render(kage: Kage, name: str) -> None:
+    """The picture would take hours."""
+    command = [PROGRAM, "render", str(CUBE), "--size", "16384x16384", "--aa", "16", "-o", "b.png", "-o", name]
+    done = subprocess.run(command, cwd=kage.folder, capture_output=True, text=True, timeout=20, check=False)
+    assert (done.returncode, done.stderr) == (1, f"{name}: cannot be written: No such file or directory\n")
+    assert kage.files() == set()
+
+
+# ---- in bands ----
+
+
+#: Five bands or so.
+BANDS = ("--size", "2048x1400", "--threads", "2")
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory: pytest.TempPathFactory) -> bytes:
+    path = tmp_path_factory.mktemp("whole") / "a.exr"
+    subprocess.run([PROGRAM, "render", CUBE, *BANDS, "--quiet", "-o", path], check=True)
+    return path.read_bytes()
+
+
+def test_a_killed_picture_is_resumed(kage: Kage, whole: bytes) -> None:
+    command = [PROGRAM, "render", CUBE, *BANDS, "--resume", "-o", "a.exr"]
+    part = kage.folder / "a.exr.part"
+    kept: list[int] = []
+    for more in (1, 1 << 20, 3 << 20, 1 << 23):
+        process = start(command, cwd=kage.folder)
+        size = kept[-1] if kept else 0
+        while process.poll() is None and not (part.exists() and part.stat().st_size >= size + more):
+            time.sleep(0.003)
+        process.kill()
+        process.wait()
+        if part.exists():
+            kept.append(part.stat().st_size)
+    assert len(kept) >= 2 and kept == sorted(kept)
+    kage.good("render", CUBE, *BANDS, "--resume", "-o", "a.exr")
+    assert (kage.folder / "a.exr").read_bytes() == whole
+    assert kage.files() == {"a.exr"}
+
+
+def test_an_interrupted_picture_is_resumed(kage: Kage, whole: bytes) -> None:
+    process = start([PROGRAM, "render", CUBE, *BANDS, "--resume", "-o", "a.exr"], cwd=kage.folder, text=True,
+                    stderr=subprocess.PIPE)
+    part = kage.folder / "a.exr.part"
+    while not (part.exists() and part.stat().st_size > 1 << 20):
+        time.sleep(0.003)
+    process.send_signal(signal.SIGINT)
+    said = process.communicate(timeout=60)[1]
+    assert process.returncode == -signal.SIGINT
+    assert said == "cube.yaml: interrupted; --resume goes on with a.exr.part\n"
+    assert kage.files() == {"a.exr.part"}
+    another = kage("render", CUBE, *BANDS, "--shadow", "1", "--resume", "-o", "a.exr")
+    assert another.returncode == 1
+    assert "there is a part of another picture" in another.stderr
+    kage.good("render", CUBE, *BANDS, "--resume", "-o", "a.exr")
+    assert (kage.folder / "a.exr").read_bytes() == whole
+    assert kage.files() == {"a.exr"}
+
+
+def test_a_large_picture_is_written_in_bands(kage: Kage) -> None:
+    """As its rows are those of its crop, which is small enough for a film."""
+    size = ("--size", "4100x4100", "--layers", "color", "--set", "render.shadow=none")
+    kage.good("render", CUBE, *size, "-o", "a.exr")
+    kage.good("render", CUBE, *size, "--crop", "0,3000,4100,3064", "-o", "b.exr")
+    rows, crop = exr(kage.folder / "a.exr"), exr(kage.folder / "b.exr")
+    assert rows.keys() == crop.keys() == {"R", "G", "B"}
+    assert same({name: rows[name][3000:3064] for name in rows}, crop)
+
+
+@pytest.mark.parametrize(("outputs", "why"), [
+    (["-o", "a.png"], "--resume: expected one -o, with a name that ends in .exr"),
+    (["-o", "a.exr", "-o", "b.exr"], "--resume: expected one -o, with a name that ends in .exr"),
+])
+def test_what_cannot_be_resumed(kage: Kage, outputs: list[str], why: str) -> None:
+    assert refuses(kage, "render", CUBE, "--resume", *outputs) == f"kage: {why}\n"
+
+
+def test_too_large_for_two_outputs(kage: Kage) -> None:
+    told = "kage: -o b.png: a second output of 1073741824 pixels, expected one, or at most 268435456 pixels\n"
+    assert refuses(kage, "render", CUBE, "--size", "32768x32768", "-o", "a.exr", "-o", "b.png") == told
+
+
+def test_a_part_replaces_no_other_file(kage: Kage) -> None:
+    (kage.folder / "a.exr.part").write_text("precious")
+    done = kage("render", CUBE, *SMALL, "--resume", "-o", "a.exr")
+    assert done.returncode == 1
+    assert done.stderr.startswith("a.exr.part: cannot be written: there is a file that is no unfinished picture")
+    assert (kage.folder / "a.exr.part").read_text() == "precious"
 
 
 # ---- what no output replaces ----

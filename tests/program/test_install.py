@@ -36,7 +36,7 @@ int main(int argc, char **argv)
     if (kage_render(scene, &options, &film, &errors) != KAGE_OK)
         return 2;
     printf("%s %d %d\n", kage_film_plane_name(film, 0), kage_film_width(film), kage_film_height(film));
-    const kage_status status = kage_film_write_png(film, argv[2], 8, NULL);
+    const kage_status status = kage_film_write(film, argv[2], NULL, NULL);
     kage_film_free(film);
     kage_scene_free(scene);
     return status;

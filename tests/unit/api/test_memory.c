@@ -105,19 +105,23 @@ static const char *work_on(const char *text, const kage_render_options *o, const
     kage_film *f = NULL;
     kage_errors *e = NULL;
     const char *step = "load";
+    char png[64], exr[64];
+    snprintf(png, sizeof png, "%s.png", path);
+    snprintf(exr, sizeof exr, "%s.exr", path);
     const kage_load_options one = {.threads = 1};
+    const kage_write_options write = {.threads = 1, .band = 16};
     *status = kage_scene_parse(text, strlen(text), "m", KAGE_TESTS_DIR "/../scenes/data", &one, &s, &e);
     if (*status == KAGE_OK) {
         step = "render";
         *status = kage_render(s, o, &f, &e);
     }
-    if (*status == KAGE_OK) {
-        step = "write a PNG";
-        *status = kage_film_write_png(f, path, 8, &e);
+    for (int k = 0; *status == KAGE_OK && k < 2; k++) {
+        step = k ? "write an EXR" : "write a PNG";
+        *status = kage_film_write(f, k ? exr : png, &write, &e);
     }
     if (*status == KAGE_OK) {
-        step = "write an EXR";
-        *status = kage_film_write_exr(f, path, NULL, 1, &e);
+        step = "write in bands";
+        *status = kage_render_file(s, o, exr, &write, NULL, &e);
     }
     if (*status == KAGE_OK) {
         step = "export";
@@ -127,6 +131,8 @@ static const char *work_on(const char *text, const kage_render_options *o, const
         print_error("%s\n", kage_errors_get(e, 0)->message);
     if (*status != KAGE_OK && kage_errors_count(e) == 0)
         step = "say why";
+    unlink(png);
+    unlink(exr);
     kage_errors_free(e);
     kage_film_free(f);
     kage_scene_free(s);

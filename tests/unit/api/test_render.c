@@ -3,7 +3,6 @@
 
 #include "image/image.h"
 #include "support/check.h"
-#include "support/image_whole.h"
 
 /* What a result points to before a call; afterwards it does not. */
 static char nowhere[1];
@@ -265,42 +264,6 @@ static void the_stats_count(void **state)
     kage_scene_free(s);
 }
 
-static void pictures_are_written(void **state)
-{
-    (void)state;
-    char png[] = "/tmp/kage-api-XXXXXX", exr[sizeof png + 4];
-    const int fd = mkstemp(png);
-    CHECK(fd, >=, 0);
-    close(fd);
-    snprintf(exr, sizeof exr, "%s.exr", png);
-    kage_scene *s = parse(GROUND);
-    const kage_render_options o = {.layers = 1};
-    kage_film *f = render_with(s, &o);
-    kage_errors *e;
-    assert_false(kage_file_is_picture(png));
-    assert_int_equal(kage_film_write_png(f, png, 0, &e), KAGE_OK);
-    assert_true(kage_file_is_picture(png));
-    assert_int_equal(kage_film_write_exr(f, exr, "Z,N", 1, &e), KAGE_OK);
-    image read;
-    float range[2];
-    errors wrong = {0};
-    assert_true(image_whole(exr, "N.Y", 1, &read, range, &wrong));
-    assert_memory_equal(read.v, kage_film_plane(f, "N.Y"), pixels_of(f) * sizeof *read.v);
-    free(read.v);
-    assert_false(image_whole(exr, "R", 1, &read, range, &wrong));
-    errors_free(&wrong);
-    assert_int_equal(kage_film_write_exr(f, exr, "Z,Q", 1, &e), KAGE_BAD_OPTION);
-    kage_errors_free(e);
-    assert_int_equal(kage_film_write_png(f, "/nowhere/at/all.png", 8, &e), KAGE_NOT_WRITTEN);
-    assert_non_null(strstr(kage_errors_get(e, 0)->text, "/nowhere/at/all.png"));
-    kage_errors_free(e);
-    assert_int_equal(kage_film_write_png(f, png, 12, NULL), KAGE_BAD_OPTION);
-    unlink(png);
-    unlink(exr);
-    kage_film_free(f);
-    kage_scene_free(s);
-}
-
 /* The probe's row for the scene's method has what the layers have. */
 static void a_probe_is_as_the_picture(void **state)
 {
@@ -391,7 +354,6 @@ int main(void)
         cmocka_unit_test(rendering_can_be_cancelled),
         cmocka_unit_test(a_callback_may_render),
         cmocka_unit_test(the_stats_count),
-        cmocka_unit_test(pictures_are_written),
         cmocka_unit_test(a_probe_is_as_the_picture),
         cmocka_unit_test(a_survey_warns_of_steep_bumps),
         cmocka_unit_test(the_export_is_written),

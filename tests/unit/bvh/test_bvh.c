@@ -107,47 +107,6 @@ static float note_nearest(void *user, int32_t i, float end)
     return k->nearest < (double)end ? (float)k->nearest : end;
 }
 
-static void test_toward_finds_the_nearest_box(void **state)
-{
-    int visits = 0, all = 0;
-    (void)state;
-    for (int i = 0; i < TRIES; i++) {
-        float r[3], s[3];
-        double nearest = 4, at;
-        random_ray(r, s);
-        search k = {r, s, 4, 0};
-        bvh_toward(tree, r, s, 4, note_nearest, &k);
-        for (int b = 0; b < BOXES; b++)
-            if (passes(&box[b], r, s, 4, 0, &at)) {
-                nearest = fmin(nearest, at);
-                all++;
-            }
-        NEAR(k.nearest, nearest, 1e-5);
-        visits += k.visits;
-    }
-    CHECK(visits, <, 0.8 * all); /* what lies behind is mostly left out */
-}
-
-static float stop(void *user, int32_t i, float end)
-{
-    (void)i, (void)end;
-    ++*(int *)user;
-    return -1;
-}
-
-static void test_toward_stops(void **state)
-{
-    (void)state;
-    const float r[3] = {-3, 0, 0}, s[3] = {1, 0.01f, 0.02f};
-    int visits = 0, seen[BOXES] = {0}, all = 0;
-    bvh_along(tree, r, s, 9, count_visit, seen);
-    for (int k = 0; k < BOXES; k++)
-        all += seen[k];
-    bvh_toward(tree, r, s, 9, stop, &visits);
-    CHECK(all, >, 4);
-    BETWEEN(1, visits, all - 1);
-}
-
 /* What each ray of a packet has met. */
 typedef struct packet_seen {
     int box[BVH_PACKET][BOXES];
@@ -420,8 +379,6 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_along_visits_the_boxes_that_are_passed),
-        cmocka_unit_test(test_toward_finds_the_nearest_box),
-        cmocka_unit_test(test_toward_stops),
         cmocka_unit_test(test_packets_visit_what_their_rays_do),
         cmocka_unit_test(test_packets_find_the_nearest_boxes),
         cmocka_unit_test(test_packets_stop_rays),

@@ -33,6 +33,33 @@ static char folder[] = "/tmp/kage-test-image-XXXXXX";
 
 /* ------------------------------------------------------------------------------------------------ helpers */
 
+typedef image_writer *opener(const char *path, const image_form *form, errors *e);
+
+/* Write a picture of up to 4 planes whole, `band` rows at a time. */
+static bool write_by(opener *open, const char *path, const image_form *form, int band, const float *const *plane,
+                     errors *e)
+{
+    image_writer *w = open(path, form, e);
+    bool good = w != NULL;
+    for (int y = 0, rows; good && y < form->height; y += rows) {
+        const float *row[4];
+        for (int c = 0; c < form->channels; c++)
+            row[c] = plane[c] + (size_t)y * (size_t)form->width;
+        rows = form->height - y < band ? form->height - y : band;
+        assert_int_equal(image_writer_rows(w), y);
+        good = image_writer_add(w, rows, row, NULL);
+    }
+    return w && image_writer_close(w, true, e);
+}
+
+static bool png_of(const char *path, int width, int height, int bits, const float *const *plane, int texts,
+                   const image_text *text, errors *e)
+{
+    const image_form form = {
+        .width = width, .height = height, .channels = 3, .bits = bits, .texts = texts, .text = text};
+    return write_by(image_writer_png, path, &form, height, plane, e);
+}
+
 static const char *in_folder(const char *name)
 {
     static char path[16][512]; /* a test holds fewer at a time */
@@ -325,7 +352,7 @@ static void png_holds_the_srgb_codes_and_texts(void **state)
     for (int bits = 8; bits <= 16; bits += 8) {
         const unsigned max = (1U << bits) - 1;
         errors e = {0};
-        assert_true(image_write_png(path, WIDTH, 1, bits, red, green, blue, 3, text, &e));
+        assert_true(png_of(path, WIDTH, 1, bits, (const float *const[]){red, green, blue}, 3, text, &e));
         FILE *f = fopen(path, "rb");
         png_structp png = png_create_read_struct(PNG_LIBPNG_VER_STRING, NULL, on_png_error, NULL);
         png_infop info = png_create_info_struct(png);
@@ -501,6 +528,45 @@ static void exr_of_other_kinds_is_refused(void **state)
     free(bytes);
 }
 
+/* The samples, the range and the first of several errors are the same for any number of threads. */
+static void threads_make_no_difference(void **state)
+{
+    (void)state;
+    static const char *const files[] = {"tiled.exr", "half-zips.exr", "half-no.exr", "window-tiled.exr"};
+    for (size_t k = 0; k < sizeof files / sizeof *files; k++) {
+        image one, many;
+        float range[2], same[2];
+        errors e = {0};
+        assert_true(image_whole(in_data(files[k]), NULL, 1, &one, range, &e));
+        for (int threads = 2; threads < 9; threads++) {
+            assert_true(image_whole(in_data(files[k]), NULL, threads, &many, same, &e));
+            assert_memory_equal(one.v, many.v, SAMPLES * sizeof *one.v);
+            assert_memory_equal(range, same, sizeof range);
+            free(many.v);
+        }
+        free(one.v);
+    }
+    size_t size;
+    unsigned char *bytes = slurp(in_data("half-no.exr"), &size);
+    const char *path = in_folder("bad-lines.exr");
+    unsigned char *lines = bytes + size - HEIGHT * (8 + 2 * WIDTH);
+    for (int y = 3; y < HEIGHT; y++)
+        lines[y * (8 + 2 * WIDTH) + 8 + 1] = 0x7c; /* infinite or NaN */
+    lines[5 * (8 + 2 * WIDTH)] ^= 1;               /* the number of a line */
+    spill(path, bytes, size);
+    for (int threads = 1; threads < 9; threads++)
+        for (int again = 0; again < 20; again++) {
+            image m;
+            float range[2];
+            errors e = {0};
+            assert_false(image_whole(path, NULL, threads, &m, range, &e));
+            assert_non_null(strstr(e.text, "column 0 of row 3"));
+            errors_free(&e);
+        }
+    unlink(path);
+    free(bytes);
+}
+
 static void damaged_exr_is_refused(void **state)
 {
     (void)state;
@@ -525,31 +591,36 @@ static void fill(float *v, uint32_t seed)
 
 static float plane[4][SAMPLES];
 
-static bool write_planes(const char *path, errors *e)
+/* Out of order, and one name longer than the 31 bytes of old. */
+static const char *const plane_name[] = {"R", "N.X", "visibility.of-a-light-with-a-rather-long-name", "B"};
+static const image_text plane_text[] = {{"software", "kage"},
+                                        {"scene", "objects:\n  - \xe5\xbd\xb1\n"},
+                                        {"a name of an attribute that is longer than 31", "x"},
+                                        {"empty", ""}};
+static const image_form planes_form = {
+    .width = WIDTH, .height = HEIGHT, .channels = 4, .name = plane_name, .texts = 4, .text = plane_text};
+
+static const float *const *filled_planes(void)
 {
+    static const float *const all[] = {plane[0], plane[1], plane[2], plane[3]};
     for (int c = 0; c < 4; c++)
         fill(plane[c], (uint32_t)c + 1);
-    /* out of order, and one name longer than the 31 bytes of old */
-    const image_channel channel[] = {{"R", plane[0]},
-                                     {"N.X", plane[1]},
-                                     {"visibility.of-a-light-with-a-rather-long-name", plane[2]},
-                                     {"B", plane[3]}};
-    const image_text text[] = {{"software", "kage"},
-                               {"scene", "objects:\n  - \xe5\xbd\xb1\n"},
-                               {"a name of an attribute that is longer than 31", "x"},
-                               {"empty", ""}};
-    return image_write_exr(path, 0, WIDTH, HEIGHT, 4, channel, 4, text, e);
+    return all;
+}
+
+static bool write_planes(const char *path, errors *e)
+{
+    return write_by(image_writer_exr, path, &planes_form, HEIGHT, filled_planes(), e);
 }
 
 static void exr_round_trip_keeps_every_bit(void **state)
 {
     (void)state;
     const char *path = in_folder("planes.exr");
-    static const char *const name[] = {"R", "N.X", "visibility.of-a-light-with-a-rather-long-name", "B"};
     errors e = {0};
     assert_true(write_planes(path, &e));
     for (int c = 0; c < 4; c++) {
-        image m = read_well(path, name[c]);
+        image m = read_well(path, plane_name[c]);
         assert_int_equal(m.width, WIDTH);
         assert_int_equal(m.height, HEIGHT);
         assert_memory_equal(m.v, plane[c], sizeof plane[c]);
@@ -560,16 +631,12 @@ static void exr_round_trip_keeps_every_bit(void **state)
     exr_context_t ctx;
     exr_context_initializer_t init = EXR_DEFAULT_CONTEXT_INITIALIZER;
     assert_int_equal(exr_start_read(&ctx, path, &init), EXR_ERR_SUCCESS);
-    static const char *const text[][2] = {{"software", "kage"},
-                                          {"scene", "objects:\n  - \xe5\xbd\xb1\n"},
-                                          {"a name of an attribute that is longer than 31", "x"},
-                                          {"empty", ""}};
     for (int i = 0; i < 4; i++) {
         int32_t length;
         const char *value;
-        assert_int_equal(exr_attr_get_string(ctx, 0, text[i][0], &length, &value), EXR_ERR_SUCCESS);
-        assert_int_equal(length, strlen(text[i][1]));
-        assert_memory_equal(value, text[i][1], (size_t)length);
+        assert_int_equal(exr_attr_get_string(ctx, 0, plane_text[i].key, &length, &value), EXR_ERR_SUCCESS);
+        assert_int_equal(length, strlen(plane_text[i].value));
+        assert_memory_equal(value, plane_text[i].value, (size_t)length);
     }
     exr_compression_t compression;
     assert_int_equal(exr_get_compression(ctx, 0, &compression), EXR_ERR_SUCCESS);
@@ -585,7 +652,7 @@ static bool write_png(const char *path, errors *e)
     static float grey[SAMPLES];
     for (int i = 0; i < SAMPLES; i++)
         grey[i] = (float)((uint32_t)i * 2654435761U) / 4294967296.0f;
-    return image_write_png(path, WIDTH, HEIGHT, 8, grey, grey, grey, 0, NULL, e);
+    return png_of(path, WIDTH, HEIGHT, 8, (const float *const[]){grey, grey, grey}, 0, NULL, e);
 }
 
 static bool (*const writers[])(const char *, errors *) = {write_png, write_planes};
@@ -750,6 +817,122 @@ static void pipe_gets_the_same_bytes(void **state)
     unlink(direct);
 }
 
+/* ---------------------------------------------------------------------------------------- bands, and parts */
+
+static void bands_have_the_same_bytes(void **state)
+{
+    (void)state;
+    errors e = {0};
+    const char *whole = in_folder("whole"), *bands = in_folder("bands");
+    image_form form = planes_form;
+    assert_true(write_planes(whole, &e));
+    for (form.threads = 1; form.threads <= 3; form.threads++) {
+        assert_true(write_by(image_writer_exr, bands, &form, IMAGE_ROWS, filled_planes(), &e));
+        assert_same_files(whole, bands);
+    }
+    const image_form png = {.width = WIDTH, .height = HEIGHT, .channels = 3, .bits = 16};
+    assert_true(write_by(image_writer_png, whole, &png, HEIGHT, filled_planes(), &e));
+    assert_true(write_by(image_writer_png, bands, &png, IMAGE_ROWS, filled_planes(), &e));
+    assert_same_files(whole, bands);
+    unlink(whole);
+    unlink(bands);
+}
+
+/* An unfinished file of every length is gone on with to the same bytes. */
+static void every_part_is_resumed(void **state)
+{
+    (void)state;
+    errors e = {0};
+    const char *whole = in_folder("whole"), *path = in_folder("picture"), *part = in_folder("picture.part");
+    image_form form = planes_form;
+    size_t n;
+    assert_true(write_planes(whole, &e));
+    unsigned char *bytes = slurp(whole, &n);
+    form.resume = true;
+    bool kept = false, anew = false;
+    for (size_t length = 0; length <= n; length += length + 7 < n ? 7 : 1) {
+        spill(part, bytes, length);
+        image_writer *w = image_writer_exr(path, &form, &e);
+        assert_non_null(w);
+        const int y = image_writer_rows(w);
+        assert_true(y == 0 || y == IMAGE_ROWS); /* the last chunk is always written */
+        kept = kept || y > 0;
+        anew = anew || y == 0;
+        const float *rest[4];
+        for (int c = 0; c < 4; c++)
+            rest[c] = plane[c] + y * WIDTH;
+        assert_true(image_writer_add(w, HEIGHT - y, rest, NULL));
+        assert_true(image_writer_close(w, true, &e));
+        assert_same_files(whole, path);
+        assert_int_equal(files_in_folder(), 2);
+    }
+    assert_true(kept && anew);
+    free(bytes);
+    unlink(whole);
+    unlink(path);
+}
+
+static void parts_stay_or_are_refused(void **state)
+{
+    (void)state;
+    errors e = {0};
+    const char *path = in_folder("picture"), *part = in_folder("picture.part");
+    image_form form = planes_form;
+    form.keep = true;
+    image_writer *w = image_writer_exr(path, &form, &e);
+    assert_non_null(w);
+    assert_true(image_writer_add(w, IMAGE_ROWS, filled_planes(), NULL));
+    assert_false(image_writer_close(w, false, &e));
+    assert_int_equal(e.count, 0); /* nothing has failed */
+    assert_int_equal(access(part, F_OK), 0);
+    assert_int_not_equal(access(path, F_OK), 0);
+    form.resume = true;
+    w = image_writer_exr(path, &form, &e);
+    assert_int_equal(image_writer_rows(w), IMAGE_ROWS);
+    image_writer_close(w, false, &e);
+    form.height++;
+    assert_null(image_writer_exr(path, &form, &e)); /* of another picture: it stays */
+    assert_non_null(strstr(e.text, "part of another picture"));
+    errors_free(&e);
+    assert_int_equal(access(part, F_OK), 0);
+    spill(part, "precious", 8);
+    form.resume = false;
+    assert_null(image_writer_exr(path, &form, &e));
+    assert_non_null(strstr(e.text, "no unfinished picture"));
+    errors_free(&e);
+    assert_int_equal(files_in_folder(), 1);
+    unlink(part);
+}
+
+static bool stop_at_once(void *user, const char *what, double share)
+{
+    int *calls = user;
+    (void)share;
+    assert_string_equal(what, "writing");
+    return --*calls > 0;
+}
+
+static void a_callback_stops_the_writing(void **state)
+{
+    (void)state;
+    static opener *const open[] = {image_writer_exr, image_writer_png};
+    const image_form png = {.width = WIDTH, .height = HEIGHT, .channels = 3, .bits = 8};
+    for (int k = 0; k < 2; k++)
+        for (int calls = 1; calls <= 2; calls++) {
+            errors e = {0};
+            int left = calls;
+            const progress p = {stop_at_once, &left};
+            image_form form = k ? png : planes_form;
+            form.threads = 1;
+            image_writer *w = open[k](in_folder("stopped"), &form, &e);
+            assert_false(image_writer_add(w, HEIGHT, filled_planes(), &p));
+            assert_int_equal(left, 0);
+            assert_false(image_writer_close(w, true, &e));
+            assert_int_equal(e.count, 0);
+            assert_int_equal(files_in_folder(), 0);
+        }
+}
+
 static void nonsense_is_refused(void **state)
 {
     (void)state;
@@ -765,16 +948,20 @@ static void nonsense_is_refused(void **state)
     assert_refused(path, NULL, "too early");
     unlink(path);
 
-    const image_channel twice[] = {{"R", red}, {"R", red}};
-    for (int i = 0; i < 6; i++) {
+    static const char *const twice[] = {"R", "R"};
+    static const struct {
+        opener *open;
+        image_form form;
+    } wrong[] = {{image_writer_exr, {.width = 0, .height = 1, .channels = 1, .name = twice}},
+                 {image_writer_exr, {.width = 70000, .height = 1, .channels = 1, .name = twice}},
+                 {image_writer_exr, {.width = WIDTH, .height = 1, .channels = 2, .name = twice}},
+                 {image_writer_exr, {.width = WIDTH, .height = 1, .channels = 0}},
+                 {image_writer_png, {.width = WIDTH, .height = -1, .channels = 3, .bits = 8}},
+                 {image_writer_png, {.width = WIDTH, .height = 1, .channels = 3, .bits = 12}}};
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
         errors e = {0};
         path = in_folder("unwritten");
-        assert_false(i == 0   ? image_write_exr(path, 0, 0, 1, 1, twice, 0, NULL, &e)
-                     : i == 1 ? image_write_exr(path, 0, 70000, 1, 1, twice, 0, NULL, &e)
-                     : i == 2 ? image_write_exr(path, 0, WIDTH, 1, 2, twice, 0, NULL, &e)
-                     : i == 3 ? image_write_exr(path, 0, WIDTH, 1, 0, NULL, 0, NULL, &e)
-                     : i == 4 ? image_write_png(path, WIDTH, -1, 8, red, red, red, 0, NULL, &e)
-                              : image_write_png(path, WIDTH, 1, 12, red, red, red, 0, NULL, &e));
+        assert_null(wrong[i].open(path, &wrong[i].form, &e));
         assert_int_equal(e.count, 1);
         assert_non_null(strstr(e.text, path));
         assert_int_equal(files_in_folder(), 0);
@@ -811,12 +998,17 @@ int main(void)
         cmocka_unit_test(every_half_is_read_exactly),
         cmocka_unit_test(exr_of_other_kinds_is_refused),
         cmocka_unit_test(damaged_exr_is_refused),
+        cmocka_unit_test(threads_make_no_difference),
         cmocka_unit_test(exr_round_trip_keeps_every_bit),
         cmocka_unit_test(same_image_same_bytes),
         cmocka_unit_test(file_is_replaced_whole),
         cmocka_unit_test(failure_leaves_nothing_behind),
         cmocka_unit_test(protected_places_stay_as_they_are),
         cmocka_unit_test(pipe_gets_the_same_bytes),
+        cmocka_unit_test(bands_have_the_same_bytes),
+        cmocka_unit_test(every_part_is_resumed),
+        cmocka_unit_test(parts_stay_or_are_refused),
+        cmocka_unit_test(a_callback_stops_the_writing),
         cmocka_unit_test(nonsense_is_refused),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);

@@ -133,15 +133,15 @@ static void aim(double size, double most)
             const double b = i % 4 == 0 ? 0 : random_in(0, 1), e = i % 4 == 1 ? 0 : 1 - b,
                          from[3] = {100 + random_in(-10, 10), 100 + random_in(-10, 10), 110};
             double p[3];
-            uint32_t met[BVH_PACKET] = {0};
+            uint32_t met[CLUSTER];
             point_in((const float(*)[3])d.at[c.cluster[n].index[i]], b, e, p);
             set_ray(&k, from, p);
             cluster_near(&c.cluster[n], &k, 1, met);
-            CHECK(met[0] >> i & 1, ==, 1);
+            CHECK(met[i], ==, 1);
             for (int j = 0; j < CLUSTER; j++) {
-                kept += j != i && met[0] >> j & 1;
+                kept += j != i && met[j];
                 others += j != i && c.cluster[n].error[j] >= 0;
-                CHECK(c.cluster[n].error[j] < 0 && met[0] >> j & 1, ==, 0);
+                CHECK(c.cluster[n].error[j] < 0 && met[j], ==, 0);
             }
         }
     CHECK(kept, <, most * others);

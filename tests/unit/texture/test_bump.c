@@ -91,13 +91,15 @@ static const map_layout layouts[] = {
     {{2, 3}, {0, 0}, MAP_REPEAT, false, 0.1, 0.5},     {{2, 3}, {0.3, -0.2}, MAP_CLAMP, false, 0.1, 0.5},
     {{0.7, 0.9}, {-1, 2}, MAP_MIRROR, false, -0.3, 0}, {{2, 3}, {0.5, 0.25}, MAP_REPEAT, true, 0.1, 0.25},
     {{2, 3}, {0, 0}, MAP_CLAMP, true, 0.1, 0.5},       {{5, 1}, {0, 0}, MAP_MIRROR, true, 2, 1},
+    {{-2, 3}, {0, 0}, MAP_REPEAT, false, 0.1, 0.5},    {{2, -3}, {0.3, -0.2}, MAP_CLAMP, false, 0.1, 0.5},
+    {{-0.7, -3}, {0, 1}, MAP_MIRROR, true, 0.1, 0.5},
 };
 enum { LAYOUTS = sizeof layouts / sizeof *layouts };
 
 /* The scale of each value: the height's, over the sample distance to the power of the derivative. */
 static void sizes(const map_layout *l, double s[6])
 {
-    double du = l->size[0] / W, dw = l->size[1] / H, k = fabs(l->scale);
+    double du = fabs(l->size[0]) / W, dw = fabs(l->size[1]) / H, k = fabs(l->scale);
     const double v[6] = {k, k / du, k / dw, k / du / du, k / du / dw, k / dw / dw};
     for (int i = 0; i < 6; i++)
         s[i] = 4 * v[i];
@@ -365,7 +367,7 @@ static void map_slopes(void **state)
         double steepest[2] = {0, 0}, size[6];
         sizes(l, size);
         /* a place rounds as its sample number does: up to 3 copies of W samples */
-        const double rounding = TOLERANCE * (size[0] + (top[0] * l->size[0] + top[1] * l->size[1]) * 3);
+        const double rounding = TOLERANCE * (size[0] + (top[0] * fabs(l->size[0]) + top[1] * fabs(l->size[1])) * 3);
         for (int k = 0; k < 100000; k++) {
             double u = l->offset[0] + l->size[0] * draw_in(-1.2, 2.2),
                    w = l->offset[1] + l->size[1] * draw_in(-1.2, 2.2);
@@ -388,9 +390,9 @@ static void map_slopes(void **state)
                 double u = l->offset[0] + (i + half) * d[0], w = l->offset[1] + (j + half) * d[1], a[6], b[6];
                 look(p, u, w, a);
                 look(p, u + d[0], w, b);
-                steepest[0] = fmax(steepest[0], fabs(b[0] - a[0]) / d[0]);
+                steepest[0] = fmax(steepest[0], fabs((b[0] - a[0]) / d[0]));
                 look(p, u, w + d[1], b);
-                steepest[1] = fmax(steepest[1], fabs(b[0] - a[0]) / d[1]);
+                steepest[1] = fmax(steepest[1], fabs((b[0] - a[0]) / d[1]));
             }
         for (int k = 0; k < 2; k++)
             near(top[k], steepest[k], size[1 + k] * 8);

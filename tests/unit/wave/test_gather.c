@@ -97,13 +97,16 @@ static void own_origins(void **state)
     static rays x;
     static hits h;
     static ray_origins from;
+    int32_t own[LANES];
     (void)state;
     mixed_wave(&x, &h);
     for (int i = 0; i < LANES; i++) {
         from.id[i] = 1;
         lane_set(&from.at, i, (bs_vec3){-1, -1, -1});
     }
-    gather_move_origins(LANES, &from, &h, &x);
+    for (int i = 0; i < LANES; i++)
+        own[i] = h.id[i] == 1;
+    gather_move_origins(LANES, &from, own, &x);
     CHECK(x.r.x[1], ==, -1); /* met object 1 */
     CHECK(x.r.x[2], ==, 2);  /* met object 2 */
     CHECK(x.r.x[7], ==, 7);  /* met nothing */

@@ -1,0 +1,183 @@
+/* Films to files: PNG and OpenEXR, whole or band by band. */
+#include "api/api.h"
+
+#include "base/file_writer.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* The text `Software` in a picture begins with this; the version follows. */
+#define SOFTWARE "kage"
+
+/* ---- what a picture's file says of it ---- */
+
+enum { TEXTS = 7 };
+typedef struct picture_texts {
+    image_text text[TEXTS];
+    char crop[64];
+} picture_texts;
+
+/* What the picture is made from, except for maps, so that it can be rendered again. No clock, path or number of
+ * threads: the same picture has the same bytes. */
+static void texts_of(const kage_film *f, window w, picture_texts *t)
+{
+    snprintf(t->crop, sizeof t->crop, "%d,%d,%d,%d", w.x0, w.y0, w.x1, w.y1);
+    const image_text text[TEXTS] = {
+        {"Software", SOFTWARE " " KAGE_VERSION " " REAL_NAME},
+        {"kage:file", f->file},
+        {"kage:scene", f->source},
+        {"kage:set", f->sets},
+        {"kage:crop", t->crop},
+        {"kage:shadow", f->method},
+        {"kage:guard", f->guard ? "yes" : "no"},
+    };
+    memcpy(t->text, text, sizeof text);
+}
+
+/* ---- the options ---- */
+
+/* The word after this one in a list with commas, or NULL. */
+static const char *next_word(const char *word)
+{
+    const char *comma = strchr(word, ',');
+    return comma ? comma + 1 : NULL;
+}
+
+static bool is_wanted(const char *layers, const char *plane)
+{
+    const char *word = layers;
+    while (word && !film_names_plane(word, strcspn(word, ","), plane))
+        word = next_word(word);
+    return !layers || word;
+}
+
+static bool has_ending(const char *path, const char *ending)
+{
+    const size_t n = strlen(path), m = strlen(ending);
+    return n > m && strcmp(path + n - m, ending) == 0;
+}
+
+/* False: an error is in *e. */
+static bool options_are_good(const char *path, const kage_write_options *o, const film *f, errors *e)
+{
+    const bool png = has_ending(path, ".png");
+    bool good = true;
+    if (!png && !has_ending(path, ".exr"))
+        good = errors_add(e, "%s: no such kind of picture, expected a name that ends in .png or .exr", path);
+    if (o->bits != 0 && o->bits != 8 && o->bits != 16)
+        good = errors_add(e, "%d bits, expected 8 or 16", o->bits);
+    if (o->threads < 0 || o->threads > KAGE_MAX_THREADS)
+        good = errors_add(e, "%d threads, expected 0 to %d", o->threads, KAGE_MAX_THREADS);
+    if (png && o->resume)
+        good = errors_add(e, "%s: only an EXR can be resumed, expected a name that ends in .exr", path);
+    for (const char *word = png ? NULL : o->layers; word; word = next_word(word))
+        if (!film_has_layer(f, word, strcspn(word, ",")))
+            good = errors_add(e, "%.*s: no such layer, expected the name of a plane of the film",
+                              (int)strcspn(word, ","), word);
+    return good;
+}
+
+/* ---- writing ---- */
+
+static image_writer *begin(const picture *p, const film *f, const image_form *form, const char *path, errors *e)
+{
+    if (has_ending(path, ".png"))
+        return image_writer_png(path, form, e);
+    const char **name = malloc((size_t)p->planes * sizeof *name);
+    image_form named = *form;
+    for (int k = 0; name && k < p->planes; k++)
+        name[k] = f->name[p->plane[k]];
+    named.name = name;
+    image_writer *w = name ? image_writer_exr(path, &named, e) : NULL;
+    if (!name)
+        errors_add(e, "out of memory");
+    free(name);
+    return w;
+}
+
+static void forget(picture *p)
+{
+    free(p->plane);
+    free(p->row);
+}
+
+kage_status picture_begin(picture *p, const kage_film *f, window part, const char *path, const kage_write_options *o,
+                          errors *e)
+{
+    const film *planes = f->film;
+    const char *layers = has_ending(path, ".png") ? "color" : o->layers;
+    picture_texts t;
+    *p = (picture){0};
+    if (!options_are_good(path, o, planes, e))
+        return KAGE_BAD_OPTION;
+    p->plane = malloc((size_t)planes->planes * sizeof *p->plane);
+    p->row = malloc((size_t)planes->planes * sizeof *p->row);
+    if (!p->plane || !p->row) {
+        forget(p);
+        errors_add(e, "out of memory");
+        return KAGE_NO_MEMORY;
+    }
+    for (int k = 0; k < planes->planes; k++)
+        if (is_wanted(layers, planes->name[k]))
+            p->plane[p->planes++] = k;
+    texts_of(f, part, &t);
+    const image_form form = {.width = part.x1 - part.x0,
+                             .height = part.y1 - part.y0,
+                             .channels = p->planes,
+                             .texts = TEXTS,
+                             .text = t.text,
+                             .bits = o->bits ? o->bits : 8,
+                             .threads = o->threads,
+                             .keep = o->keep != 0,
+                             .resume = o->resume != 0};
+    p->writer = begin(p, planes, &form, path, e);
+    if (p->writer)
+        return KAGE_OK;
+    forget(p);
+    return KAGE_NOT_WRITTEN;
+}
+
+bool picture_add(picture *p, const film *f, const progress *show)
+{
+    for (int k = 0; k < p->planes; k++)
+        p->row[k] = f->plane[p->plane[k]];
+    return image_writer_add(p->writer, f->part.y1 - f->part.y0, p->row, show);
+}
+
+kage_status picture_end(picture *p, bool whole, errors *e)
+{
+    const bool good = image_writer_close(p->writer, whole, e);
+    forget(p);
+    return good ? KAGE_OK : KAGE_NOT_WRITTEN;
+}
+
+kage_status kage_film_write(const kage_film *f, const char *path, const kage_write_options *given, kage_errors **to)
+{
+    kage_write_options o = given ? *given : (kage_write_options){0};
+    o.keep = o.resume = 0; /* of kage_render_file alone */
+    errors e = {0};
+    c_locale l = c_locale_begin();
+    watch w = {o.progress, o.user, &l, false};
+    const progress show = watch_progress(&w);
+    picture p;
+    kage_status status = picture_begin(&p, f, f->film->part, path, &o, &e);
+    if (status == KAGE_OK) {
+        picture_add(&p, f->film, w.call ? &show : NULL);
+        status = picture_end(&p, !w.cancelled, &e);
+    }
+    c_locale_end(&l);
+    return errors_give(&e, status, &w, to);
+}
+
+kage_status kage_file_probe(const char *path, kage_errors **to)
+{
+    errors e = {0};
+    file_writer f;
+    const bool good = file_writer_open(&f, path, &e);
+    if (good)
+        file_writer_close(&f, "", &e);
+    return errors_give(&e, good ? KAGE_OK : KAGE_NOT_WRITTEN, NULL, to);
+}
+
+int kage_file_is_picture(const char *path) { return image_png_is_from(path, SOFTWARE); }
