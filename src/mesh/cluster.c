@@ -180,9 +180,9 @@ static int32_t *cut_all(int n, const bvh_box *box, int threads, int *groups)
 {
     unsigned char *size = malloc((size_t)n), *start = calloc((size_t)n, 1);
     int32_t *first = NULL;
+    (void)threads; /* without OpenMP */
     *groups = 0;
     if (size && start) {
-    (void)threads; /* without OpenMP */
 #pragma omp parallel for num_threads(threads) schedule(static)
         for (int a = 0; a < n; a += CHUNK)
             cut(n - a < CHUNK ? n - a : CHUNK, box + a, size + a, start + a);
