@@ -39,7 +39,8 @@ bool image_begin(image_stream *s, int64_t width, int64_t height, char *why);
 bool image_pass(const image_stream *s, int x, int y, int n, const float *v, float range[2], char *why);
 
 /* The readers behind image_read. */
-bool image_read_png(FILE *file, image_stream *to, char *why); /* file: after the 8 bytes of the signature */
+bool image_read_png(FILE *file, int threads, image_stream *to,
+                    char *why); /* file: after the 8 bytes of the signature */
 bool image_read_exr(FILE *file, const char *channel, int threads, image_stream *to, char *why); /* at any position */
 
 #endif

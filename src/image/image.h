@@ -32,8 +32,8 @@ typedef struct image_taker {
     void (*take)(void *user, int x, int y, int n, const float *v);
 } image_taker;
 
-/* Read one channel of a file, on the given number of threads (0: one for each processor; only OpenEXR uses more than
- * one). range: the least sample and the most.
+/* Read one channel of a file, on the given number of threads (0: one for each processor; PNG takes two at
+ * most). range: the least sample and the most.
  *
  * PNG: grey, 8 or 16 bit (also 1, 2, 4 bit; grey with alpha, the alpha ignored), as sample / (2^bits - 1),
  * so 0..1, without any gamma; `channel` must be NULL. Colour and palette images are refused.

@@ -1,14 +1,25 @@
 /* Reads and writes PNG files with libpng. */
 #include <errno.h>
 #include <png.h>
+#include <pthread.h>
 #include <setjmp.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/file_writer.h"
 #include "base/real.h"
+#include "base/threads.h"
 #include "image/format.h"
 #include "image/srgb.h"
+
+/* Rows on their way from the thread that decodes to one that passes them on, in two halves of job->packed. */
+typedef struct png_relay {
+    pthread_t thread;
+    pthread_mutex_t lock;
+    pthread_cond_t changed;
+    bool started, ended;
+    int first[2], rows[2]; /* that wait in each half; 0: it is free */
+} png_relay;
 
 /* libpng's error handler must not return, so it calls longjmp. What is needed after the jump is in this struct, outside
  * the frame of setjmp's function, where the jump cannot change it. */
@@ -19,6 +30,10 @@ typedef struct png_job {
     png_infop info;
     png_bytep packed; /* while reading: rows as the file has them, and one row of samples */
     float *row;
+    size_t row_bytes;
+    int bytes; /* of a sample */
+    image_stream *to;
+    png_relay relay;
 } png_job;
 
 static void on_error(png_structp png, png_const_charp message)
@@ -53,25 +68,108 @@ STAGE static void png_to_float16(int n, const unsigned char *restrict from, floa
         to[i] = (float)(from[2 * i] << 8 | from[2 * i + 1]) / 65535.0f;
 }
 
-static bool pass_row(png_job *job, image_stream *to, int y, const unsigned char *packed, int bytes)
+/* Pass on n rows, from row y on. (The samples are finite, so none is refused.) */
+static void pass_rows(png_job *job, int y, int n, const unsigned char *packed)
 {
-    (bytes == 2 ? png_to_float16 : png_to_float8)(to->width * to->values, packed, job->row);
-    return image_pass(to, 0, y, to->width, job->row, to->range, job->why);
+    image_stream *to = job->to;
+    for (int k = 0; k < n; k++) {
+        (job->bytes == 2 ? png_to_float16 : png_to_float8)(to->width * to->values, packed + (size_t)k * job->row_bytes,
+                                                           job->row);
+        image_pass(to, 0, y + k, to->width, job->row, to->range, job->why);
+    }
 }
 
-/* An interlaced image comes in several passes, so all its rows are kept; otherwise one is. */
-static bool read_rows(png_job *job, image_stream *to, int passes, size_t row, int bytes)
+enum { RELAYED = 32 }; /* rows at a time */
+
+static void *relay_pass(void *user)
 {
-    const size_t kept = passes > 1 ? row : 0;
-    job->packed = malloc(row + kept * (size_t)(to->height - 1));
-    job->row = malloc((size_t)to->width * (size_t)to->values * sizeof *job->row);
+    png_job *job = user;
+    png_relay *r = &job->relay;
+    for (int half = 0;; half ^= 1) {
+        pthread_mutex_lock(&r->lock);
+        while (!r->rows[half] && !r->ended)
+            pthread_cond_wait(&r->changed, &r->lock);
+        const int n = r->rows[half];
+        pthread_mutex_unlock(&r->lock);
+        if (n == 0)
+            return NULL;
+        pass_rows(job, r->first[half], n, job->packed + (size_t)half * RELAYED * job->row_bytes);
+        pthread_mutex_lock(&r->lock);
+        r->rows[half] = 0;
+        pthread_cond_signal(&r->changed);
+        pthread_mutex_unlock(&r->lock);
+    }
+}
+
+/* False: there is no other thread to be had. */
+static bool relay_begin(png_job *job)
+{
+    png_relay *r = &job->relay;
+    if (pthread_mutex_init(&r->lock, NULL) != 0)
+        return false;
+    if (pthread_cond_init(&r->changed, NULL) == 0) {
+        r->started = pthread_create(&r->thread, NULL, relay_pass, job) == 0;
+        if (r->started)
+            return true;
+        pthread_cond_destroy(&r->changed);
+    }
+    pthread_mutex_destroy(&r->lock);
+    return false;
+}
+
+/* Wait until all rows are passed on; also after an error. */
+static void relay_end(png_relay *r)
+{
+    if (!r->started)
+        return;
+    pthread_mutex_lock(&r->lock);
+    r->ended = true;
+    pthread_cond_signal(&r->changed);
+    pthread_mutex_unlock(&r->lock);
+    pthread_join(r->thread, NULL);
+    pthread_cond_destroy(&r->changed);
+    pthread_mutex_destroy(&r->lock);
+}
+
+/* Decode rows y to y + n - 1 into a half that is free. The lock is not held in libpng, which may jump out. */
+static void relay_rows(png_job *job, int y, int n, int half)
+{
+    png_relay *r = &job->relay;
+    unsigned char *to = job->packed + (size_t)half * RELAYED * job->row_bytes;
+    pthread_mutex_lock(&r->lock);
+    while (r->rows[half])
+        pthread_cond_wait(&r->changed, &r->lock);
+    pthread_mutex_unlock(&r->lock);
+    for (int k = 0; k < n; k++)
+        png_read_row(job->png, to + (size_t)k * job->row_bytes, NULL);
+    pthread_mutex_lock(&r->lock);
+    r->first[half] = y;
+    r->rows[half] = n;
+    pthread_cond_signal(&r->changed);
+    pthread_mutex_unlock(&r->lock);
+}
+
+/* An interlaced image comes in several passes, so all its rows are kept. Otherwise some are, and another thread, if
+ * there may be one, passes them on meanwhile. */
+static bool read_rows(png_job *job, int passes, int threads)
+{
+    const int height = job->to->height;
+    const bool relayed = passes == 1 && height > 2 * RELAYED && threads_of(threads) > 1;
+    job->packed = malloc(job->row_bytes * (size_t)(relayed ? 2 * RELAYED : passes > 1 ? height : 1));
+    job->row = malloc((size_t)job->to->width * (size_t)job->to->values * sizeof *job->row);
     if (!job->packed || !job->row)
         return image_refuse(job->why, "there is not enough memory for the image");
+    if (relayed && relay_begin(job)) {
+        for (int y = 0; y < height; y += RELAYED)
+            relay_rows(job, y, height - y < RELAYED ? height - y : RELAYED, y / RELAYED % 2);
+        return true;
+    }
     for (int pass = 1; pass <= passes; pass++)
-        for (int y = 0; y < to->height; y++) {
-            png_read_row(job->png, job->packed + (size_t)y * kept, NULL);
-            if (pass == passes && !pass_row(job, to, y, job->packed + (size_t)y * kept, bytes))
-                return false;
+        for (int y = 0; y < height; y++) {
+            unsigned char *row = job->packed + (passes > 1 ? (size_t)y * job->row_bytes : 0);
+            png_read_row(job->png, row, NULL);
+            if (pass == passes)
+                pass_rows(job, y, 1, row);
         }
     return true;
 }
@@ -106,12 +204,13 @@ static bool read_header(png_job *job, FILE *file, bool texts)
     return true;
 }
 
-static bool decode(png_job *job, FILE *file, image_stream *to)
+static bool decode(png_job *job, FILE *file, int threads)
 {
     if (setjmp(job->jump))
         return false;
     if (!read_header(job, file, false))
         return false;
+    image_stream *to = job->to;
     const bool color = to->values > 1;
     int colour = png_get_color_type(job->png, job->info);
     if (!color && colour != PNG_COLOR_TYPE_GRAY && colour != PNG_COLOR_TYPE_GRAY_ALPHA)
@@ -119,7 +218,7 @@ static bool decode(png_job *job, FILE *file, image_stream *to)
                             colour == PNG_COLOR_TYPE_PALETTE ? "has a palette" : "is in colour");
     if (!image_begin(to, png_get_image_width(job->png, job->info), png_get_image_height(job->png, job->info), job->why))
         return false;
-    const int bytes = png_get_bit_depth(job->png, job->info) == 16 ? 2 : 1;
+    job->bytes = png_get_bit_depth(job->png, job->info) == 16 ? 2 : 1;
     if (color)
         expand_to_color(job, colour);
     else {
@@ -128,19 +227,20 @@ static bool decode(png_job *job, FILE *file, image_stream *to)
     }
     const int passes = png_set_interlace_handling(job->png);
     png_read_update_info(job->png, job->info);
-    const size_t row = (size_t)to->width * (size_t)to->values * (size_t)bytes;
-    if (png_get_rowbytes(job->png, job->info) != row)
+    job->row_bytes = (size_t)to->width * (size_t)to->values * (size_t)job->bytes;
+    if (png_get_rowbytes(job->png, job->info) != job->row_bytes)
         return image_refuse(job->why, "libpng: unexpected size of a row");
-    if (!read_rows(job, to, passes, row, bytes))
+    if (!read_rows(job, passes, threads))
         return false;
     png_read_end(job->png, NULL);
     return true;
 }
 
-bool image_read_png(FILE *file, image_stream *to, char *why)
+bool image_read_png(FILE *file, int threads, image_stream *to, char *why)
 {
-    png_job job = {.why = why};
-    bool ok = decode(&job, file, to);
+    png_job job = {.why = why, .to = to};
+    bool ok = decode(&job, file, threads);
+    relay_end(&job.relay);
     png_destroy_read_struct(&job.png, &job.info, NULL);
     free(job.packed);
     free(job.row);

@@ -24,7 +24,7 @@ static bool read_any(FILE *file, const char *channel, int threads, image_stream 
                             n ? "its first bytes are those of neither a PNG nor an OpenEXR file" : "the file is empty");
     if (channel)
         return image_refuse(why, "there is no channel '%s': a PNG file has no named channels", channel);
-    return image_read_png(file, to, why);
+    return image_read_png(file, threads, to, why);
 }
 
 static bool read_file(const char *path, const char *channel, int threads, image_stream *to, bool *is_exr, errors *e)
