@@ -99,6 +99,7 @@ static void crowd_free(surface *base)
     crowd *f = (crowd *)base;
     wide_free(f->tree);
     free(f->copy);
+    free(f);
 }
 
 const crowd *crowd_of(const surface *f) { return f->ops->locate == crowd_locate ? (const crowd *)f : NULL; }
