@@ -19,7 +19,7 @@ SYMBOL = re.compile(r"^[0-9a-f]+ <(\w+)\.(default|arch_x86_64_v3|arch_x86_64_v4|
 # arithmetic, conversions, comparisons and blends; moves and shuffles alone make no SIMD loop
 PACKED = re.compile(r"\bv?(add|sub|mul|div|sqrt|min|max|and|andn|or|xor|cmp\w*|cvt\w*|blend\w*|gather\w*|fm\w*)p[sd]\b")
 INTEGER = re.compile(r"\bv?(p(add|sub|and|or|xor|cmp|gather)\w*)\b")
-STORE = re.compile(r"\bv?mov[au]p[sd]\s+%[xyz]mm\d+,[-0-9a-fx]*\(")  # all that a filling loop has
+STORE = re.compile(r"\bv?mov(?:[au]p[sd]|dq[au]\d*)\s+%[xyz]mm\d+,[-0-9a-fx]*\(")  # all that a filling loop has
 SCALAR = re.compile(r"\bv?(add|sub|mul|div|sqrt|min|max|comi|ucomi|cvt\w*)s[sd]\b")
 LEVELS = {"default": "x86-64", "arch_x86_64_v3": "AVX2", "avx2": "AVX2", "arch_x86_64_v4": "AVX-512"}
 

@@ -121,8 +121,9 @@ bool file_writer_open_part(file_writer *f, const char *path, bool resume, const 
     struct stat st;
     const bool exists = stat(path, &st) == 0;
     *f = (file_writer){.path = path, .fd = -1, .keep = true};
-    if (exists && !S_ISREG(st.st_mode))
-        return fail(path, S_ISDIR(st.st_mode) ? strerror(EISDIR) : "an unfinished picture needs a regular file", e);
+    if (exists && !S_ISREG(st.st_mode)) /* nothing stays of a pipe */
+        return resume && !S_ISDIR(st.st_mode) ? fail(path, "an unfinished picture needs a regular file", e)
+                                              : file_writer_open(f, path, e);
     if (exists && access(path, W_OK) != 0)
         return fail(path, strerror(errno), e);
     f->target = exists ? realpath(path, NULL) : strdup(path);

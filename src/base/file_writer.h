@@ -25,7 +25,8 @@ bool file_writer_open(file_writer *f, const char *path, errors *e);
 
 /* Start, or go on: the temporary name is PATH.part, and the file stays there until it is finished. resume: keep what is
  * in it, f->size bytes; else begin it anew, but only if there is nothing or a file that begins with these 4 bytes. No
- * two processes write it at a time. `path` must be a regular file or absent. */
+ * two processes write it at a time. What is not a regular file is opened as by file_writer_open, and can't be resumed.
+ */
 bool file_writer_open_part(file_writer *f, const char *path, bool resume, const char magic[4], errors *e);
 
 /* Read what was there. False: it could not be read. */

@@ -143,9 +143,10 @@ STAGE static void take_shifts(const hits *restrict h, hit_group *restrict g)
     for (int i = 0; i < n; i++) {
         const bs_vec3 m = lane_get(&g->n_smooth, i), s = lane_get(&g->x->s, i);
         const bs_view v = {bs_dot(s, m) / real_sqrt(bs_dot(m, m)), 0, 0};
+        const real along = h->t[i] - g->t[i];
         const int regular = bs_regular(m, lane_get(&g->q.Qu, i), lane_get(&g->q.Qw, i)), hit = h->id[i] == 0;
         const real tau0 = bs_tau0(v, g->bump.P[i]), order_0 = regular ? tau0 : 0;
-        g->tau[i] = hit ? h->t[i] - g->t[i] : order_0;
+        g->tau[i] = hit ? along : order_0;
         g->order[i] = hit ? ORDER_EXACT : 0;
     }
 }

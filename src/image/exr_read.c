@@ -348,6 +348,7 @@ static void decode_all(int fd, const exr_plan *p, int threads, exr_failure *bad)
 {
     float *const all = p->to->range;
     bad->chunk = p->chunks;
+    (void)threads; /* without OpenMP */
 #pragma omp parallel num_threads(threads < p->chunks ? threads : p->chunks)
     {
         char why[IMAGE_WHY] = "";
@@ -356,16 +357,16 @@ static void decode_all(int fd, const exr_plan *p, int threads, exr_failure *bad)
 #pragma omp for schedule(dynamic)
         for (int k = 0; k < p->chunks; k++) {
             int first;
-#pragma omp critical(exr)
+#pragma omp critical
             first = bad->chunk;
             if (k < first && !(ready && decode_numbered(&w, k)))
-#pragma omp critical(exr)
+#pragma omp critical
                 if (k < bad->chunk) {
                     bad->chunk = k;
                     memcpy(bad->why, why, sizeof why);
                 }
         }
-#pragma omp critical(exr)
+#pragma omp critical
         {
             all[0] = fminf(all[0], w.range[0]);
             all[1] = fmaxf(all[1], w.range[1]);

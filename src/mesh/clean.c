@@ -186,6 +186,7 @@ static bool smooth(mesh_data *d, double crease, int threads)
     const bool good = find_places(d, &p);
     const double least = km_cos(crease * (KM_PI / 180)) - SAME_ANGLE;
     const int n = good ? p.n : 0;
+    (void)threads; /* without OpenMP */
 #pragma omp parallel for num_threads(threads) schedule(static)
     for (int k = 0; k < n; k++)
         smooth_place(d, p.corner + p.first[k], p.first[k + 1] - p.first[k], least);

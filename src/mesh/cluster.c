@@ -182,6 +182,7 @@ static int32_t *cut_all(int n, const bvh_box *box, int threads, int *groups)
     int32_t *first = NULL;
     *groups = 0;
     if (size && start) {
+    (void)threads; /* without OpenMP */
 #pragma omp parallel for num_threads(threads) schedule(static)
         for (int a = 0; a < n; a += CHUNK)
             cut(n - a < CHUNK ? n - a : CHUNK, box + a, size + a, start + a);
@@ -248,6 +249,7 @@ static bool sort_triangles(const mesh_data *d, const bvh_space *space, int threa
     key *keys = malloc(sizeof *keys * (size_t)d->n);
     if (!keys)
         return false;
+    (void)threads; /* without OpenMP */
 #pragma omp parallel for num_threads(threads) schedule(static)
     for (int i = 0; i < d->n; i++) {
         const bvh_box b = box_of(d, space, i);

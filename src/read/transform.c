@@ -10,16 +10,16 @@ static void circle(double degrees, double *c, double *s)
 {
     const double quarter = km_floor(degrees / 90 + 0.5), rest = (degrees - 90 * quarter) * (KM_PI / 180);
     const int k = (int)(quarter - 4 * km_floor(quarter / 4));
-    const double x = km_cos(rest), y = km_sin(rest);
+    const double x = rest == 0 ? 1 : km_cos(rest), y = rest == 0 ? 0 : km_sin(rest);
     *c = k == 0 ? x : k == 1 ? -y : k == 2 ? -x : y;
     *s = k == 0 ? y : k == 1 ? x : k == 2 ? -y : -x;
 }
 
-affine reader_rotation(const double a[3])
+affine reader_rotation(const double degrees[3])
 {
     double c[3], s[3];
     for (int k = 0; k < 3; k++)
-        circle(a[k], &c[k], &s[k]);
+        circle(degrees[k], &c[k], &s[k]);
     const affine x = {{1, 0, 0}, {0, c[0], s[0]}, {0, -s[0], c[0]}, {0, 0, 0}};
     const affine y = {{c[1], 0, -s[1]}, {0, 1, 0}, {s[1], 0, c[1]}, {0, 0, 0}};
     const affine z = {{c[2], s[2], 0}, {-s[2], c[2], 0}, {0, 0, 1}, {0, 0, 0}};

@@ -259,6 +259,7 @@ static void join(const extremes *x, heights_bounds *b)
 static heights_bounds bounds_of(const heights *h, int threads)
 {
     heights_bounds all = {REAL_FAR, -REAL_FAR, 0, 0, false};
+    (void)threads; /* without OpenMP */
 #pragma omp parallel num_threads(threads)
     {
         extremes x;

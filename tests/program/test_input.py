@@ -66,7 +66,7 @@ REPLACED = [
     ("material-key", "diffuse: 0.8", "difuse: 0.8", "7:48: a material has no 'difuse', did you mean 'diffuse'?"),
     ("object-key", "    box: {", "    brick: {",
      "19:5: an object has no 'brick', expected one of: plane rectangle disc box sphere cylinder cone torus ellipsoid "
-     "parametric patches mesh material bump transform copy"),
+     "parametric patches mesh material bump transform copy copies hidden"),
     ("plane-key", "u: [0, 0, 1]", "U: [0, 0, 1]", "10:32: plane has no 'U', did you mean 'u'?"),
     ("box-key", "to: [0, 1.5", "too: [0, 1.5", "19:32: box has no 'too', did you mean 'to'?"),
     ("sphere-key", "radius: 0.5", "r: 0.5", "22:33: sphere has no 'r', expected one of: center radius"),
@@ -910,6 +910,7 @@ def test_examples_of_the_page(kage: Kage, images: Path, block: tuple[int, str]) 
     (kage.folder / "bumps.png").symlink_to(images / "map.png")
     (kage.folder / "heights.exr").symlink_to(images / "two.exr")
     (kage.folder / "wood.png").symlink_to(images / "color.png")
+    (kage.folder / "pebbles.csv").write_text("x,y,z,scale\n0,1,0,0.1\n")
     assert "warning" in kage.good("check", "scene.yaml")
 
 

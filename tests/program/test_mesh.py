@@ -277,6 +277,22 @@ def test_a_million_triangles(kage: Kage) -> None:
     assert np.abs(np.linalg.norm(at, axis=1) - 1).max() < 2e-5  # the chords', and half float's
 
 
+def test_memory_that_does_not_suffice(kage: Kage) -> None:
+    """Is an error, wherever it ends: also while Embree builds, whose threads would end the process."""
+    flags = PROGRAM.parent / "flags"
+    if flags.exists() and "-fsanitize" in flags.read_text():
+        pytest.skip("a sanitizer has all addresses for itself")
+    models.ply(kage.folder / "ball.ply", models.ball(501, 251), binary=True)
+    path = scene(kage, "file: ball.ply")
+    ends = set()
+    for mib in range(120, 480, 30):
+        done = subprocess.run(["sh", "-c", f"ulimit -v {1024 * mib}; exec {PROGRAM} check {path.name}"], cwd=kage.folder,
+                              capture_output=True, text=True)
+        ends.add(done.returncode)
+        assert done.returncode == 0 or "out of memory" in done.stderr, f"{mib} MiB: {done}"
+    assert ends == {0, 2}
+
+
 @pytest.mark.parametrize("options", [[], ["--surface", "displaced"]])
 def test_threads(kage: Kage, options: list[str]) -> None:
     models.obj(kage.folder / "ball.obj", models.ball(24, 12))

@@ -373,6 +373,17 @@ static bump *bumped(const char *text, double scale, const mesh *f)
     return P;
 }
 
+/* Lane i of a wave as one more of the group. */
+static void put_hit(hit_group *g, const rays *x, int i, real t, int32_t part)
+{
+    const int k = g->n++;
+    hit_group_picked(g);
+    lane_set(&g->picked.x.r, k, lane_get(&x->r, i));
+    lane_set(&g->picked.x.s, k, lane_get(&x->s, i));
+    g->picked.t[k] = t;
+    g->part[k] = part;
+}
+
 /* Against the same surface in closed form: `within` of its hits, as the mesh lies within that of it. */
 static void displaced_as(const char *name, mesh *f, surface *g, const char *text, double scale, double within,
                          double share)
@@ -396,8 +407,6 @@ static void displaced_as(const char *name, mesh *f, surface *g, const char *text
         over_closed->ops->hit(over_closed, LANES, &x, 0, &b);
         over_mesh->ops->occlude(over_mesh, LANES, &x, lit_a);
         over_closed->ops->occlude(over_closed, LANES, &x, lit_b);
-        hit_group_picked(&g_a);
-        hit_group_picked(&g_b);
         g_a.n = g_b.n = 0;
         for (int i = 0; i < LANES; i++) {
             differ += a.id[i] != b.id[i];
@@ -410,16 +419,9 @@ static void displaced_as(const char *name, mesh *f, surface *g, const char *text
                 far++; /* past a bump's edge */
                 continue;
             }
-            const int k = g_a.n++;
-            g_b.n = g_a.n;
-            lane_set(&g_a.picked.x.r, k, lane_get(&x.r, i));
-            lane_set(&g_a.picked.x.s, k, lane_get(&x.s, i));
-            g_a.picked.t[k] = a.t[i];
-            g_b.picked.t[k] = b.t[i];
-            g_a.part[k] = a.part[i];
-            g_b.part[k] = b.part[i];
+            put_hit(&g_a, &x, i, a.t[i], a.part[i]);
+            put_hit(&g_b, &x, i, b.t[i], b.part[i]);
         }
-        g_b.picked.x = g_a.picked.x;
         displaced_shape(over_mesh, &g_a);
         displaced_shape(over_closed, &g_b);
         for (int k = 0; k < g_a.n; k++)
