@@ -68,14 +68,15 @@ def test_formats_give_the_same_picture(folder: Path) -> None:
 
 def test_a_large_png_on_any_threads(folder: Path) -> None:
     """One thread, or two that share the decoding: the same bytes; a file that is cut is refused by both."""
-    pictures, whole = [], (folder / "large.png").read_bytes()
+    pictures: list[bytes] = []
+    whole = (folder / "large.png").read_bytes()
     (folder / "half.png").write_bytes(whole[: len(whole) // 2])
     (folder / "half.yaml").write_text(SCENE.format("half.png"))
     for threads in "1", "2":
         out = folder / f"by-{threads}.png"
         subprocess.run([KAGE, "render", folder / "large.png.yaml", "--threads", threads, "-o", out], check=True)
         pictures.append(out.read_bytes())
-        command = [KAGE, "render", folder / "half.yaml", "--threads", threads, "-o", folder / "none.png"]
+        command = [str(KAGE), "render", str(folder / "half.yaml"), "--threads", threads, "-o", str(out)]
         done = subprocess.run(command, capture_output=True, text=True)
         assert done.returncode == 2
         assert "'half.png' can't be used: libpng: the file ends too early" in done.stderr
