@@ -286,8 +286,8 @@ def test_memory_that_does_not_suffice(kage: Kage) -> None:
     path = scene(kage, "file: ball.ply")
     ends = set()
     for mib in range(120, 480, 30):
-        done = subprocess.run(["sh", "-c", f"ulimit -v {1024 * mib}; exec {PROGRAM} check {path.name}"], cwd=kage.folder,
-                              capture_output=True, text=True)
+        limited = f"ulimit -v {1024 * mib}; exec {PROGRAM} check {path.name}"
+        done = subprocess.run(["sh", "-c", limited], cwd=kage.folder, capture_output=True, text=True)
         ends.add(done.returncode)
         assert done.returncode == 0 or "out of memory" in done.stderr, f"{mib} MiB: {done}"
     assert ends == {0, 2}
