@@ -18,9 +18,11 @@ from scripts import rooms
 PROGRAMS = ("cli", "import")  # rooms that the library has not: only these print, exit and install signal handlers
 
 #: Headers of other projects, and the only places that include each: beginnings of a path below src/.
-OUTSIDE = {"png.h": "image/png.c", "openexr.h": "image/exr_", "OpenEXRConfig.h": "image/exr_zip.c",
-           "libdeflate.h": "image/exr_zip.c", "libfyaml.h": "yaml/", "embree": "bvh/embree.c",
-           "assimp/": "import/", "omp.h": "base/threads.h", "pthread.h": ("api/api.h", "bvh/embree.c")}
+OUTSIDE: dict[str, str | tuple[str, ...]] = {
+    "png.h": "image/png.c", "openexr.h": "image/exr_", "OpenEXRConfig.h": "image/exr_zip.c",
+    "libdeflate.h": "image/exr_zip.c", "libfyaml.h": "yaml/", "embree": "bvh/embree.c",
+    "assimp/": "import/", "omp.h": "base/threads.h", "pthread.h": ("api/api.h", "bvh/embree.c"),
+}
 
 #: What a library leaves to its caller: the streams, the process, its signals and settings.
 FORBIDDEN = {
