@@ -56,9 +56,10 @@ typedef struct bvh_packet {
 void bvh_enter_packet(const bvh_space *p, double reach, const double r[3][BVH_PACKET], const double s[3][BVH_PACKET],
                       double from[BVH_PACKET], double to[BVH_PACKET], bvh_packet *x);
 
-/* Called with a box and the rays that reach it, bit i for ray i; perhaps not with all of them at once. It may lower
- * end[i] of these rays; a negative number stops the ray. Boxes beyond the new end may still be visited. */
-typedef void bvh_meet(void *user, int32_t box, uint32_t which, float end[BVH_PACKET]);
+/* Called with a box and rays, bit i for ray i: those that reach it, perhaps not all at once, and of a coherent packet
+ * many that miss it. It may lower end[i] of these rays, then it returns true; a negative number stops the ray. Boxes
+ * beyond the new end may still be visited. */
+typedef bool bvh_meet(void *user, int32_t box, uint32_t which, float end[BVH_PACKET]);
 
 /* Visit the boxes of a packet's rays, roughly from near to far. Rays that go nearly the same way share the hierarchy's
  * memory and the calls. x->end becomes where each ray ended. */

@@ -17,19 +17,11 @@
 
 #include "base/threads.h"
 
-static inline float less(float x, float y) { return x < y ? x : y; }
-static inline float more(float x, float y) { return x > y ? x : y; }
-
 struct bvh {
     RTCDevice device;
     RTCScene scene;
     bvh_box *box;
 };
-
-/* A packet's rays, and 1 / way. */
-typedef struct packet_rays {
-    float at[3][BVH_PACKET], over[3][BVH_PACKET];
-} packet_rays;
 
 /* What the callbacks need during one traversal. Embree's context comes first, so that a pointer to it points here. */
 typedef struct walk {
@@ -40,9 +32,7 @@ typedef struct walk {
 #endif
     bvh_visit *visit;
     bvh_meet *meet; /* for packets */
-    const bvh *b;
-    const packet_rays *x; /* the packet's rays */
-    float *end;           /* of each */
+    float *end;     /* of the packet's rays */
     void *user;
 } walk;
 
@@ -57,21 +47,20 @@ static void bounds(const struct RTCBoundsFunctionArguments *a)
 static const uint32_t bit[BVH_PACKET] = {1u << 0, 1u << 1, 1u << 2,  1u << 3,  1u << 4,  1u << 5,  1u << 6,  1u << 7,
                                          1u << 8, 1u << 9, 1u << 10, 1u << 11, 1u << 12, 1u << 13, 1u << 14, 1u << 15};
 
-/* Which rays pass a box: Embree names many more of a coherent packet. As wrong as Embree's own test, three roundings of
- * each t, for which the boxes have room. */
-STAGE static uint32_t pass_box(const bvh_box *restrict box, const packet_rays *restrict x, const float *restrict end)
+STAGE static uint32_t bits_of(const int *restrict valid)
 {
-    const float lx = box->lo[0], ly = box->lo[1], lz = box->lo[2], hx = box->hi[0], hy = box->hi[1], hz = box->hi[2];
     uint32_t which = 0;
-    for (int i = 0; i < BVH_PACKET; i++) {
-        const float a = (lx - x->at[0][i]) * x->over[0][i], b = (hx - x->at[0][i]) * x->over[0][i];
-        const float c = (ly - x->at[1][i]) * x->over[1][i], d = (hy - x->at[1][i]) * x->over[1][i];
-        const float e = (lz - x->at[2][i]) * x->over[2][i], f = (hz - x->at[2][i]) * x->over[2][i];
-        const float t0 = more(more(less(a, b), less(c, d)), more(less(e, f), 0)),
-                    t1 = less(less(more(a, b), more(c, d)), less(more(e, f), end[i]));
-        which |= bit[i] & -(uint32_t)(t0 <= t1);
-    }
+    for (int i = 0; i < BVH_PACKET; i++)
+        which |= bit[i] & (uint32_t)valid[i];
     return which;
+}
+
+STAGE static void set_ends(const int *restrict valid, const float *restrict end, float *restrict tfar)
+{
+    for (int i = 0; i < BVH_PACKET; i++) {
+        const float last = end[i] < 0 ? -HUGE_VALF : end[i];
+        tfar[i] = valid[i] ? last : tfar[i];
+    }
 }
 
 /* Some rays of a packet, N in Embree's arrays (rtcore_ray.h has functions for these, in C++ only), reach a box. No hit
@@ -81,12 +70,14 @@ static void met_packet(const struct RTCIntersectFunctionNArguments *a)
     const walk *k = (const walk *)(const void *)a->context;
     float *tfar = (float *)(void *)a->rayhit + 8 * a->N;
     const unsigned *id = (const unsigned *)(const void *)a->rayhit + 10 * a->N;
+    if (a->N == BVH_PACKET) { /* all of it, in their order */
+        if (k->meet(k->user, (int32_t)a->primID, bits_of(a->valid), k->end))
+            set_ends(a->valid, k->end, tfar);
+        return;
+    }
     uint32_t which = 0;
     for (unsigned i = 0; i < a->N; i++)
         which |= a->valid[i] ? 1u << id[i] : 0;
-    which &= pass_box(&k->b->box[a->primID], k->x, k->end);
-    if (!which)
-        return;
     k->meet(k->user, (int32_t)a->primID, which, k->end);
     for (unsigned i = 0; i < a->N; i++)
         if (a->valid[i])
@@ -233,17 +224,6 @@ void bvh_along(const bvh *b, const float r[3], const float s[3], float end, bvh_
 
 /* ---- packets ---- */
 
-/* 1 / way, where a way of 0 is next to it, so that t is no NaN. */
-static void set_over(const bvh_packet *x, packet_rays *y)
-{
-    memcpy(y->at, x->at, sizeof y->at);
-    for (int a = 0; a < 3; a++)
-        for (int i = 0; i < BVH_PACKET; i++) {
-            const float way = x->way[a][i];
-            y->over[a][i] = 1 / (fabsf(way) > 1e-18f ? way : 1e-18f);
-        }
-}
-
 static void set_rays(const bvh_packet *x, int valid[BVH_PACKET], struct RTCRay16 *y)
 {
     memset(y, 0, sizeof *y);
@@ -264,9 +244,7 @@ static void set_rays(const bvh_packet *x, int valid[BVH_PACKET], struct RTCRay16
 /* rtcOccluded16 would name three times as many rays that miss the box. */
 void bvh_packet_toward(const bvh *b, bvh_packet *x, bvh_meet *visit, void *user)
 {
-    packet_rays rays;
-    walk k = {.meet = visit, .b = b, .x = &rays, .end = x->end, .user = user};
-    set_over(x, &rays);
+    walk k = {.meet = visit, .end = x->end, .user = user};
     RTC_ALIGN(64) int valid[BVH_PACKET];
     RTC_ALIGN(64) struct RTCRayHit16 y;
     set_rays(x, valid, &y.ray);

@@ -22,9 +22,16 @@ typedef struct mesh_cluster {
     int32_t index[CLUSTER];  /* of the triangle in mesh_data */
 } mesh_cluster;
 
+/* A box, and a slab least <= across . p <= most. */
+typedef struct mesh_slab {
+    float lo[3], hi[3], across[3], least, most;
+} mesh_slab;
+
 /* Up to eight clusters, which are cluster[first] and those behind it, under one box of the hierarchy. */
 typedef struct mesh_block {
-    float lo[3][CLUSTER], hi[3][CLUSTER]; /* of the clusters' boxes by axis */
+    float lo[3][CLUSTER], hi[3][CLUSTER];                    /* of the clusters' boxes by axis */
+    float across[3][CLUSTER], least[CLUSTER], most[CLUSTER]; /* a cluster is where least <= across . p <= most */
+    mesh_slab all;                                           /* the same of the block */
     int32_t first;
 } mesh_block;
 
@@ -45,12 +52,15 @@ void mesh_clusters_free(mesh_clusters *c);
 typedef struct cluster_rays {
     int32_t z[BVH_PACKET];
     float sx[BVH_PACKET], sy[BVH_PACKET], cx[BVH_PACKET], cy[BVH_PACKET];
-    float at[3][BVH_PACKET], over[3][BVH_PACKET]; /* as in bvh_packet; 1 / way */
+    float at[3][BVH_PACKET], way[3][BVH_PACKET], over[3][BVH_PACKET]; /* as in bvh_packet; 1 / way */
 } cluster_rays;
 
 static inline int lowest_bit(uint32_t x) { return __builtin_ctz(x); }
 
-/* Of the rays in `which`, bit i for ray i, into met[j] those that may pass the box of the j-th cluster before end[i].
+/* The rays that may pass a block before end[i], bit i for ray i. */
+uint32_t block_pass(const mesh_block *b, const cluster_rays *k, const float end[BVH_PACKET]);
+
+/* Of the rays in `which`, into met[j] those that may pass the box of the j-th cluster before end[i].
  */
 void block_near(const mesh_block *b, const cluster_rays *k, const float end[BVH_PACKET], uint32_t which,
                 uint32_t met[CLUSTER]);

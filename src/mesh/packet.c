@@ -60,6 +60,7 @@ STAGE static void over_way(const bvh_packet *restrict x, cluster_rays *restrict 
         for (int i = 0; i < BVH_PACKET; i++) {
             const float way = x->way[a][i];
             k->at[a][i] = x->at[a][i];
+            k->way[a][i] = way;
             k->over[a][i] = 1 / (fabsf(way) > 1e-18f ? way : 1e-18f);
         }
 }
@@ -84,44 +85,52 @@ static bool meets(const float at[3][3], const mesh_packet *k, int i, double *t)
     return all != 0;
 }
 
-/* Test one triangle. The new end of the ray in the hierarchy; below 0: nothing else counts. */
-static float test(mesh_packet *k, int i, int32_t index, float end)
+/* Test one triangle. Whether it counts; then *end is the new end of the ray in the hierarchy; below 0: nothing else
+ * counts. */
+static bool test(mesh_packet *k, int i, int32_t index, float *end)
 {
     double t;
     if (index == k->own[i] || !meets((const float(*)[3])k->f->d.at[index], k, i, &t) || !(t > k->from[i]))
-        return end;
+        return false;
     if (!(t < k->to[i] || (t == k->to[i] && k->index[i] >= 0 && index < k->index[i])))
-        return end;
+        return false;
     k->to[i] = t;
     k->index[i] = index;
-    if (k->any)
-        return -1;
-    const float now = (float)((t - k->enter[i]) * k->unit[i]) * WIDER + MARGIN;
-    return now < end ? now : end;
+    const float now = k->any ? -1 : (float)((t - k->enter[i]) * k->unit[i]) * WIDER + MARGIN;
+    *end = now < *end ? now : *end;
+    return true;
 }
 
 /* ---- the hierarchy ---- */
 
-static void visit_cluster(mesh_packet *k, const mesh_cluster *c, uint32_t which, float end[BVH_PACKET])
+/* Whether an end has changed. */
+static bool visit_cluster(mesh_packet *k, const mesh_cluster *c, uint32_t which, float end[BVH_PACKET])
 {
     uint32_t met[CLUSTER];
+    bool changed = false;
     cluster_near(c, &k->axis, which, met);
     for (int j = 0; j < CLUSTER; j++)
         for (; met[j]; met[j] &= met[j] - 1) {
             const int i = lowest_bit(met[j]);
-            end[i] = end[i] >= 0 ? test(k, i, c->index[j], end[i]) : end[i];
+            changed |= end[i] >= 0 && test(k, i, c->index[j], &end[i]);
         }
+    return changed;
 }
 
-static void visit(void *user, int32_t index, uint32_t which, float end[BVH_PACKET])
+static bool visit(void *user, int32_t index, uint32_t which, float end[BVH_PACKET])
 {
     mesh_packet *k = user;
     const mesh_block *b = &k->f->clusters.block[index];
     uint32_t met[CLUSTER];
+    bool changed = false;
+    which &= block_pass(b, &k->axis, end);
+    if (!which)
+        return false;
     block_near(b, &k->axis, end, which, met);
     for (int j = 0; j < CLUSTER; j++)
         if (met[j])
-            visit_cluster(k, &k->f->clusters.cluster[b->first + j], met[j], end);
+            changed |= visit_cluster(k, &k->f->clusters.cluster[b->first + j], met[j], end);
+    return changed;
 }
 
 void mesh_packet_intersect(mesh_packet *k)

@@ -1,6 +1,6 @@
 /* Clusters of triangles and blocks of clusters: each triangle is in one, within its boxes, for any number of threads.
  * The test in float leaves out no triangle that is met, by rays that are aimed at edges and corners, and few others
- * stay. */
+ * stay; the same of blocks and clusters, of which few stay in a plane. */
 #include "support/check.h"
 
 #include <stdlib.h>
@@ -111,6 +111,21 @@ static void set_ray(cluster_rays *k, const double p[3], const double q[3])
     k->cy[0] = (float)((p[y] - C[y] - sy * (p[z] - C[z])) / space.radius);
 }
 
+/* The same as in the hierarchy, from p on. Returns its end there. */
+static float set_way(cluster_rays *k, const double p[3], const double q[3])
+{
+    double from = 0, to = HUGE_VAL;
+    float at[3], way[3], end;
+    assert_true(bvh_enter(&space, space.radius, (vec3){p[0], p[1], p[2]}, (vec3){q[0] - p[0], q[1] - p[1], q[2] - p[2]},
+                          &from, &to, at, way, &end));
+    for (int a = 0; a < 3; a++) {
+        k->at[a][0] = at[a];
+        k->way[a][0] = way[a];
+        k->over[a][0] = 1 / (fabsf(way[a]) > 1e-18f ? way[a] : 1e-18f);
+    }
+    return end;
+}
+
 /* A point at barycentric coordinates b and c. */
 static void point_in(const float at[3][3], double b, double c, double p[3])
 {
@@ -159,12 +174,79 @@ static void test_no_triangle_is_left_out(void **state)
     aim(1e-5, 0.1); /* a unit of float's last place at 100 is 7.6e-6 */
 }
 
+/* Through and from the edges and corners of large and small triangles. */
+static void test_no_cluster_is_left_out(void **state)
+{
+    (void)state;
+    for (int size = 0; size < 3; size++) {
+        mesh_data d = soup(pow(0.02, size));
+        mesh_clusters c;
+        bvh_box *box;
+        cluster_rays k;
+        memset(&k, 0, sizeof k);
+        make(&d, 1, &c, &box);
+        for (int n = 0; n < c.n; n++)
+            for (int g = 0; g < CLUSTER && c.block[n].lo[0][g] < 2; g++) {
+                const double e = random_in(0, 1), to[3] = {100 + random_in(-9, 9), 100 + random_in(-9, 9), 109};
+                float end[BVH_PACKET] = {0};
+                uint32_t met[CLUSTER];
+                double p[3];
+                point_in((const float(*)[3])d.at[c.cluster[c.block[n].first + g].index[0]], g % 3 ? e : 0,
+                         g % 2 ? 1 - e : 0, p);
+                for (int from = 0; from < 2; from++) {
+                    end[0] = from ? set_way(&k, p, to) : set_way(&k, to, p);
+                    CHECK(block_pass(&c.block[n], &k, end) & 1, ==, 1);
+                    block_near(&c.block[n], &k, end, 1, met);
+                    CHECK(met[g], ==, 1);
+                }
+            }
+        mesh_clusters_free(&c);
+        free(box);
+        free(d.at);
+    }
+}
+
+/* All triangles in a plane across (1, 2, -3), which goes through the middles of boxes. Rays that run along the plane a
+ * little above it pass boxes, but no slab; rays in it do. */
+static void test_slabs_are_thin(void **state)
+{
+    (void)state;
+    mesh_data d = soup(0.05);
+    mesh_clusters c;
+    bvh_box *box;
+    cluster_rays k;
+    memset(&k, 0, sizeof k);
+    for (int n = 0; n < 3 * TRIANGLES; n++) {
+        float *p = d.at[n / 3][n % 3];
+        p[2] = 100 + (p[0] - 100 + 2 * (p[1] - 100)) / 3;
+    }
+    make(&d, 1, &c, &box);
+    for (int above = 0; above < 2; above++) {
+        int blocks = 0, clusters = 0;
+        const double p[3] = {96, 99.7, 98.4667 + 0.001 * above}, q[3] = {104, 100.3, 101.5333 + 0.001 * above};
+        float end[BVH_PACKET] = {0};
+        uint32_t met[CLUSTER];
+        end[0] = set_way(&k, p, q);
+        for (int n = 0; n < c.n; n++) {
+            blocks += (int)(block_pass(&c.block[n], &k, end) & 1);
+            block_near(&c.block[n], &k, end, 1, met);
+            for (int g = 0; g < CLUSTER; g++)
+                clusters += (int)met[g];
+        }
+        BETWEEN(above ? 0 : 20, blocks, above ? 0 : 1000);
+        BETWEEN(above ? 0 : 50, clusters, above ? 0 : 1000);
+    }
+    mesh_clusters_free(&c);
+    free(box);
+    free(d.at);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_each_triangle_is_in_one),
-        cmocka_unit_test(test_threads_make_the_same),
-        cmocka_unit_test(test_no_triangle_is_left_out),
+        cmocka_unit_test(test_each_triangle_is_in_one), cmocka_unit_test(test_threads_make_the_same),
+        cmocka_unit_test(test_no_triangle_is_left_out), cmocka_unit_test(test_no_cluster_is_left_out),
+        cmocka_unit_test(test_slabs_are_thin),
     };
     return cmocka_run_group_tests_name("cluster", tests, NULL, NULL);
 }
