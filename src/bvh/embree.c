@@ -44,44 +44,47 @@ static void bounds(const struct RTCBoundsFunctionArguments *a)
     o->upper_x = b->hi[0], o->upper_y = b->hi[1], o->upper_z = b->hi[2];
 }
 
-static const uint32_t bit[BVH_PACKET] = {1u << 0, 1u << 1, 1u << 2,  1u << 3,  1u << 4,  1u << 5,  1u << 6,  1u << 7,
-                                         1u << 8, 1u << 9, 1u << 10, 1u << 11, 1u << 12, 1u << 13, 1u << 14, 1u << 15};
+enum { SOME = 8 };
 
-STAGE static uint32_t bits_of(const int *restrict valid)
+/* bit: one for each ray. */
+STAGE static uint32_t bits_of(const int *restrict valid, const unsigned *restrict bit)
 {
     uint32_t which = 0;
-    for (int i = 0; i < BVH_PACKET; i++)
+    for (int i = 0; i < SOME; i++)
         which |= bit[i] & (uint32_t)valid[i];
     return which;
 }
 
 STAGE static void set_ends(const int *restrict valid, const float *restrict end, float *restrict tfar)
 {
-    for (int i = 0; i < BVH_PACKET; i++) {
+    for (int i = 0; i < SOME; i++) {
         const float last = end[i] < 0 ? -HUGE_VALF : end[i];
         tfar[i] = valid[i] ? last : tfar[i];
     }
 }
 
-/* Some rays of a packet, N in Embree's arrays (rtcore_ray.h has functions for these, in C++ only), reach a box. No hit
- * is reported, only the new ends of the rays. */
+/* Some rays of a packet, N in Embree's arrays (rtcore_ray.h has functions for these, in C++ only), reach a box: 8 or 16
+ * that follow each other, or with old processors 4. No hit is reported, only the new ends of the rays. */
 static void met_packet(const struct RTCIntersectFunctionNArguments *a)
 {
     const walk *k = (const walk *)(const void *)a->context;
     float *tfar = (float *)(void *)a->rayhit + 8 * a->N;
-    const unsigned *id = (const unsigned *)(const void *)a->rayhit + 10 * a->N;
-    if (a->N == BVH_PACKET) { /* all of it, in their order */
-        if (k->meet(k->user, (int32_t)a->primID, bits_of(a->valid), k->end))
-            set_ends(a->valid, k->end, tfar);
-        return;
-    }
+    const unsigned *bit = (const unsigned *)(const void *)a->rayhit + 10 * a->N; /* Embree calls it id */
+    const bool by_some = a->N % SOME == 0 && bit[a->N - 1] == bit[0] << (a->N - 1);
     uint32_t which = 0;
-    for (unsigned i = 0; i < a->N; i++)
-        which |= a->valid[i] ? 1u << id[i] : 0;
-    k->meet(k->user, (int32_t)a->primID, which, k->end);
-    for (unsigned i = 0; i < a->N; i++)
-        if (a->valid[i])
-            tfar[i] = k->end[id[i]] < 0 ? -HUGE_VALF : k->end[id[i]];
+    for (unsigned i = 0; by_some && i < a->N; i += SOME)
+        which |= bits_of(a->valid + i, bit + i);
+    for (unsigned i = 0; !by_some && i < a->N; i++)
+        which |= a->valid[i] ? bit[i] : 0;
+    if (!k->meet(k->user, (int32_t)a->primID, which, k->end))
+        return;
+    for (unsigned i = 0; by_some && i < a->N; i += SOME)
+        set_ends(a->valid + i, k->end + __builtin_ctz(bit[i]), tfar + i);
+    for (unsigned i = 0; !by_some && i < a->N; i++)
+        if (a->valid[i]) {
+            const float end = k->end[__builtin_ctz(bit[i])];
+            tfar[i] = end < 0 ? -HUGE_VALF : end;
+        }
 }
 
 /* Visits the box without reporting a hit, so that Embree continues with all others. */
@@ -236,7 +239,7 @@ static void set_rays(const bvh_packet *x, int valid[BVH_PACKET], struct RTCRay16
     memcpy(y->tfar, x->end, sizeof y->tfar);
     for (unsigned i = 0; i < BVH_PACKET; i++) {
         y->mask[i] = ~0u;
-        y->id[i] = i;
+        y->id[i] = 1u << i;
         valid[i] = x->end[i] >= 0 ? -1 : 0;
     }
 }

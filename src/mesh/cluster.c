@@ -33,6 +33,7 @@ STAGE static void near_triangles(const mesh_cluster *restrict c, const cluster_r
         const int r = lowest_bit(which), X = (k->z[r] + 1) % 3, Y = (k->z[r] + 2) % 3, Z = k->z[r];
         const float sx = k->sx[r], sy = k->sy[r], cx = k->cx[r], cy = k->cy[r];
         const uint32_t one = which & -which;
+        const int32_t own = k->own[r];
         for (int i = 0; i < CLUSTER; i++) {
             const float za = c->at[0][Z][i], zb = c->at[1][Z][i], zc = c->at[2][Z][i];
             const float xa = c->at[0][X][i] - sx * za - cx, ya = c->at[0][Y][i] - sy * za - cy;
@@ -40,15 +41,19 @@ STAGE static void near_triangles(const mesh_cluster *restrict c, const cluster_r
             const float xc = c->at[2][X][i] - sx * zc - cx, yc = c->at[2][Y][i] - sy * zc - cy;
             const float U = xc * yb - yc * xb, V = xa * yc - ya * xc, W = xb * ya - yb * xa, e = c->error[i];
             const float least = less(less(U, V), W), most = more(more(U, V), W);
-            met[i] |= one & -(uint32_t)((least >= -e) | (most <= e));
+            met[i] |= one & -(uint32_t)(((least >= -e) | (most <= e)) & (c->index[i] != own));
         }
     }
 }
 
-void cluster_near(const mesh_cluster *c, const cluster_rays *k, uint32_t which, uint32_t met[CLUSTER])
+bool cluster_near(const mesh_cluster *c, const cluster_rays *k, uint32_t which, uint32_t met[CLUSTER])
 {
+    uint32_t all = 0;
     memset(met, 0, sizeof *met * CLUSTER);
     near_triangles(c, k, which, met);
+    for (int i = 0; i < CLUSTER; i++)
+        all |= met[i];
+    return all;
 }
 
 /* A ray passes a box from t0 to t1, as wrong as Embree's own test: three roundings of each t, for which the boxes have
@@ -88,31 +93,38 @@ void block_near(const mesh_block *b, const cluster_rays *k, const float end[BVH_
     near_boxes(b, k, end, which, met);
 }
 
-static const uint32_t bit[BVH_PACKET] = {1u << 0, 1u << 1, 1u << 2,  1u << 3,  1u << 4,  1u << 5,  1u << 6,  1u << 7,
-                                         1u << 8, 1u << 9, 1u << 10, 1u << 11, 1u << 12, 1u << 13, 1u << 14, 1u << 15};
+enum { SOME = 8 };
+static const uint32_t bit[SOME] = {1u << 0, 1u << 1, 1u << 2, 1u << 3, 1u << 4, 1u << 5, 1u << 6, 1u << 7};
 
-STAGE static uint32_t pass_block(const mesh_slab *restrict c, const cluster_rays *restrict k, const float *restrict end)
+/* Of the rays first .. first + SOME - 1. */
+STAGE static uint32_t pass_block(const mesh_slab *restrict c, const cluster_rays *restrict k, const float *restrict end,
+                                 int first)
 {
     const float lx = c->lo[0], ly = c->lo[1], lz = c->lo[2], hx = c->hi[0], hy = c->hi[1], hz = c->hi[2];
     const float nx = c->across[0], ny = c->across[1], nz = c->across[2], least = c->least, most = c->most;
     uint32_t which = 0;
-    for (int i = 0; i < BVH_PACKET; i++) {
-        const float ox = k->at[0][i], oy = k->at[1][i], oz = k->at[2][i];
-        const float xa = (lx - ox) * k->over[0][i], xb = (hx - ox) * k->over[0][i];
-        const float ya = (ly - oy) * k->over[1][i], yb = (hy - oy) * k->over[1][i];
-        const float za = (lz - oz) * k->over[2][i], zb = (hz - oz) * k->over[2][i];
+    for (int i = 0; i < SOME; i++) {
+        const int r = first + i;
+        const float ox = k->at[0][r], oy = k->at[1][r], oz = k->at[2][r];
+        const float xa = (lx - ox) * k->over[0][r], xb = (hx - ox) * k->over[0][r];
+        const float ya = (ly - oy) * k->over[1][r], yb = (hy - oy) * k->over[1][r];
+        const float za = (lz - oz) * k->over[2][r], zb = (hz - oz) * k->over[2][r];
         const float t0 = more(more(less(xa, xb), less(ya, yb)), more(less(za, zb), 0)),
-                    t1 = less(less(more(xa, xb), more(ya, yb)), less(more(za, zb), end[i]));
-        const float o = nx * ox + ny * oy + nz * oz, w = nx * k->way[0][i] + ny * k->way[1][i] + nz * k->way[2][i];
+                    t1 = less(less(more(xa, xb), more(ya, yb)), less(more(za, zb), end[r]));
+        const float o = nx * ox + ny * oy + nz * oz, w = nx * k->way[0][r] + ny * k->way[1][r] + nz * k->way[2][r];
         const float a = o + t0 * w, b = o + t1 * w;
         which |= bit[i] & -(uint32_t)((t0 <= t1) & (more(a, b) >= least) & (less(a, b) <= most));
     }
-    return which;
+    return which << first;
 }
 
-uint32_t block_pass(const mesh_block *b, const cluster_rays *k, const float end[BVH_PACKET])
+uint32_t block_pass(const mesh_block *b, const cluster_rays *k, const float end[BVH_PACKET], uint32_t which)
 {
-    return pass_block(&b->all, k, end);
+    uint32_t pass = 0;
+    for (int i = 0; i < BVH_PACKET; i += SOME)
+        if (which >> i & ((1u << SOME) - 1))
+            pass |= pass_block(&b->all, k, end, i);
+    return pass & which;
 }
 
 /* ---- sorting ---- */

@@ -50,22 +50,22 @@ void mesh_clusters_free(mesh_clusters *c);
 /* Rays as axes: z is the coordinate in which a ray's direction is largest, x and y the two that follow it. x and y are
  * sheared so that the ray runs along z. The ray is where x - sx z = cx and y - sy z = cy, in the hierarchy's space. */
 typedef struct cluster_rays {
-    int32_t z[BVH_PACKET];
+    int32_t z[BVH_PACKET], own[BVH_PACKET]; /* own: a triangle that the ray leaves out; -1: none */
     float sx[BVH_PACKET], sy[BVH_PACKET], cx[BVH_PACKET], cy[BVH_PACKET];
     float at[3][BVH_PACKET], way[3][BVH_PACKET], over[3][BVH_PACKET]; /* as in bvh_packet; 1 / way */
 } cluster_rays;
 
 static inline int lowest_bit(uint32_t x) { return __builtin_ctz(x); }
 
-/* The rays that may pass a block before end[i], bit i for ray i. */
-uint32_t block_pass(const mesh_block *b, const cluster_rays *k, const float end[BVH_PACKET]);
+/* Of the rays in `which`, bit i for ray i, those that may pass a block before end[i]. */
+uint32_t block_pass(const mesh_block *b, const cluster_rays *k, const float end[BVH_PACKET], uint32_t which);
 
 /* Of the rays in `which`, into met[j] those that may pass the box of the j-th cluster before end[i].
  */
 void block_near(const mesh_block *b, const cluster_rays *k, const float end[BVH_PACKET], uint32_t which,
                 uint32_t met[CLUSTER]);
 
-/* The same for those whose lines may meet the triangle index[j]. */
-void cluster_near(const mesh_cluster *c, const cluster_rays *k, uint32_t which, uint32_t met[CLUSTER]);
+/* The same for those whose lines may meet the triangle index[j]. False: none. */
+bool cluster_near(const mesh_cluster *c, const cluster_rays *k, uint32_t which, uint32_t met[CLUSTER]);
 
 #endif

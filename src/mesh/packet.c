@@ -90,7 +90,7 @@ static bool meets(const float at[3][3], const mesh_packet *k, int i, double *t)
 static bool test(mesh_packet *k, int i, int32_t index, float *end)
 {
     double t;
-    if (index == k->own[i] || !meets((const float(*)[3])k->f->d.at[index], k, i, &t) || !(t > k->from[i]))
+    if (!meets((const float(*)[3])k->f->d.at[index], k, i, &t) || !(t > k->from[i]))
         return false;
     if (!(t < k->to[i] || (t == k->to[i] && k->index[i] >= 0 && index < k->index[i])))
         return false;
@@ -108,7 +108,8 @@ static bool visit_cluster(mesh_packet *k, const mesh_cluster *c, uint32_t which,
 {
     uint32_t met[CLUSTER];
     bool changed = false;
-    cluster_near(c, &k->axis, which, met);
+    if (!cluster_near(c, &k->axis, which, met))
+        return false;
     for (int j = 0; j < CLUSTER; j++)
         for (; met[j]; met[j] &= met[j] - 1) {
             const int i = lowest_bit(met[j]);
@@ -123,7 +124,7 @@ static bool visit(void *user, int32_t index, uint32_t which, float end[BVH_PACKE
     const mesh_block *b = &k->f->clusters.block[index];
     uint32_t met[CLUSTER];
     bool changed = false;
-    which &= block_pass(b, &k->axis, end);
+    which = block_pass(b, &k->axis, end, which);
     if (!which)
         return false;
     block_near(b, &k->axis, end, which, met);
@@ -144,6 +145,7 @@ void mesh_packet_intersect(mesh_packet *k)
     }
     for (int i = 0; i < BVH_PACKET; i++) {
         k->index[i] = -1;
+        k->axis.own[i] = i < k->n ? k->own[i] : -1;
         k->enter[i] = greater(k->from[i], 0);
         leave[i] = k->to[i];
     }

@@ -195,7 +195,7 @@ static void test_no_cluster_is_left_out(void **state)
                          g % 2 ? 1 - e : 0, p);
                 for (int from = 0; from < 2; from++) {
                     end[0] = from ? set_way(&k, p, to) : set_way(&k, to, p);
-                    CHECK(block_pass(&c.block[n], &k, end) & 1, ==, 1);
+                    CHECK(block_pass(&c.block[n], &k, end, 1), ==, 1);
                     block_near(&c.block[n], &k, end, 1, met);
                     CHECK(met[g], ==, 1);
                 }
@@ -228,7 +228,7 @@ static void test_slabs_are_thin(void **state)
         uint32_t met[CLUSTER];
         end[0] = set_way(&k, p, q);
         for (int n = 0; n < c.n; n++) {
-            blocks += (int)(block_pass(&c.block[n], &k, end) & 1);
+            blocks += (int)block_pass(&c.block[n], &k, end, 1);
             block_near(&c.block[n], &k, end, 1, met);
             for (int g = 0; g < CLUSTER; g++)
                 clusters += (int)met[g];
