@@ -81,7 +81,8 @@ STAGE static void near_boxes(const mesh_block *restrict c, const cluster_rays *r
             const float nx = c->across[0][i], ny = c->across[1][i], nz = c->across[2][i];
             const float o = nx * ox + ny * oy + nz * oz, w = nx * wx + ny * wy + nz * wz, a = o + t0 * w,
                         b = o + t1 * w;
-            met[i] |= one & -(uint32_t)((t0 <= t1) & (more(a, b) >= c->least[i]) & (less(a, b) <= c->most[i]));
+            const float high = more(a, b), low = less(a, b);
+            met[i] |= one & -(uint32_t)((t0 <= t1) & (high >= c->least[i]) & (low <= c->most[i]));
         }
     }
 }
@@ -113,7 +114,8 @@ STAGE static uint32_t pass_block(const mesh_slab *restrict c, const cluster_rays
                     t1 = less(less(more(xa, xb), more(ya, yb)), less(more(za, zb), end[r]));
         const float o = nx * ox + ny * oy + nz * oz, w = nx * k->way[0][r] + ny * k->way[1][r] + nz * k->way[2][r];
         const float a = o + t0 * w, b = o + t1 * w;
-        which |= bit[i] & -(uint32_t)((t0 <= t1) & (more(a, b) >= least) & (less(a, b) <= most));
+        const float high = more(a, b), low = less(a, b);
+        which |= bit[i] & -(uint32_t)((t0 <= t1) & (high >= least) & (low <= most));
     }
     return which << first;
 }
