@@ -112,6 +112,16 @@ def test_same_as_written_out(kage: Kage, shape: str, render: str, bump: str, mat
         assert np.max(np.abs(got[name] - want[name])) <= within, name
 
 
+def test_same_as_written_out_among_many_objects(kage: Kage) -> None:
+    """With so many objects that there is a hierarchy over them, and one that has no end."""
+    spheres = "".join(f"  s{100 + k}: {{sphere: {{center: [{k - 7}, -0.7, {3 - k % 3}], radius: 0.3}}, material: mirror}}\n"
+                      for k in range(14))
+    some, head = rows(("clay", "tiles", "mirror", "glass"), 60), head_of(SPHERE) + spheres
+    got = picture(kage, write_list(kage, head, csv_of(some)))
+    want = picture(kage, written_out(kage, head, some))
+    assert all(np.array_equal(got[name], want[name]) for name in "RGB")
+
+
 def test_same_bytes_with_any_threads(kage: Kage) -> None:
     path = write_list(kage, head_of(SPHERE, bump=WAVES), csv_of(rows(("clay", "mirror", "glass"), 3000)))
     kage("render", path, "-o", "one.exr", "--threads", "1")
