@@ -16,7 +16,7 @@ enum { X, Y, Z, SCALE, SX, SY, SZ, TURN, RX, RY, RZ, COLUMNS };
 
 #define PLACES -BIG, BIG, true, "a coordinate from -1e6 to 1e6"
 #define SCALES SMALL, BIG, false, "a factor from 1e-6 to 1e6"
-#define ANGLES -BIG, BIG, false, "an angle in degrees"
+#define ANGLES -BIG, BIG, false, "an angle from -1e6 to 1e6 degrees"
 static const points_column columns[COLUMNS + 1] = {
     [X] = {"x", PLACES},   [Y] = {"y", PLACES},   [Z] = {"z", PLACES},   [SCALE] = {"scale", SCALES},
     [SX] = {"sx", SCALES}, [SY] = {"sy", SCALES}, [SZ] = {"sz", SCALES}, [TURN] = {"turn", ANGLES},
