@@ -23,8 +23,10 @@ typedef struct wide_bvh wide_bvh;
 /* A box in float, wider than that by more than the rounding of hits in it. */
 wide_box wide_box_of(const double lo[3], const double hi[3]);
 
-/* Build the hierarchy of n >= 1 boxes. order[n] becomes the boxes' order in space: neighbours there are near each other
- * in the hierarchy. Item k is box order[k]. Neither depends on the threads. NULL: out of memory. */
+enum { WIDE_MOST = 1 << 28 }; /* boxes: 8 times a node's number is an int32_t, too */
+
+/* Build the hierarchy of 1 <= n <= WIDE_MOST boxes. order[n] becomes the boxes' order in space: neighbours there are
+ * near each other in the hierarchy. Item k is box order[k]. Neither depends on the threads. NULL: out of memory. */
 wide_bvh *wide_new(int n, const wide_box *box, int32_t *order, int threads);
 void wide_free(wide_bvh *w);
 

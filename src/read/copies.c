@@ -209,7 +209,7 @@ static object *add_object(reader *r, int i, int of)
 }
 
 /* One crowd of the copies whose material is in[]. */
-static bool make_crowd(reader *r, node *at, int i, const surface *from, const bool *in, rows *k)
+static void make_crowd(reader *r, node *at, int i, const surface *from, const bool *in, rows *k)
 {
     crowd_list list = {0, 0, copy_of, k};
     const shape_spec *spec = &r->s->object[i].shape_spec;
@@ -225,25 +225,29 @@ static bool make_crowd(reader *r, node *at, int i, const surface *from, const bo
         list.n += in[material_of(k, row)];
     }
     if (list.n == 0)
-        return true;
-    if (list.n > crowd_most(parts))
-        return yaml_error(r->y, at, "%d copies of a surface of %d parts, expected at most %d of it", (int)list.n,
-                          (int)parts, (int)crowd_most(parts));
+        return;
+    if (list.n > crowd_most(parts)) {
+        yaml_error(r->y, at, "%d copies of a surface of %d parts, expected at most %d of it", (int)list.n, (int)parts,
+                   (int)crowd_most(parts));
+        return;
+    }
     progress_show(r->from->progress, "building", 0);
     crowd *f = reader_made(r, crowd_new(from, parts, &list, r->from->threads));
     int first = -1;
     for (int j = 0; f && j < list.kinds; j++) {
         const int before = r->list[r->lists - 1].used ? r->list[r->lists - 1].count : -1;
         object *o = add_object(r, i, of[j]);
-        if (!o)
+        if (!o) {
+            if (j == 0)
+                surface_free(&f->base);
             break;
+        }
         first = j ? first : before + 1;
         o->crowd = f;
         o->shape = &f->base;
         o->first = first; /* a place in the list, until all objects have theirs */
         reader_color_texture(r, at, o);
     }
-    return f != NULL;
 }
 
 /* Crowds for the materials of the copies. */
