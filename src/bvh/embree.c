@@ -17,9 +17,6 @@
 
 #include "base/threads.h"
 
-static inline float less(float x, float y) { return x < y ? x : y; }
-static inline float more(float x, float y) { return x > y ? x : y; }
-
 struct bvh {
     RTCDevice device;
     RTCScene scene;
@@ -67,8 +64,10 @@ STAGE static uint32_t pass_box(const bvh_box *restrict box, const packet_rays *r
         const float a = (lx - x->at[0][i]) * x->over[0][i], b = (hx - x->at[0][i]) * x->over[0][i];
         const float c = (ly - x->at[1][i]) * x->over[1][i], d = (hy - x->at[1][i]) * x->over[1][i];
         const float e = (lz - x->at[2][i]) * x->over[2][i], f = (hz - x->at[2][i]) * x->over[2][i];
-        const float t0 = more(more(less(a, b), less(c, d)), more(less(e, f), 0)),
-                    t1 = less(less(more(a, b), more(c, d)), less(more(e, f), end[i]));
+        const float t0 = greater_float(greater_float(lesser_float(a, b), lesser_float(c, d)),
+                                       greater_float(lesser_float(e, f), 0)),
+                    t1 = lesser_float(lesser_float(greater_float(a, b), greater_float(c, d)),
+                                      lesser_float(greater_float(e, f), end[i]));
         which |= bit[i] & -(uint32_t)(t0 <= t1);
     }
     return which;

@@ -72,19 +72,6 @@ void wide_beam_shorten(wide_beam *k, const int32_t *lane, const real *end);
  * rays are too far from each other: then k->work < 0. */
 int32_t wide_beam_next(const wide_bvh *w, wide_beam *k, unsigned *rays);
 
-/* The index of the lowest bit of a number that is not 0. */
-static inline int wide_lowest(unsigned bits)
-{
-#if defined(__GNUC__)
-    return __builtin_ctz(bits);
-#else
-    int k = 0;
-    for (; !(bits & 1); bits >>= 1)
-        k++;
-    return k;
-#endif
-}
-
 void wide_begin(wide_walk *k, vec3 r, vec3 s);
 
 /* The next item whose box r + s t passes at 0 <= t <= end, roughly from near to far; -1: none is left. */

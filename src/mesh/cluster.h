@@ -10,6 +10,7 @@
 
 #include <stdint.h>
 
+#include "base/bits.h"
 #include "bvh/bvh.h"
 #include "mesh/mesh_data.h"
 
@@ -47,8 +48,6 @@ typedef struct cluster_rays {
     float sx[BVH_PACKET], sy[BVH_PACKET], cx[BVH_PACKET], cy[BVH_PACKET];
     float at[3][BVH_PACKET], over[3][BVH_PACKET]; /* as in bvh_packet; 1 / way */
 } cluster_rays;
-
-static inline int lowest_bit(uint32_t x) { return __builtin_ctz(x); }
 
 /* Of the rays in `which`, bit i for ray i, into met[j] those that may pass the box of the j-th cluster before end[i].
  */

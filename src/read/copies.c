@@ -89,6 +89,8 @@ static bool find_materials(reader *r, node *list, const object *o, rows *k)
 {
     const int n = list ? yaml_list(r->y, list, "a list of names of materials") : 0, before = r->e->count;
     int number[POINTS_LABELS];
+    if (list && n == 0)
+        return yaml_error(r->y, list, "an empty list, expected names of materials");
     if (n < 0 || n > POINTS_LABELS)
         return n < 0 || yaml_error(r->y, list, "%d materials, expected at most %d", n, POINTS_LABELS);
     for (int j = 0; j < n; j++)
@@ -142,7 +144,7 @@ static void check(const affine *m, double size, char message[256])
     const double longest = size * fmax(vec3_length(m->x), fmax(vec3_length(m->y), vec3_length(m->z)));
     *message = 0;
     if (!(far <= BIG))
-        snprintf(message, 256, "a coordinate of %.4g scene units after all transforms, expected at most 1000000", far);
+        snprintf(message, 256, "a coordinate of %.7g scene units after all transforms, expected at most 1000000", far);
     else if (!(longest >= SMALL && longest <= BIG))
         snprintf(message, 256, "a size of %.4g scene units after all transforms, expected 1e-6 to 1e6", longest);
     else if (!(square(m) * square(&back) <= STRETCH * STRETCH))

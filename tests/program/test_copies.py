@@ -115,8 +115,9 @@ def test_same_as_written_out(kage: Kage, shape: str, render: str, bump: str, mat
 
 def test_same_as_written_out_among_many_objects(kage: Kage) -> None:
     """With so many objects that there is a hierarchy over them, and one that has no end."""
-    spheres = "".join(f"  s{100 + k}: {{sphere: {{center: [{k - 7}, -0.7, {3 - k % 3}], radius: 0.3}}, material: mirror}}\n"
-                      for k in range(14))
+    spheres = "".join(
+        f"  s{100 + k}: {{sphere: {{center: [{k - 7}, -0.7, {3 - k % 3}], radius: 0.3}}, material: mirror}}\n"
+        for k in range(14))
     some, head = rows(("clay", "tiles", "mirror", "glass"), 60), head_of(SPHERE) + spheres
     got = picture(kage, write_list(kage, head, csv_of(some)))
     want = picture(kage, written_out(kage, head, some))
@@ -219,6 +220,8 @@ def test_wrong_lists(kage: Kage, text: str, message: str) -> None:
         ("of: stone", "of: ground", "a plane has no end, expected copies of an object that has"),
         ("{copies:", "{copy: stone, copies:", "'copies' beside 'copy', expected one of them"),
         ("stones:", "more: {copy: stones}\n  stones:", "'stones' is a list of copies, expected an object of one shape"),
+        ("file: list.csv}", f"file: list.csv}}, {SPHERE}", "a shape, 'sphere', beside 'copies', expected one of them"),
+        ("list.csv", "list.csv, materials: []", "an empty list, expected names of materials"),
         ("list.csv", "list.csv, materials: [clay]", "'clay' is no number of a material, expected 0 to 0"),
     ],
 )
