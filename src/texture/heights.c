@@ -258,9 +258,11 @@ static void join(const extremes *x, heights_bounds *b)
 
 static heights_bounds bounds_of(const heights *h, int threads)
 {
+    enum { FEW = 1 << 20 }; /* samples, which take less time than to start a thread */
     heights_bounds all = {REAL_FAR, -REAL_FAR, 0, 0, false};
-    (void)threads; /* without OpenMP */
-#pragma omp parallel num_threads(threads)
+    const bool many = (long)h->grid.rows * h->pitch > FEW;
+    (void)threads, (void)many; /* without OpenMP */
+#pragma omp parallel num_threads(threads) if (many)
     {
         extremes x;
         for (int i = 0; i < LANES; i++) {
