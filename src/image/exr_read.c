@@ -385,6 +385,8 @@ bool image_read_exr(FILE *file, const char *channel, int threads, image_stream *
     exr_plan p = {.to = to};
     exr_failure bad;
     bool ok = start(&r, &ctx) && plan_channels(&r, ctx, channel, &p) && plan_chunks(&r, ctx, &p);
+    if (ok && st.st_size / (off_t)sizeof(uint64_t) < p.chunks) /* else each of up to 2^28 chunks would be refused */
+        ok = image_refuse(why, "OpenEXR: the file is shorter than its table of chunks");
     if (ok) {
         decode_all(r.fd, &p, threads_of(threads), &bad);
         ok = bad.chunk == p.chunks || image_refuse(why, "%s", bad.why);
