@@ -149,13 +149,13 @@ static image read_well(const char *path, const char *channel)
 }
 
 /* A damaged file may be read or refused, as the damage may be where no sample is; it must not crash, and a
- * refusal has one message. */
+ * refusal has one message. By one thread: thousands of files would start a second one each. */
 static bool survives(const char *path)
 {
     image m;
     float range[2];
     errors e = {0};
-    bool ok = image_whole(path, NULL, 2, &m, range, &e);
+    bool ok = image_whole(path, NULL, 1, &m, range, &e);
     assert_int_equal(e.count, ok ? 0 : 1);
     assert_true(ok || e.size > 2);
     CHECK((m.v != NULL), ==, ok);
