@@ -244,8 +244,8 @@ static bool decode_chunk(exr_worker *w, const exr_chunk_info_t *chunk, int x, in
     if (!good(r, w->started ? exr_decoding_update(w->ctx, 0, chunk, &w->pipe)
                             : exr_decoding_initialize(w->ctx, 0, chunk, &w->pipe)))
         return false;
-    if (!w->started && !(good(r, exr_decoding_choose_default_routines(w->ctx, 0, &w->pipe)) &&
-                         good(r, exr_unzip_begin(&w->pipe))))
+    if (!w->started &&
+        !(good(r, exr_decoding_choose_default_routines(w->ctx, 0, &w->pipe)) && good(r, exr_unzip_begin(&w->pipe))))
         return false;
     w->started = true;
     w->pipe.unpack_and_convert_fn = NULL;

@@ -120,7 +120,7 @@ void exr_zip_end(exr_encode_pipeline_t *pipe)
 static exr_result_t decompress(exr_decode_pipeline_t *pipe)
 {
     const size_t n = (size_t)pipe->chunk.unpacked_size, half = n / 2; /* n is even: samples have 2 or 4 bytes */
-    if (pipe->chunk.packed_size == n) { /* as it is; the buffers may be the same one */
+    if (pipe->chunk.packed_size == n) {                               /* as it is; the buffers may be the same one */
         if (pipe->unpacked_buffer != pipe->packed_buffer)
             memcpy(pipe->unpacked_buffer, pipe->packed_buffer, n);
         return EXR_ERR_SUCCESS;
