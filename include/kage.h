@@ -250,14 +250,14 @@ typedef struct kage_write_options {
     void *user;              /* for progress */
     int keep;                /* not 0: see kage_render_file */
     int resume;              /* not 0: see kage_render_file */
-    int band;                /* of kage_render_file: rows of a band, in 16s; 0: 64 MiB or more */
+    int band;                /* of kage_render_file: rows of a band, a multiple of 16; 0: 64 MiB or more */
     void *reserved[7];
 } kage_write_options;
 
 /* Write a film. Where `path` ends in ".png": R, G and B in sRGB; in ".exr": planes as 32-bit floats, linear, ZIP. The
- * file appears whole or not at all, and replaces an older one; neither is there when the call is cancelled. It contains
- * the scene's text, the changes and options, but no path, time or host name. options: NULL for the defaults. Another
- * ending, or a layer that the film does not have, is KAGE_BAD_OPTION. */
+ * file appears whole or not at all, and replaces an older one only then: a call that is cancelled or fails changes
+ * nothing. It contains the scene's text, the changes and options, but no path, time or host name. options: NULL for the
+ * defaults. Another ending, or a layer that the film does not have, is KAGE_BAD_OPTION. */
 KAGE_API kage_status kage_film_write(const kage_film *film, const char *path, const kage_write_options *options,
                                      kage_errors **errors);
 

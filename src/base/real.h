@@ -49,6 +49,8 @@ static inline real real_min(real x, real y) { return x < y ? x : y; }
 static inline real real_max(real x, real y) { return x > y ? x : y; }
 static inline double lesser(double x, double y) { return x < y ? x : y; }
 static inline double greater(double x, double y) { return x > y ? x : y; }
+static inline float lesser_float(float x, float y) { return x < y ? x : y; }
+static inline float greater_float(float x, float y) { return x > y ? x : y; }
 
 /* floor without libm, which SSE2 would need: adding REAL_INTEGER leaves no bits for a fraction. From |x| =
  * REAL_INTEGER / 3 on that fails and the result is x, which then has at most one bit of fraction. */

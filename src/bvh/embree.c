@@ -15,6 +15,7 @@
 #include <string.h>
 #include <sys/resource.h>
 
+#include "base/bits.h"
 #include "base/threads.h"
 
 struct bvh {
@@ -79,10 +80,10 @@ static void met_packet(const struct RTCIntersectFunctionNArguments *a)
     if (!k->meet(k->user, (int32_t)a->primID, which, k->end))
         return;
     for (unsigned i = 0; by_some && i < a->N; i += SOME)
-        set_ends(a->valid + i, k->end + __builtin_ctz(bit[i]), tfar + i);
+        set_ends(a->valid + i, k->end + lowest_bit(bit[i]), tfar + i);
     for (unsigned i = 0; !by_some && i < a->N; i++)
         if (a->valid[i]) {
-            const float end = k->end[__builtin_ctz(bit[i])];
+            const float end = k->end[lowest_bit(bit[i])];
             tfar[i] = end < 0 ? -HUGE_VALF : end;
         }
 }

@@ -5,6 +5,7 @@
  */
 #include "bvh/wide.h"
 
+#include "base/bits.h"
 #include "base/real.h"
 #include "base/threads.h"
 
@@ -333,7 +334,7 @@ static void push(const node *x, wide_walk *k, float end)
     float enter[WIDTH];
     const int bottom = k->top;
     for (unsigned met = wide_pass(x, k, end, enter) & x->present; met; met &= met - 1) {
-        const int c = wide_lowest(met);
+        const int c = lowest_bit(met);
         int at = k->top++;
         for (; at > bottom && k->enter[at - 1] < enter[c]; at--) {
             k->enter[at] = k->enter[at - 1];
@@ -519,7 +520,7 @@ static void push_beam(const wide_bvh *w, int32_t at_node, wide_beam *k)
     float enter[WIDTH];
     const int bottom = k->top;
     for (unsigned met = wide_beam_pass(x, k, enter) & x->present; met; met &= met - 1) {
-        const int c = wide_lowest(met);
+        const int c = lowest_bit(met);
         int at = k->top++;
         for (; at > bottom && k->enter[at - 1] < enter[c]; at--) {
             k->enter[at] = k->enter[at - 1];

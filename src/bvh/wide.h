@@ -23,8 +23,10 @@ typedef struct wide_bvh wide_bvh;
 /* A box in float, wider than that by more than the rounding of hits in it. */
 wide_box wide_box_of(const double lo[3], const double hi[3]);
 
-/* Build the hierarchy of n >= 1 boxes. order[n] becomes the boxes' order in space: neighbours there are near each other
- * in the hierarchy. Item k is box order[k]. Neither depends on the threads. NULL: out of memory. */
+enum { WIDE_MOST = 1 << 28 }; /* boxes: 8 times a node's number is an int32_t, too */
+
+/* Build the hierarchy of 1 <= n <= WIDE_MOST boxes. order[n] becomes the boxes' order in space: neighbours there are
+ * near each other in the hierarchy. Item k is box order[k]. Neither depends on the threads. NULL: out of memory. */
 wide_bvh *wide_new(int n, const wide_box *box, int32_t *order, int threads);
 void wide_free(wide_bvh *w);
 
@@ -69,19 +71,6 @@ void wide_beam_shorten(wide_beam *k, const int32_t *lane, const real *end);
 /* The next item that some rays may pass, roughly from near to far, and a bit for each of them. -1: none is left, or the
  * rays are too far from each other: then k->work < 0. */
 int32_t wide_beam_next(const wide_bvh *w, wide_beam *k, unsigned *rays);
-
-/* The index of the lowest bit of a number that is not 0. */
-static inline int wide_lowest(unsigned bits)
-{
-#if defined(__GNUC__)
-    return __builtin_ctz(bits);
-#else
-    int k = 0;
-    for (; !(bits & 1); bits >>= 1)
-        k++;
-    return k;
-#endif
-}
 
 void wide_begin(wide_walk *k, vec3 r, vec3 s);
 

@@ -37,8 +37,11 @@ typedef struct crowd_list {
     const void *user;
 } crowd_list;
 
-/* The most copies of a surface with so many parts. */
-static inline int32_t crowd_most(int32_t parts) { return INT32_MAX / parts; }
+/* The most copies of a surface with so many parts: all have numbers, and the hierarchy has room. */
+static inline int32_t crowd_most(int32_t parts)
+{
+    return INT32_MAX / parts < WIDE_MOST ? INT32_MAX / parts : WIDE_MOST;
+}
 
 /* `from` must outlive it. parts: of `from`; on a mesh its triangles. NULL: out of memory. */
 crowd *crowd_new(const surface *from, int32_t parts, const crowd_list *list, int threads);

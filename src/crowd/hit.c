@@ -2,6 +2,7 @@
  * copies that they come near are tested side by side, each lane with another copy. Then the rays go on, shortened by
  * their hits. Of hits at one distance the first copy of the list counts, so the order of the tests does not matter.
  */
+#include "base/bits.h"
 #include "crowd/parts.h"
 #include "wave/lane.h"
 
@@ -105,7 +106,7 @@ static bool beam(query *q, int n, const int32_t *lane)
     wide_beam_begin(&k, n, lane, r, s, q->end);
     for (int32_t copy; (copy = wide_beam_next(q->f->tree, &k, &met)) >= 0;) {
         for (; met; met &= met - 1)
-            add_pair(q, lane[wide_lowest(met)], copy);
+            add_pair(q, lane[lowest_bit(met)], copy);
         if (q->p.n < ENOUGH)
             continue;
         test(q);
@@ -138,12 +139,12 @@ static void rounds(query *q, int n, const int32_t *lane)
     }
 }
 
-/* The lanes that are on their way, in blocks of 4 x 4 pixels where they are a tile of the picture. */
+/* The lanes that are on their way, square by square. */
 static int order_lanes(const query *q, int n, int32_t *lane)
 {
     int m = 0;
     for (int k = 0; k < n; k++) {
-        const int block = k / 16, i = n < LANES ? k : block / 4 * 64 + block % 4 * 4 + k % 16 / 4 * 16 + k % 4;
+        const int i = wave_lane(n, k);
         lane[m] = i;
         m += q->end[i] > 0;
     }

@@ -12,6 +12,7 @@
 
 #include "base/real.h"
 #include "base/threads.h"
+#include "image/exr_zip.h"
 #include "image/format.h"
 
 /* The largest allocation for a (perhaps damaged) header: more than any chunk within our limits needs. */
@@ -243,7 +244,8 @@ static bool decode_chunk(exr_worker *w, const exr_chunk_info_t *chunk, int x, in
     if (!good(r, w->started ? exr_decoding_update(w->ctx, 0, chunk, &w->pipe)
                             : exr_decoding_initialize(w->ctx, 0, chunk, &w->pipe)))
         return false;
-    if (!w->started && !good(r, exr_decoding_choose_default_routines(w->ctx, 0, &w->pipe)))
+    if (!w->started &&
+        !(good(r, exr_decoding_choose_default_routines(w->ctx, 0, &w->pipe)) && good(r, exr_unzip_begin(&w->pipe))))
         return false;
     w->started = true;
     w->pipe.unpack_and_convert_fn = NULL;
@@ -337,6 +339,7 @@ static bool begin_worker(exr_worker *w)
 
 static void end_worker(exr_worker *w)
 {
+    exr_unzip_end(&w->pipe);
     if (w->ctx) {
         exr_decoding_destroy(w->ctx, &w->pipe);
         exr_finish(&w->ctx);
@@ -385,6 +388,8 @@ bool image_read_exr(FILE *file, const char *channel, int threads, image_stream *
     exr_plan p = {.to = to};
     exr_failure bad;
     bool ok = start(&r, &ctx) && plan_channels(&r, ctx, channel, &p) && plan_chunks(&r, ctx, &p);
+    if (ok && st.st_size / (off_t)sizeof(uint64_t) < p.chunks) /* else each of up to 2^28 chunks would be refused */
+        ok = image_refuse(why, "OpenEXR: the file is shorter than its table of chunks");
     if (ok) {
         decode_all(r.fd, &p, threads_of(threads), &bad);
         ok = bad.chunk == p.chunks || image_refuse(why, "%s", bad.why);

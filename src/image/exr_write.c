@@ -2,6 +2,7 @@
  * unfinished file can be gone on with: its header must be the same, and whole chunks are kept. */
 #include <openexr.h>
 
+#include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -112,27 +113,41 @@ static exr_result_t compress_chunk(exr_writer *w, exr_encode_pipeline_t *pipe, b
     return rv ? rv : exr_encoding_run(w->ctx, 0, pipe);
 }
 
-/* The chunks of a call, and how many of them are written. */
+/* The chunks of a call: threads take one after the other, and write them in this order. */
 typedef struct chunks {
-    int top, count, done;
-    bool stop; /* by the caller's progress */
+    int top, count;
+    pthread_mutex_t lock; /* of the rest */
+    pthread_cond_t changed;
+    int taken, done;
+    bool stop; /* by the caller's progress, or after a failure */
 } chunks;
 
-static bool is_stopped(chunks *k)
+/* The next chunk; count: there is none. (A loop of OpenMP would give each chunk its turn after a stop, too, which takes
+ * long on a busy machine.) */
+static int take_chunk(chunks *k)
 {
-    bool stop;
-#pragma omp atomic read
-    stop = k->stop;
-    return stop;
+    pthread_mutex_lock(&k->lock);
+    const int i = k->stop || k->taken == k->count ? k->count : k->taken++;
+    pthread_mutex_unlock(&k->lock);
+    return i;
 }
 
-/* Only the caller's thread shows progress, so a callback needs no lock. */
-static void show(chunks *k, const progress *p)
+/* Write chunk i, whose compression returned rv, when it is its turn. Only the caller's thread shows progress. */
+static void write_chunk(exr_writer *w, chunks *k, int i, const exr_encode_pipeline_t *pipe, exr_result_t rv,
+                        const progress *p)
 {
-    if (is_callers_thread() && !is_stopped(k) && !progress_show(p, "writing", (double)k->done / k->count)) {
-#pragma omp atomic write
-        k->stop = true;
+    pthread_mutex_lock(&k->lock);
+    while (k->done != i && !k->stop)
+        pthread_cond_wait(&k->changed, &k->lock);
+    if (!k->stop) {
+        w->result = rv ? rv
+                       : exr_write_scanline_chunk(w->ctx, 0, k->top + i * IMAGE_ROWS, pipe->compressed_buffer,
+                                                  pipe->compressed_bytes);
+        k->done++;
+        k->stop = w->result || (is_callers_thread() && !progress_show(p, "writing", (double)k->done / k->count));
     }
+    pthread_cond_broadcast(&k->changed);
+    pthread_mutex_unlock(&k->lock);
 }
 
 /* Compression takes nearly all the time, so the threads share it. They write in order, so that the bytes are the same
@@ -142,25 +157,11 @@ static void add_chunks(exr_writer *w, chunks *k, const float *const *plane, cons
 #pragma omp parallel num_threads(w->threads)
     {
         exr_encode_pipeline_t pipe = EXR_ENCODE_PIPELINE_INITIALIZER;
-        exr_result_t rv = EXR_ERR_SUCCESS; /* of this thread, which stops at its first failure */
         bool first = true;
-#pragma omp for ordered schedule(dynamic)
-        for (int i = 0; i < k->count; i++) {
-            const int y = k->top + i * IMAGE_ROWS;
-            const bool skip = is_stopped(k);
-            if (!rv && !skip) {
-                rv = compress_chunk(w, &pipe, first, y, k->top, plane);
-                first = false;
-            }
-#pragma omp ordered
-            {
-                if (!rv && !skip && !w->result)
-                    rv = exr_write_scanline_chunk(w->ctx, 0, y, pipe.compressed_buffer, pipe.compressed_bytes);
-                if (!w->result)
-                    w->result = rv;
-                k->done++;
-                show(k, p);
-            }
+        for (int i = take_chunk(k); i < k->count; i = take_chunk(k)) {
+            const exr_result_t rv = compress_chunk(w, &pipe, first, k->top + i * IMAGE_ROWS, k->top, plane);
+            first = false;
+            write_chunk(w, k, i, &pipe, rv, p);
         }
         exr_zip_end(&pipe);
         exr_encoding_destroy(w->ctx, &pipe);
@@ -170,11 +171,14 @@ static void add_chunks(exr_writer *w, chunks *k, const float *const *plane, cons
 static bool add(image_writer *base, int rows, const float *const *plane, const progress *p)
 {
     exr_writer *w = (exr_writer *)base;
-    chunks k = {base->rows, (rows + IMAGE_ROWS - 1) / IMAGE_ROWS, 0, false};
+    chunks k = {.top = base->rows,
+                .count = (rows + IMAGE_ROWS - 1) / IMAGE_ROWS,
+                .lock = PTHREAD_MUTEX_INITIALIZER,
+                .changed = PTHREAD_COND_INITIALIZER};
     if (!progress_show(p, "writing", 0))
         return false;
     add_chunks(w, &k, plane, p);
-    return !k.stop && !w->result;
+    return !k.stop;
 }
 
 static bool close_exr(image_writer *base, bool whole, errors *e)

@@ -1,4 +1,6 @@
-/* A chunk by libdeflate: its bytes in two halves, as differences. OpenEXR has this itself from version 3.2 on. */
+/* A chunk by libdeflate, compressed and decompressed: its bytes in two halves, as differences. OpenEXR has this itself
+ * from version 3.2 on.
+ */
 #include "image/exr_zip.h"
 
 #include <OpenEXRConfig.h>
@@ -12,6 +14,14 @@ exr_result_t exr_zip_begin(exr_encode_pipeline_t *pipe)
 }
 
 void exr_zip_end(exr_encode_pipeline_t *pipe) { (void)pipe; }
+
+exr_result_t exr_unzip_begin(exr_decode_pipeline_t *pipe)
+{
+    (void)pipe;
+    return EXR_ERR_SUCCESS;
+}
+
+void exr_unzip_end(exr_decode_pipeline_t *pipe) { (void)pipe; }
 
 #else
 
@@ -30,6 +40,25 @@ STAGE static void split(size_t half, const uint8_t *restrict from, uint8_t *rest
     for (size_t i = 1; i < half; i++) {
         even[i] = (uint8_t)(from[2 * i] - from[2 * i - 2] + 128);
         odd[i] = (uint8_t)(from[2 * i + 1] - from[2 * i - 1] + 128);
+    }
+}
+
+STAGE static uint8_t exr_sum(size_t n, const uint8_t *v)
+{
+    uint8_t sum = 0;
+    for (size_t i = 0; i < n; i++)
+        sum = (uint8_t)(sum + v[i]);
+    return sum;
+}
+
+/* `split` undone. A sum of differences needs the one before it, so this loop is no vector's. The odd bytes' sums go on
+ * from the last even one, which is found first: so two sums run side by side. */
+static void join(size_t half, const uint8_t *restrict even, const uint8_t *restrict odd, uint8_t *restrict to)
+{
+    uint8_t e = 128, o = (uint8_t)(128 + exr_sum(half, even) - 128 * half);
+    for (size_t i = 0; i < half; i++) {
+        to[2 * i] = e = (uint8_t)(e + even[i] - 128);
+        to[2 * i + 1] = o = (uint8_t)(o + odd[i] - 128);
     }
 }
 
@@ -86,6 +115,39 @@ void exr_zip_end(exr_encode_pipeline_t *pipe)
 {
     libdeflate_free_compressor(pipe->encoding_user_data);
     pipe->encoding_user_data = NULL;
+}
+
+static exr_result_t decompress(exr_decode_pipeline_t *pipe)
+{
+    const size_t n = (size_t)pipe->chunk.unpacked_size, half = n / 2; /* n is even: samples have 2 or 4 bytes */
+    if (pipe->chunk.packed_size == n) {                               /* as it is; the buffers may be the same one */
+        if (pipe->unpacked_buffer != pipe->packed_buffer)
+            memcpy(pipe->unpacked_buffer, pipe->packed_buffer, n);
+        return EXR_ERR_SUCCESS;
+    }
+    if (!make_room(&pipe->scratch_buffer_1, &pipe->scratch_alloc_size_1, n))
+        return EXR_ERR_OUT_OF_MEMORY;
+    uint8_t *halves = pipe->scratch_buffer_1;
+    if (libdeflate_zlib_decompress(pipe->decoding_user_data, pipe->packed_buffer, (size_t)pipe->chunk.packed_size,
+                                   halves, n, NULL) != LIBDEFLATE_SUCCESS)
+        return EXR_ERR_CORRUPT_CHUNK; /* not n bytes is an error, too */
+    join(half, halves, halves + half, pipe->unpacked_buffer);
+    return EXR_ERR_SUCCESS;
+}
+
+exr_result_t exr_unzip_begin(exr_decode_pipeline_t *pipe)
+{
+    if (pipe->chunk.compression != EXR_COMPRESSION_ZIP && pipe->chunk.compression != EXR_COMPRESSION_ZIPS)
+        return EXR_ERR_SUCCESS;
+    pipe->decompress_fn = decompress;
+    pipe->decoding_user_data = libdeflate_alloc_decompressor();
+    return pipe->decoding_user_data ? EXR_ERR_SUCCESS : EXR_ERR_OUT_OF_MEMORY;
+}
+
+void exr_unzip_end(exr_decode_pipeline_t *pipe)
+{
+    libdeflate_free_decompressor(pipe->decoding_user_data);
+    pipe->decoding_user_data = NULL;
 }
 
 #endif

@@ -23,9 +23,6 @@
  * operations, 3 6e-8 2 M^2. */
 static float error_of(float wide) { return ERROR * (4 * wide + 4 * ERROR) + 4e-7f * wide * wide; }
 
-static inline float less(float x, float y) { return x < y ? x : y; }
-static inline float more(float x, float y) { return x > y ? x : y; }
-
 STAGE static void near_triangles(const mesh_cluster *restrict c, const cluster_rays *restrict k, uint32_t which,
                                  uint32_t *restrict met)
 {
@@ -40,7 +37,7 @@ STAGE static void near_triangles(const mesh_cluster *restrict c, const cluster_r
             const float xb = c->at[1][X][i] - sx * zb - cx, yb = c->at[1][Y][i] - sy * zb - cy;
             const float xc = c->at[2][X][i] - sx * zc - cx, yc = c->at[2][Y][i] - sy * zc - cy;
             const float U = xc * yb - yc * xb, V = xa * yc - ya * xc, W = xb * ya - yb * xa, e = c->error[i];
-            const float least = less(less(U, V), W), most = more(more(U, V), W);
+            const float least = lesser_float(lesser_float(U, V), W), most = greater_float(greater_float(U, V), W);
             met[i] |= one & -(uint32_t)(((least >= -e) | (most <= e)) & (c->index[i] != own));
         }
     }
@@ -76,12 +73,14 @@ STAGE static void near_boxes(const mesh_block *restrict c, const cluster_rays *r
             const float xa = (c->lo[0][i] - ox) * ix, xb = (c->hi[0][i] - ox) * ix;
             const float ya = (c->lo[1][i] - oy) * iy, yb = (c->hi[1][i] - oy) * iy;
             const float za = (c->lo[2][i] - oz) * iz, zb = (c->hi[2][i] - oz) * iz;
-            const float t0 = more(more(less(xa, xb), less(ya, yb)), more(less(za, zb), 0)),
-                        t1 = less(less(more(xa, xb), more(ya, yb)), less(more(za, zb), last));
+            const float t0 = greater_float(greater_float(lesser_float(xa, xb), lesser_float(ya, yb)),
+                                           greater_float(lesser_float(za, zb), 0)),
+                        t1 = lesser_float(lesser_float(greater_float(xa, xb), greater_float(ya, yb)),
+                                          lesser_float(greater_float(za, zb), last));
             const float nx = c->across[0][i], ny = c->across[1][i], nz = c->across[2][i];
             const float o = nx * ox + ny * oy + nz * oz, w = nx * wx + ny * wy + nz * wz, a = o + t0 * w,
                         b = o + t1 * w;
-            const float high = more(a, b), low = less(a, b);
+            const float high = greater_float(a, b), low = lesser_float(a, b);
             met[i] |= one & -(uint32_t)((t0 <= t1) & (high >= c->least[i]) & (low <= c->most[i]));
         }
     }
@@ -110,11 +109,13 @@ STAGE static uint32_t pass_block(const mesh_slab *restrict c, const cluster_rays
         const float xa = (lx - ox) * k->over[0][r], xb = (hx - ox) * k->over[0][r];
         const float ya = (ly - oy) * k->over[1][r], yb = (hy - oy) * k->over[1][r];
         const float za = (lz - oz) * k->over[2][r], zb = (hz - oz) * k->over[2][r];
-        const float t0 = more(more(less(xa, xb), less(ya, yb)), more(less(za, zb), 0)),
-                    t1 = less(less(more(xa, xb), more(ya, yb)), less(more(za, zb), end[r]));
+        const float t0 = greater_float(greater_float(lesser_float(xa, xb), lesser_float(ya, yb)),
+                                       greater_float(lesser_float(za, zb), 0)),
+                    t1 = lesser_float(lesser_float(greater_float(xa, xb), greater_float(ya, yb)),
+                                      lesser_float(greater_float(za, zb), end[r]));
         const float o = nx * ox + ny * oy + nz * oz, w = nx * k->way[0][r] + ny * k->way[1][r] + nz * k->way[2][r];
         const float a = o + t0 * w, b = o + t1 * w;
-        const float high = more(a, b), low = less(a, b);
+        const float high = greater_float(a, b), low = lesser_float(a, b);
         which |= bit[i] & -(uint32_t)((t0 <= t1) & (high >= least) & (low <= most));
     }
     return which << first;
@@ -262,7 +263,7 @@ static bvh_box box_of_all(int n, const bvh_box *box)
 static float widest(const bvh_box *b)
 {
     const float x = b->hi[0] - b->lo[0], y = b->hi[1] - b->lo[1], z = b->hi[2] - b->lo[2];
-    return x + y + z - less(x, less(y, z)); /* the two that are widest */
+    return x + y + z - lesser_float(x, lesser_float(y, z)); /* the two that are widest */
 }
 
 static mesh_cluster cluster_of(const mesh_data *d, const bvh_space *space, int n, const key *sorted, const bvh_box *box)

@@ -10,6 +10,7 @@
 
 #include <stdint.h>
 
+#include "base/bits.h"
 #include "bvh/bvh.h"
 #include "mesh/mesh_data.h"
 
@@ -54,8 +55,6 @@ typedef struct cluster_rays {
     float sx[BVH_PACKET], sy[BVH_PACKET], cx[BVH_PACKET], cy[BVH_PACKET];
     float at[3][BVH_PACKET], way[3][BVH_PACKET], over[3][BVH_PACKET]; /* as in bvh_packet; 1 / way */
 } cluster_rays;
-
-static inline int lowest_bit(uint32_t x) { return __builtin_ctz(x); }
 
 /* Of the rays in `which`, bit i for ray i, those that may pass a block before end[i]. */
 uint32_t block_pass(const mesh_block *b, const cluster_rays *k, const float end[BVH_PACKET], uint32_t which);

@@ -3,14 +3,6 @@
 
 #include <stddef.h>
 
-/* The lane of ray j of a packet. A whole wave is mostly a tile of 16 x 8 pixels; then its packets are squares of 4 x 4.
- */
-static int lane_of(int n, int first, int j)
-{
-    const int square = first / BVH_PACKET;
-    return n < LANES ? first + j : (square / 4 * 4 + j / 4) * 16 + square % 4 * 4 + j % 4;
-}
-
 static void put(mesh_packet *k, int i, const vec3s *r, const vec3s *s, int lane)
 {
     k->r[0][i] = (double)r->x[lane], k->r[1][i] = (double)r->y[lane], k->r[2][i] = (double)r->z[lane];
@@ -37,7 +29,7 @@ static void hit_some(const mesh *f, int n, const rays *x, const ray_origins *fro
     for (int first = 0; first < n; first += BVH_PACKET) {
         k.n = 0;
         for (int j = 0; j < BVH_PACKET && first + j < n; j++) {
-            const int l = lane_of(n, first, j), i = k.n;
+            const int l = wave_lane(n, first + j), i = k.n;
             if (from && own != (from->id[l] == id))
                 continue;
             lane[k.n++] = l;
@@ -74,7 +66,7 @@ static void occlude_some(const mesh *f, int n, const rays *x, const int32_t *par
     for (int first = 0; first < n; first += BVH_PACKET) {
         k.n = 0;
         for (int j = 0; j < BVH_PACKET && first + j < n; j++) {
-            const int l = lane_of(n, first, j), i = k.n;
+            const int l = wave_lane(n, first + j), i = k.n;
             if (!(lit[l] > 0))
                 continue;
             lane[k.n++] = l;

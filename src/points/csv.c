@@ -33,18 +33,31 @@ static bool is_empty(const char *at)
     return *at == '#' || *at == '\r' || *at == '\n' || !*at;
 }
 
+/* Where a text in quotes ends, behind them; two quotes in it are one. NULL: the field is no such text. */
+static const char *behind_quotes(const char *at, const char *stop)
+{
+    if (*at != '"')
+        return NULL;
+    for (at++; *at != '"' || at[1] == '"'; at++) {
+        at += *at == '"';
+        if (!*at || *at == '\r' || *at == '\n')
+            return NULL;
+    }
+    at++;
+    return strchr(stop, *at) || strchr(stop, at[strspn(at, " ")]) ? at : NULL; /* 0 is in it, too */
+}
+
 /* A field: its text without quotes and outer spaces, and where the next one begins. NULL: it was the last. */
 static const char *field(const char *at, char between, const char **text, size_t *length)
 {
     at = between == '\t' ? at + strspn(at, " ") : spaces(at);
     const char stop[] = {'\r', '\n', between, between == ' ' ? '\t' : 0, 0};
     const char *end;
-    if (*at == '"') {
-        *text = ++at;
-        end = at + strcspn(at, "\"\r\n");
-        *length = (size_t)(end - at);
-        end += *end == '"';
-        end += strcspn(end, stop);
+    const char *quoted = behind_quotes(at, stop);
+    if (quoted) {
+        *text = at + 1;
+        *length = (size_t)(quoted - at) - 2;
+        end = quoted + strcspn(quoted, stop);
     } else {
         *text = at;
         end = at + strcspn(at, stop);

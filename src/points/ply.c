@@ -168,10 +168,17 @@ static bool take(const points_file *f, int kind, double x)
     }
     if (kind != POINTS_LABEL)
         return true;
-    const int length = snprintf(message, sizeof message, "%.0f", x);
+    const int length = snprintf(message, sizeof message, "%.9g", x);
     const int32_t k = points_label(p, message, (size_t)length, p->n);
     p->label[p->n] = k;
     return k > -2 || errors_add(f->e, "%s: vertex %d: more than 256 numbers under '%s'", f->name, (int)p->n, f->label);
+}
+
+/* The file is shorter than its head says. Always false. */
+static bool ends_early(const points_file *f, const head *h, const char **at)
+{
+    *at = f->text + f->size;
+    return errors_add(f->e, "%s: the file ends at vertex %d, expected %lld", f->name, (int)f->p->n, h->points);
 }
 
 static bool read_bytes(const points_file *f, const head *h, const char **at)
@@ -180,10 +187,8 @@ static bool read_bytes(const points_file *f, const head *h, const char **at)
     bool good = true;
     for (int k = 0; k < h->columns; k++) {
         const size_t n = bytes_of[h->number[k]];
-        if ((size_t)(end - *at) < n) {
-            *at = end;
-            return errors_add(f->e, "%s: the file ends at vertex %d, expected %lld", f->name, (int)f->p->n, h->points);
-        }
+        if ((size_t)(end - *at) < n)
+            return ends_early(f, h, at);
         good = take(f, h->kind[k], number_at((const unsigned char *)*at, h->number[k], h->encoding == BIG)) && good;
         *at += n;
     }
@@ -198,6 +203,8 @@ static bool read_text(const points_file *f, const head *h, const char **at)
         *at += strspn(*at, " \t\r\n");
         const size_t n = strcspn(*at, " \t\r\n");
         const char *behind = *at;
+        if (n == 0) /* at the end, or a byte of 0 */
+            return ends_early(f, h, at);
         if (!points_number(&behind, &x) || behind != *at + n) {
             char message[128];
             snprintf(message, sizeof message, "'%.*s' is no number, expected a value of vertex %d",

@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "yaml/text.h"
 
@@ -17,6 +18,11 @@ bool points_error(const points *p, const char *name, int32_t row, const char *me
 
 static char *read_all(const char *path, const char *name, size_t *size, errors *e)
 {
+    struct stat about;
+    if (stat(path, &about) == 0 && !S_ISREG(about.st_mode)) { /* a pipe could wait forever, a device never end */
+        errors_add(e, "%s: can't read the list: no regular file", name);
+        return NULL;
+    }
     FILE *f = fopen(path, "rb");
     char *text = NULL;
     size_t n = 0, room = 0;

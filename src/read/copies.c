@@ -16,7 +16,7 @@ enum { X, Y, Z, SCALE, SX, SY, SZ, TURN, RX, RY, RZ, COLUMNS };
 
 #define PLACES -BIG, BIG, true, "a coordinate from -1e6 to 1e6"
 #define SCALES SMALL, BIG, false, "a factor from 1e-6 to 1e6"
-#define ANGLES -BIG, BIG, false, "an angle in degrees"
+#define ANGLES -BIG, BIG, false, "an angle from -1e6 to 1e6 degrees"
 static const points_column columns[COLUMNS + 1] = {
     [X] = {"x", PLACES},   [Y] = {"y", PLACES},   [Z] = {"z", PLACES},   [SCALE] = {"scale", SCALES},
     [SX] = {"sx", SCALES}, [SY] = {"sy", SCALES}, [SZ] = {"sz", SCALES}, [TURN] = {"turn", ANGLES},
@@ -89,6 +89,8 @@ static bool find_materials(reader *r, node *list, const object *o, rows *k)
 {
     const int n = list ? yaml_list(r->y, list, "a list of names of materials") : 0, before = r->e->count;
     int number[POINTS_LABELS];
+    if (list && n == 0)
+        return yaml_error(r->y, list, "an empty list, expected names of materials");
     if (n < 0 || n > POINTS_LABELS)
         return n < 0 || yaml_error(r->y, list, "%d materials, expected at most %d", n, POINTS_LABELS);
     for (int j = 0; j < n; j++)
@@ -142,7 +144,7 @@ static void check(const affine *m, double size, char message[256])
     const double longest = size * fmax(vec3_length(m->x), fmax(vec3_length(m->y), vec3_length(m->z)));
     *message = 0;
     if (!(far <= BIG))
-        snprintf(message, 256, "a coordinate of %.4g scene units after all transforms, expected at most 1000000", far);
+        snprintf(message, 256, "a coordinate of %.7g scene units after all transforms, expected at most 1000000", far);
     else if (!(longest >= SMALL && longest <= BIG))
         snprintf(message, 256, "a size of %.4g scene units after all transforms, expected 1e-6 to 1e6", longest);
     else if (!(square(m) * square(&back) <= STRETCH * STRETCH))
@@ -209,7 +211,7 @@ static object *add_object(reader *r, int i, int of)
 }
 
 /* One crowd of the copies whose material is in[]. */
-static bool make_crowd(reader *r, node *at, int i, const surface *from, const bool *in, rows *k)
+static void make_crowd(reader *r, node *at, int i, const surface *from, const bool *in, rows *k)
 {
     crowd_list list = {0, 0, copy_of, k};
     const shape_spec *spec = &r->s->object[i].shape_spec;
@@ -225,25 +227,29 @@ static bool make_crowd(reader *r, node *at, int i, const surface *from, const bo
         list.n += in[material_of(k, row)];
     }
     if (list.n == 0)
-        return true;
-    if (list.n > crowd_most(parts))
-        return yaml_error(r->y, at, "%d copies of a surface of %d parts, expected at most %d of it", (int)list.n,
-                          (int)parts, (int)crowd_most(parts));
+        return;
+    if (list.n > crowd_most(parts)) {
+        yaml_error(r->y, at, "%d copies of a surface of %d parts, expected at most %d of it", (int)list.n, (int)parts,
+                   (int)crowd_most(parts));
+        return;
+    }
     progress_show(r->from->progress, "building", 0);
     crowd *f = reader_made(r, crowd_new(from, parts, &list, r->from->threads));
     int first = -1;
     for (int j = 0; f && j < list.kinds; j++) {
         const int before = r->list[r->lists - 1].used ? r->list[r->lists - 1].count : -1;
         object *o = add_object(r, i, of[j]);
-        if (!o)
+        if (!o) {
+            if (j == 0)
+                surface_free(&f->base);
             break;
+        }
         first = j ? first : before + 1;
         o->crowd = f;
         o->shape = &f->base;
         o->first = first; /* a place in the list, until all objects have theirs */
         reader_color_texture(r, at, o);
     }
-    return f != NULL;
 }
 
 /* Crowds for the materials of the copies. */

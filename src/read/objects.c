@@ -161,6 +161,21 @@ static void number_insides(reader *r)
     }
 }
 
+/* Without memory for an array of all objects: free those that lists add, and leave the others in theirs. */
+static void drop_added(reader *r)
+{
+    for (int i = 0; i < r->s->objects; i++)
+        r->s->object[i].first = i;
+    for (int k = 0; k < r->lists; k++)
+        for (int j = 0; j < r->list[k].count; j++) {
+            object *o = &r->list[k].more[j];
+            if (o->first == j + 1) /* places in the list; the scene's own object has place 0 */
+                surface_free(o->shape);
+            color_texture_free(o->color);
+            free(o->name);
+        }
+}
+
 /* Put the objects that lists add behind the first of their list, and hidden objects last. */
 static void arrange(reader *r)
 {
@@ -185,7 +200,8 @@ static void arrange(reader *r)
         s->object = to;
         to = NULL;
         number_insides(r);
-    }
+    } else
+        drop_added(r);
     for (int k = 0; k < r->lists; k++)
         free(r->list[k].more);
     free(r->list);

@@ -87,6 +87,6 @@ surface *reader_shape(reader *r, node *at, shape_spec *spec)
 bool reader_no_shape(reader *r, node *at)
 {
     const int k = next_shape(at, 0);
-    return k == SHAPES ||
-           yaml_error(r->y, yaml_get(at, name_of(k)), "a shape, '%s', beside 'copy', expected one of them", name_of(k));
+    return k == SHAPES || yaml_error(r->y, yaml_get(at, name_of(k)), "a shape, '%s', beside '%s', expected one of them",
+                                     name_of(k), yaml_get(at, "copy") ? "copy" : "copies");
 }

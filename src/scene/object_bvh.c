@@ -20,8 +20,9 @@ typedef struct box {
 } box;
 
 struct object_bvh {
-    int objects, bounded;
-    int32_t *object; /* of each box; then the unbounded objects */
+    const scene *of;
+    int objects, bounded, unbounded;
+    int32_t *object; /* of each box; the unbounded objects at its end */
     box *box;
     bvh_space space;
     bvh *tree;
@@ -79,17 +80,18 @@ object_bvh *object_bvh_new(const scene *s, int threads, bool *good)
     const size_t n = (size_t)s->objects;
     object_bvh *c = calloc(1, sizeof *c);
     *good = c && (c->object = malloc(sizeof *c->object * n)) && (c->box = malloc(sizeof *c->box * n));
-    for (int i = 0, endless = 0; *good && i < s->objects; i++) {
-        const box b = box_of(&s->object[i]);
+    for (int i = 0; *good && i < s->objects; i++) {
         if (s->object[i].first != i)
             continue;
+        const box b = box_of(&s->object[i]);
         if (has_end(&b)) {
             c->box[c->bounded] = b;
             c->object[c->bounded++] = i;
         } else
-            c->object[s->objects - ++endless] = i;
+            c->object[s->objects - ++c->unbounded] = i;
     }
     if (*good && c->bounded > FEW) {
+        c->of = s;
         c->objects = s->objects;
         measure(c);
         *good = (c->tree = tree_of(c, threads)) != NULL;
@@ -187,7 +189,7 @@ static void visit(void *user, int32_t index)
 void object_bvh_find(const object_bvh *c, int n, const rays *x, const real *end, const int32_t *own, candidates *m)
 {
     clear(m);
-    for (int k = c->bounded; k < c->objects; k++)
+    for (int k = c->objects - c->unbounded; k < c->objects; k++)
         for (int i = 0; i < n; i++)
             note(m, c->object[k], i);
     for (int i = 0; i < n; i++) {
@@ -197,7 +199,7 @@ void object_bvh_find(const object_bvh *c, int n, const rays *x, const real *end,
         double from = 0, to = p.end;
         float at[3], way[3], far;
         if (own && own[i] >= 0)
-            note(m, own[i], i);
+            note(m, c->of->object[own[i]].first, i);
         if (bvh_enter(&c->space, c->space.radius, r, s, &from, &to, at, way, &far))
             bvh_along(c->tree, at, way, far, visit, &p);
     }

@@ -294,9 +294,9 @@ STAGE static int heights_level(int n, real lo, real hi, const real *restrict v, 
 static bool is_peaked(const heights *h, const heights_bounds *b)
 {
     const real rounding = R(8 * REAL_ROUNDING) * (real_abs(b->lo) + real_abs(b->hi));
-    for (int row = 0; row <= h->grid.rows; row++)
-        if (heights_level(h->grid.columns + 1, b->lo + rounding, b->hi - rounding, place(h, row, 0),
-                          place(h, row + 1, 0)))
+    for (int row = -1; row <= h->grid.rows; row++) /* with those before a clamped map, where P is level */
+        if (heights_level(h->grid.columns + 2, b->lo + rounding, b->hi - rounding, place(h, row, -1),
+                          place(h, row + 1, -1)))
             return false;
     return true;
 }

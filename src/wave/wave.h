@@ -11,6 +11,13 @@
 
 enum { LANES = 128 }; /* a tile of 16 x 8 pixels; a wave's data fit the first-level cache */
 
+/* The k-th lane of n, where a whole wave, which is mostly a tile, goes by squares of 4 x 4 pixels. */
+static inline int wave_lane(int n, int k)
+{
+    const int square = k / 16, in = k % 16;
+    return n < LANES ? k : (square / 4 * 4 + in / 4) * 16 + square % 4 * 4 + in % 4;
+}
+
 typedef struct vec3s {
     real x[LANES], y[LANES], z[LANES];
 } vec3s;
@@ -54,7 +61,7 @@ typedef struct rays {
 typedef struct hits {
     real t[LANES];
     int32_t id[LANES];   /* index of the object in the scene */
-    int32_t part[LANES]; /* of its surface; set only by displaced surfaces and meshes */
+    int32_t part[LANES]; /* of its surface; set only by displaced surfaces, meshes and copies */
 } hits;
 
 /* If `take`, ray i hits object `id` at t. */

@@ -98,6 +98,15 @@ void yaml_pairs(node *map, node **key, node **value)
     }
 }
 
+/* Doubled each time: there may be one in each of many objects. */
+static bool room_for_one_more(yaml *y)
+{
+    const bool full = (y->count & (y->count - 1)) == 0; /* 0, 1, 2, 4 .. */
+    char **more = full ? realloc(y->scalars, sizeof *more * (2 * (size_t)y->count + 1)) : y->scalars;
+    y->scalars = more ? more : y->scalars;
+    return more;
+}
+
 const char *yaml_text(yaml *y, node *at, const char *what)
 {
     const char *text = text_of(at);
@@ -105,10 +114,8 @@ const char *yaml_text(yaml *y, node *at, const char *what)
         yaml_error(y, at, "%s, expected %s", kind_of(at), what);
         return NULL;
     }
-    char **more = realloc(y->scalars, sizeof *more * (size_t)(y->count + 1)), *copy = strdup(text);
-    if (more)
-        y->scalars = more;
-    if (!more || !copy) {
+    char *copy = strdup(text);
+    if (!copy || !room_for_one_more(y)) {
         free(copy);
         errors_add(y->errors, "%s: out of memory", y->path);
         return NULL;

@@ -4,6 +4,7 @@ shape, the method and the material; errors with their places in the list; a hund
 
 from __future__ import annotations
 
+import os
 import random
 import struct
 from collections.abc import Sequence
@@ -112,6 +113,17 @@ def test_same_as_written_out(kage: Kage, shape: str, render: str, bump: str, mat
         assert np.max(np.abs(got[name] - want[name])) <= within, name
 
 
+def test_same_as_written_out_among_many_objects(kage: Kage) -> None:
+    """With so many objects that there is a hierarchy over them, and one that has no end."""
+    spheres = "".join(
+        f"  s{100 + k}: {{sphere: {{center: [{k - 7}, -0.7, {3 - k % 3}], radius: 0.3}}, material: mirror}}\n"
+        for k in range(14))
+    some, head = rows(("clay", "tiles", "mirror", "glass"), 60), head_of(SPHERE) + spheres
+    got = picture(kage, write_list(kage, head, csv_of(some)))
+    want = picture(kage, written_out(kage, head, some))
+    assert all(np.array_equal(got[name], want[name]) for name in "RGB")
+
+
 def test_same_bytes_with_any_threads(kage: Kage) -> None:
     path = write_list(kage, head_of(SPHERE, bump=WAVES), csv_of(rows(("clay", "mirror", "glass"), 3000)))
     kage("render", path, "-o", "one.exr", "--threads", "1")
@@ -173,7 +185,9 @@ def test_what_programs_write(kage: Kage) -> None:
         ("", "list.csv:1:1: no column 'x'"),
         ("x,y,z\n1,2,\0\n", "list.csv: bytes of 0, expected text"),
         ("ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\nend_header\n"
-         "1 2 3\n", "is no number, expected a value of vertex 1"),
+         "1 2 3\n4 5", "list.csv: the file ends at vertex 1, expected 2"),
+        ("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nend_header\n"
+         "1 2 b\n", "'b' is no number, expected a value of vertex 0"),
         ("ply\nformat ascii 1.0\nelement vertex 99999\nproperty float x\nproperty float y\nproperty float z\n"
          "end_header\n1 2 3\n", "list.csv: 99999 vertices in"),
         ("ply\nformat ascii 1.0\nelement face 1\nend_header\n", "list.csv:3:9: another element before 'vertex'"),
@@ -182,6 +196,10 @@ def test_what_programs_write(kage: Kage) -> None:
         ("ply\nformat text 1.0\nelement vertex 1\nend_header\n1\n", "list.csv:2:8: an unknown format"),
         ("ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
          "property float z\nend_header\n" + "\0" * 12, "list.csv: the file ends at vertex 1, expected 3"),
+        ('x,y,z\n"1"2,3,4\n', "list.csv:2:1: '\"1\"2' is no number"),
+        ('x,y,z\n"1,2,3\n', "list.csv:2:1: '\"1' is no number"),
+        ('x,y,z,material\n1,2,3,"a ""b"\n', "no material 'a \"\"b', expected one of those under"),
+        ("x,y,z,turn\n1,2,3,1e7\n", "list.csv:2:7: turn is 1e+07, expected an angle from -1e6 to 1e6 degrees"),
     ],
 )
 def test_wrong_lists(kage: Kage, text: str, message: str) -> None:
@@ -202,6 +220,8 @@ def test_wrong_lists(kage: Kage, text: str, message: str) -> None:
         ("of: stone", "of: ground", "a plane has no end, expected copies of an object that has"),
         ("{copies:", "{copy: stone, copies:", "'copies' beside 'copy', expected one of them"),
         ("stones:", "more: {copy: stones}\n  stones:", "'stones' is a list of copies, expected an object of one shape"),
+        ("file: list.csv}", f"file: list.csv}}, {SPHERE}", "a shape, 'sphere', beside 'copies', expected one of them"),
+        ("list.csv", "list.csv, materials: []", "an empty list, expected names of materials"),
         ("list.csv", "list.csv, materials: [clay]", "'clay' is no number of a material, expected 0 to 0"),
     ],
 )
@@ -211,6 +231,25 @@ def test_wrong_copies(kage: Kage, old: str, new: str, message: str) -> None:
     result = kage("render", path, "-o", "x.png")
     assert result.returncode == 2
     assert message in result.stderr.splitlines()[0], result.stderr
+
+
+def test_a_material_between_two(kage: Kage) -> None:
+    text = "ply\nformat ascii 1.0\nelement vertex 1\n" + "".join(
+        f"property float {name}\n" for name in ("x", "y", "z", "material")) + "end_header\n1 2 3 0.4\n"
+    path = write_list(kage, head_of(SPHERE), text, "list.ply", ", materials: [clay, tiles]")
+    result = kage("render", path, "-o", "x.png")
+    assert result.returncode == 2
+    assert "list.ply: vertex 0: '0.4' is no number of a material, expected 0 to 1" in result.stderr
+
+
+def test_no_regular_file(kage: Kage) -> None:
+    """A pipe that nobody writes to; without a wait."""
+    path = write_list(kage, head_of(SPHERE), "")
+    (kage.folder / "list.csv").unlink()
+    os.mkfifo(kage.folder / "list.csv")
+    result = kage("render", path, "-o", "x.png")
+    assert result.returncode == 2
+    assert "list.csv: can't read the list: no regular file" in result.stderr
 
 
 def test_bumps_that_would_be_displaced(kage: Kage) -> None:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import itertools
 import re
+import struct
 import subprocess
 import sys
 from pathlib import Path
@@ -397,6 +398,8 @@ REPLACED = [
     ("map-exr-cut", "file: map.png", "file: cut.exr, channel: a",
      "17:24: 'cut.exr' can't be used: OpenEXR: Preparing to read scanline 0 (chunk 0), found corrupt leader: "
      "packed size 142, file size 400"),
+    ("map-exr-tiles", "file: map.png", "file: tiles.exr",
+     "17:24: 'tiles.exr' can't be used: OpenEXR: the file is shorter than its table of chunks"),
     ("map-file-empty", "file: map.png", "file: ''", "17:25: nothing here, expected the file of a height map"),
     ("map-no-scale", "scale: 0.1, ", "", "17:11: a bump with a map lacks its 'scale'"),
     ("map-no-zero", "zero: 0.5, ", "", "17:11: a bump with a map lacks its 'zero'"),
@@ -470,6 +473,22 @@ def write_exr(path: Path, **channels: np.ndarray) -> None:
     OpenEXR.File({"type": OpenEXR.scanlineimage, "compression": OpenEXR.ZIP_COMPRESSION}, channels).write(str(path))
 
 
+def write_many_tiles(path: Path) -> None:
+    """The header of 2^28 tiles, and none of them."""
+    def attribute(name: str, kind: str, value: bytes) -> bytes:
+        return f"{name}\0{kind}\0".encode() + struct.pack("<i", len(value)) + value
+
+    window = struct.pack("<4i", 0, 0, 16383, 16383)
+    path.write_bytes(b"\x76\x2f\x31\x01" + struct.pack("<i", 0x202) +
+                     attribute("channels", "chlist", b"Y\0" + struct.pack("<4i", 2, 0, 1, 1) + b"\0") +
+                     attribute("compression", "compression", b"\3") + attribute("dataWindow", "box2i", window) +
+                     attribute("displayWindow", "box2i", window) + attribute("lineOrder", "lineOrder", b"\0") +
+                     attribute("pixelAspectRatio", "float", struct.pack("<f", 1)) +
+                     attribute("screenWindowCenter", "v2f", bytes(8)) +
+                     attribute("screenWindowWidth", "float", struct.pack("<f", 1)) +
+                     attribute("tiles", "tiledesc", struct.pack("<iib", 1, 1, 0)) + bytes(65))
+
+
 @pytest.fixture(scope="session")
 def images(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Height maps, good and bad."""
@@ -491,6 +510,7 @@ def images(tmp_path_factory: pytest.TempPathFactory) -> Path:
     write_exr(folder / "rgb.exr", R=heights, G=heights, B=heights)
     write_exr(folder / "rg.exr", R=heights, G=heights)
     (folder / "cut.exr").write_bytes((folder / "two.exr").read_bytes()[:400])
+    write_many_tiles(folder / "tiles.exr")
     heights[1, 2] = np.nan
     write_exr(folder / "nan.exr", Y=heights)
     return folder

@@ -200,11 +200,38 @@ static void of_models(void **state)
     each_fails(MODEL, &plain, 7);
 }
 
+/* Opaque copies in two materials and transparent ones in two: three crowds, and four objects of one list. */
+static void of_lists(void **state)
+{
+    static const char scene[] = "camera: {from: [0.5, 3, -5], at: [0, 0, 0], fov: 40}\n"
+                                "lights:\n"
+                                "  lamp: {at: [-4, 5, -2], color: [1, 1, 1]}\n"
+                                "materials:\n"
+                                "  clay: {color: [0.8, 0.7, 0.6]}\n"
+                                "  tiles: {color: {checker: {even: [0, 0, 1], odd: [1, 0, 0], size: [0.5, 0.5]}}}\n"
+                                "  glass: {filter: 0.9, ior: 1.3}\n"
+                                "  water: {filter: 0.8, ior: 1.1}\n"
+                                "objects:\n"
+                                "  ball: {sphere: {center: [0, 1, 0], radius: 0.4}, material: clay, hidden: true}\n"
+                                "  balls: {copies: {of: ball, file: %s}}\n"
+                                "  egg: {copy: ball, transform: [{scale: [1, 2, 1]}, {rotate: [20, 0, 0]}]}\n";
+    char path[] = "/tmp/kage-list-XXXXXX", text[sizeof scene + sizeof path];
+    const int fd = mkstemp(path);
+    FILE *f = fd >= 0 ? fdopen(fd, "w") : NULL;
+    (void)state;
+    assert_non_null(f);
+    fputs("x,y,z,material\n0,0,0,clay\n1,0,0,tiles\n-1,0,0,glass\n0,0,1,water\n1,0,1,\n", f);
+    fclose(f);
+    snprintf(text, sizeof text, scene, path);
+    each_fails(text, &plain, 1);
+    unlink(path);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(of_functions),           cmocka_unit_test(of_maps),   cmocka_unit_test(of_displaced_surfaces),
-        cmocka_unit_test(of_parametric_surfaces), cmocka_unit_test(of_models),
+        cmocka_unit_test(of_parametric_surfaces), cmocka_unit_test(of_models), cmocka_unit_test(of_lists),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -484,6 +484,9 @@ static void peaks(void **state)
         {8, 8 + W, -9, false, false},    /* one below the other */
         {8, 8 + W + 1, 9, true, true},   /* across a corner: between them P is lower */
         {W, 2 * W - 1, 9, false, false}, /* at both ends of a row */
+        {W, W, 9, true, false},          /* one at an end, beyond which a clamped P is constant */
+        {2 * W - 1, 2 * W - 1, 9, true, false},
+        {5, 5, -9, true, false},
     };
     for (size_t n = 0; n < sizeof cases / sizeof *cases; n++)
         for (int clamp = 0; clamp < 2; clamp++) {
