@@ -71,8 +71,8 @@ double clock_now(void);
 
 /* A bar on stderr with the share done, the rate and the time left. Off where stderr is not a terminal. */
 typedef struct progress_bar {
-    bool on;
-    double start, shown; /* when it began and was last drawn */
+    bool on, drawn;
+    double start, shown; /* when this step began, and when the bar was last drawn */
     long pixels;         /* of the picture; 0: loading */
     const char *name;    /* of the scene */
     char what[16];       /* the current step */

@@ -42,12 +42,13 @@ int progress_bar_show(void *user, const char *what, double share)
     snprintf(rate, sizeof rate, "%.1f Mpixel/s  %.1f s left", done * (double)p->pixels / gone / 1e6,
              gone / done * (1 - share));
     const bool rated = p->pixels && done > 0 && strcmp(what, "rendering") == 0;
+    p->drawn = true;
     fprintf(stderr, "\r%.24s [%s] %3.0f %%  %s \033[K", p->name, bar, 100 * share, rated ? rate : what);
     return 0;
 }
 
 void progress_bar_end(progress_bar *p)
 {
-    if (p->on && p->shown > p->start)
+    if (p->drawn)
         fprintf(stderr, "\r\033[K");
 }
