@@ -201,10 +201,10 @@ COPIES = """\
 """
 
 
-def objects_scene(folder: Path, count: int) -> Path:
-    """Spheres, each an object up to MOST_LISTED, above that a list of copies."""
-    path = folder / f"spheres{count}.yaml"
-    if count <= MOST_LISTED:
+def objects_scene(folder: Path, count: int, written_out: bool) -> Path:
+    """Spheres, each an object, or a list of copies."""
+    path = folder / f"{'spheres' if written_out else 'copies'}{count}.yaml"
+    if written_out:
         return text_file(path, listed(count))
     places = made(folder / f"spheres{count}.csv", lambda to: write_csv(to, count))
     return text_file(path, OBJECTS_HEAD + COPIES.replace("FILE", places.name))

@@ -275,11 +275,15 @@ def meshes(about: About) -> list[Job]:
 
 
 def objects(about: About) -> list[Job]:
+    """Few spheres written out and as a list of copies, many as a list."""
     jobs = []
     for count in about.level.objects:
-        command = words(about, inputs.objects_scene(about.inputs, count), about.level.size, threads=1)
-        jobs.append(Job(f"spheres {count}", "objects", functools.partial(load_once, command, about.level.size),
-                        about.level.slow_rounds, programs.shown(command)))
+        for written_out in (True, False) if count <= inputs.MOST_LISTED else (False,):
+            scene = inputs.objects_scene(about.inputs, count, written_out)
+            command = words(about, scene, about.level.size, threads=1)
+            name = f"{'spheres written out' if written_out else 'spheres'} {count}"
+            jobs.append(Job(name, "objects", functools.partial(load_once, command, about.level.size),
+                            about.level.slow_rounds, programs.shown(command)))
     return jobs
 
 

@@ -52,7 +52,7 @@ def scenes(about: About) -> dict[str, list[Word]]:
                                     for method in ("none", "0", "2", "march:8")}
     found["terrain by auto"] = ["scenes/terrain.yaml", "--shadow", "auto"]
     found["mesh"] = [inputs.mesh_scene(about.inputs, about.level.quads)]
-    found["spheres"] = [inputs.objects_scene(about.inputs, about.level.objects[1])]
+    found["spheres"] = [inputs.objects_scene(about.inputs, about.level.objects[1], False)]
     return found
 
 
