@@ -62,7 +62,7 @@ bool film_has_layer(const film *f, const char *word, size_t n)
 int kage_scene_has_layer(const kage_scene *k, const char *word)
 {
     errors e = {0};
-    film *f = film_new(k->first, (window){0, 0, 1, 1}, true, &e);
+    film *f = film_new(k->first, (window){0, 0, 1, 1}, true, 1, &e);
     const bool found = f && film_has_layer(f, word, strlen(word));
     film_free(f);
     errors_free(&e);

@@ -171,7 +171,7 @@ static kage_film *new_film(const kage_scene *k, const kage_render_options *o, co
     }
     if (!f || !f->file || !f->source || !f->sets || !f->stages)
         errors_add(e, "out of memory");
-    else if ((f->film = film_new(&j->view, j->part, j->layers, e)))
+    else if ((f->film = film_new(&j->view, j->part, j->layers, o->threads, e)))
         return f;
     kage_film_free(f);
     return NULL;

@@ -1,6 +1,8 @@
 /* A film's memory: a plane of float for each colour and layer. */
 #include "film/film.h"
 
+#include "base/threads.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -19,17 +21,28 @@ static char *plane_name(const scene *s, int k)
     return name;
 }
 
-/* Aligned to cache lines, in which tiles are written. The memory is touched here, so that rendering does not wait for
- * page faults. */
+/* Aligned to cache lines, in which tiles are written. */
 static float *new_plane(size_t bytes)
 {
     void *p;
-    if (posix_memalign(&p, 64, bytes) != 0)
-        return NULL;
-    return memset(p, 0, bytes);
+    return posix_memalign(&p, 64, bytes) == 0 ? p : NULL;
 }
 
-film *film_new(const scene *s, window part, bool layers, errors *e)
+/* All values 0. The memory is touched here, so that rendering does not wait for page faults, nor for its threads to
+ * start. */
+static void clear(film *f, size_t pixels, int threads)
+{
+    enum { PART = 1 << 18 }; /* values; so few are not worth a thread */
+    const long parts = (long)((pixels + PART - 1) / PART), all = parts * f->planes;
+    (void)threads; /* without OpenMP */
+#pragma omp parallel for num_threads(threads) schedule(static) if (parts > 1)
+    for (long k = 0; k < all; k++) {
+        const size_t from = (size_t)(k % parts) * PART, rest = pixels - from;
+        memset(f->plane[k / parts] + from, 0, (rest < PART ? rest : PART) * sizeof **f->plane);
+    }
+}
+
+film *film_new(const scene *s, window part, bool layers, int threads, errors *e)
 {
     film *f = calloc(1, sizeof *f);
     size_t pixels = (size_t)(part.x1 - part.x0) * (size_t)(part.y1 - part.y0);
@@ -45,8 +58,10 @@ film *film_new(const scene *s, window part, bool layers, errors *e)
         f->name[k] = plane_name(s, k);
         good = f->plane[k] && f->name[k];
     }
-    if (good)
+    if (good) {
+        clear(f, pixels, threads_of(threads));
         return f;
+    }
     film_free(f);
     errors_add(e, "out of memory for a picture of %d x %d pixels", part.x1 - part.x0, part.y1 - part.y0);
     return NULL;

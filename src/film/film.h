@@ -36,8 +36,8 @@ static inline size_t film_index(const film *f, int x, int y)
     return (size_t)(y - f->part.y0) * film_width(f) + (size_t)(x - f->part.x0);
 }
 
-/* All values 0. NULL: out of memory, with a message. */
-film *film_new(const scene *s, window part, bool layers, errors *e);
+/* All values 0, by several threads (0: all processors). NULL: out of memory, with a message. */
+film *film_new(const scene *s, window part, bool layers, int threads, errors *e);
 
 /* Move the film down to the rows y0 to y1 of the picture, at most as many as it was made for. */
 void film_move(film *f, int y0, int y1);
