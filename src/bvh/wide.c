@@ -1,284 +1,28 @@
-/* Nodes of eight boxes, built from the top by the surface area heuristic [Wald, On fast Construction of SAH-based
- * Bounding Volume Hierarchies, 2007]: of a node's parts the largest is halved until there are eight. All arithmetic is
- * float's + - * / and comparisons, so the same rays reach the same items everywhere. A node's box contains its items'
- * boxes exactly, and the test of a ray and a box is monotonic, so no item depends on the nodes above it.
+/* Rays through a wide hierarchy. All arithmetic is float's + - * / and comparisons, so the same rays reach the same
+ * items everywhere. A node's box contains its items' boxes exactly, and the test of a ray and a box is monotonic, so no
+ * item depends on the nodes above it.
  */
-#include "bvh/wide.h"
+#include "bvh/wide_node.h"
 
 #include "base/bits.h"
 #include "base/real.h"
-#include "base/threads.h"
 
-#include <stdlib.h>
-#include <string.h>
-
-enum {
-    WIDTH = 8,
-    BINS = 16,
-    BY_AREA = 14,     /* levels; below, parts are halved by number: at most 10 levels more, so the stack suffices */
-    WORK = 320,       /* nodes and items that a beam tests; in more, single rays are faster */
-    FOR_TASKS = 8192, /* items of a part that gets a task of its own */
-};
-
-/* By so many of float's roundings boxes and rays are wider. */
-#define WIDER (16 * 1.2e-7)
+enum { WORK = 320 }; /* nodes and items that a beam tests; in more, single rays are faster */
 
 /* What the division by 0 becomes: finite, so that 0 times it is 0. */
 #define STEEP 1e30f
 
-typedef struct node {
-    float lo[3][WIDTH], hi[3][WIDTH];
-    int32_t child[WIDTH]; /* a node, or ~item */
-    unsigned present;     /* a bit for each child */
-} node;
-
-struct wide_bvh {
-    int n, nodes;
-    node *node; /* the first is the root */
-};
-
-/* ---- boxes ---- */
-
-wide_box wide_box_of(const double lo[3], const double hi[3])
+/* Put what is entered at x on a stack, below its top, the nearest last; not deeper than `bottom`. */
+static inline void place_in_order(float *enter, int32_t *left, int bottom, int top, float x, int32_t child)
 {
-    wide_box b;
-    for (int k = 0; k < 3; k++) {
-        const double air = WIDER * (fabs(lo[k]) + fabs(hi[k]));
-        b.lo[k] = (float)(lo[k] - air);
-        b.hi[k] = (float)(hi[k] + air);
+    int at = top;
+    for (; at > bottom && enter[at - 1] < x; at--) {
+        enter[at] = enter[at - 1];
+        left[at] = left[at - 1];
     }
-    return b;
+    enter[at] = x;
+    left[at] = child;
 }
-
-static wide_box nothing(void)
-{
-    return (wide_box){{HUGE_VALF, HUGE_VALF, HUGE_VALF}, {-HUGE_VALF, -HUGE_VALF, -HUGE_VALF}};
-}
-
-static inline void include(wide_box *b, const wide_box *x)
-{
-    for (int k = 0; k < 3; k++) {
-        b->lo[k] = x->lo[k] < b->lo[k] ? x->lo[k] : b->lo[k];
-        b->hi[k] = x->hi[k] > b->hi[k] ? x->hi[k] : b->hi[k];
-    }
-}
-
-/* Half the surface. */
-static float area(const wide_box *b)
-{
-    const float x = b->hi[0] - b->lo[0], y = b->hi[1] - b->lo[1], z = b->hi[2] - b->lo[2];
-    return x * y + y * z + z * x;
-}
-
-/* Twice the middle. */
-static inline float middle(const wide_box *b, int axis) { return b->lo[axis] + b->hi[axis]; }
-
-/* ---- building ---- */
-
-typedef struct builder {
-    wide_bvh *w;
-    const wide_box *box;
-    int32_t *order;
-} builder;
-
-/* The items order[from..to). */
-typedef struct part {
-    int from, to;
-    wide_box box, middles;
-} part;
-
-static part part_of(const builder *b, int from, int to)
-{
-    part p = {from, to, nothing(), nothing()};
-    for (int i = from; i < to; i++) {
-        const wide_box *x = &b->box[b->order[i]];
-        wide_box at;
-        for (int k = 0; k < 3; k++)
-            at.lo[k] = at.hi[k] = middle(x, k);
-        include(&p.box, x);
-        include(&p.middles, &at);
-    }
-    return p;
-}
-
-static int longest(const part *p)
-{
-    float l[3];
-    for (int k = 0; k < 3; k++)
-        l[k] = p->middles.hi[k] - p->middles.lo[k];
-    return l[0] >= l[1] && l[0] >= l[2] ? 0 : l[1] >= l[2] ? 1 : 2;
-}
-
-static inline int bin_of(const wide_box *x, int axis, float least, float scale)
-{
-    const int k = (int)((middle(x, axis) - least) * scale);
-    return k < BINS ? k : BINS - 1;
-}
-
-/* The number of low bins that go to one side. */
-static int cheapest(const int count[BINS], const wide_box bin[BINS])
-{
-    float right[BINS], best = HUGE_VALF;
-    wide_box all = nothing();
-    int number = 0, at = 1;
-    for (int k = BINS - 1; k > 0; k--) {
-        include(&all, &bin[k]);
-        number += count[k];
-        right[k] = number ? area(&all) * (float)number : HUGE_VALF;
-    }
-    all = nothing();
-    number = 0;
-    for (int k = 1; k < BINS; k++) {
-        include(&all, &bin[k - 1]);
-        number += count[k - 1];
-        const float cost = number ? area(&all) * (float)number + right[k] : HUGE_VALF;
-        if (cost < best) {
-            best = cost;
-            at = k;
-        }
-    }
-    return at;
-}
-
-/* Put the items of one side first. Returns where the other side begins. */
-static int divide(const builder *b, const part *p, int axis)
-{
-    const float least = p->middles.lo[axis], scale = BINS / (p->middles.hi[axis] - least);
-    int count[BINS] = {0}, at = p->from;
-    wide_box bin[BINS];
-    for (int k = 0; k < BINS; k++)
-        bin[k] = nothing();
-    for (int i = p->from; i < p->to; i++) {
-        const wide_box *x = &b->box[b->order[i]];
-        const int k = bin_of(x, axis, least, scale);
-        count[k]++;
-        include(&bin[k], x);
-    }
-    const int split = cheapest(count, bin);
-    for (int i = p->from; i < p->to; i++) {
-        const int32_t item = b->order[i];
-        if (bin_of(&b->box[item], axis, least, scale) < split) {
-            b->order[i] = b->order[at];
-            b->order[at++] = item;
-        }
-    }
-    return at;
-}
-
-static void halve(const builder *b, const part *p, int level, part *low, part *high)
-{
-    const int axis = longest(p), half = p->from + (p->to - p->from) / 2;
-    const float width = p->middles.hi[axis] - p->middles.lo[axis];
-    int at = half;
-    if (level < BY_AREA && BINS / width < HUGE_VALF)
-        at = divide(b, p, axis);
-    if (at == p->from || at == p->to)
-        at = half;
-    *low = part_of(b, p->from, at);
-    *high = part_of(b, at, p->to);
-}
-
-/* The part with the largest boxes' area times its number of items; -1: all have one item. */
-static int largest(const part *p, int n)
-{
-    float most = -1;
-    int at = -1;
-    for (int k = 0; k < n; k++) {
-        const int items = p[k].to - p[k].from;
-        const float x = area(&p[k].box) * (float)items;
-        if (items > 1 && (at < 0 || x > most)) {
-            most = x;
-            at = k;
-        }
-    }
-    return at;
-}
-
-/* By number, so that the largest has at most an eighth, and one more. */
-static int most_items(const part *p, int n)
-{
-    int at = 0;
-    for (int k = 1; k < n; k++)
-        at = p[k].to - p[k].from > p[at].to - p[at].from ? k : at;
-    return p[at].to - p[at].from > 1 ? at : -1;
-}
-
-static int32_t new_node(builder *b)
-{
-    int32_t k;
-#pragma omp atomic capture
-    k = b->w->nodes++;
-    return k;
-}
-
-/* The node of a part, with those below it. */
-static void build(builder *b, const part *all, int32_t to, int level)
-{
-    part p[WIDTH];
-    int n = 1, k;
-    p[0] = *all;
-    while (n < WIDTH && (k = level < BY_AREA ? largest(p, n) : most_items(p, n)) >= 0) {
-        const part whole = p[k];
-        memmove(&p[k + 2], &p[k + 1], sizeof *p * (size_t)(n - k - 1)); /* in order, for the items' order */
-        halve(b, &whole, level, &p[k], &p[k + 1]);
-        n++;
-    }
-    node *x = &b->w->node[to];
-    x->present = (1u << n) - 1;
-    for (int c = 0; c < WIDTH; c++) {
-        const part *of = &p[c < n ? c : 0];
-        const bool leaf = of->to - of->from == 1;
-        for (int a = 0; a < 3; a++) {
-            x->lo[a][c] = of->box.lo[a];
-            x->hi[a][c] = of->box.hi[a];
-        }
-        x->child[c] = leaf ? ~of->from : c < n ? new_node(b) : 0;
-    }
-    for (int c = 0; c < n; c++) {
-        const part of = p[c];
-        const int32_t its = x->child[c];
-        if (its < 0)
-            continue;
-#pragma omp task if (of.to - of.from >= FOR_TASKS)
-        build(b, &of, its, level + 1);
-    }
-#pragma omp taskwait
-}
-
-wide_bvh *wide_new(int n, const wide_box *box, int32_t *order, int threads)
-{
-    wide_bvh *w = calloc(1, sizeof *w);
-    if (!w)
-        return NULL;
-    w->n = n;
-    /* a node with a node below it has eight children, any other but the root two items or more: so at most 4/7 n + 1 */
-    w->node = malloc(sizeof *w->node * (4 * (size_t)n / 7 + 2));
-    if (!w->node) {
-        free(w);
-        return NULL;
-    }
-    for (int i = 0; i < n; i++)
-        order[i] = i;
-    builder b = {w, box, order};
-    const part all = part_of(&b, 0, n);
-    const int32_t root = new_node(&b);
-    threads = threads_of(threads);
-#pragma omp parallel num_threads(threads)
-#pragma omp single
-    build(&b, &all, root, 0);
-    node *less = realloc(w->node, sizeof *w->node * (size_t)w->nodes);
-    w->node = less ? less : w->node;
-    return w;
-}
-
-void wide_free(wide_bvh *w)
-{
-    if (w)
-        free(w->node);
-    free(w);
-}
-
-size_t wide_size(const wide_bvh *w) { return sizeof *w + sizeof *w->node * (size_t)w->nodes; }
 
 /* ---- a ray ---- */
 
@@ -290,12 +34,12 @@ static float over(double s)
 }
 
 /* An end in float, and a little later. */
-static float later(double end) { return end < (double)STEEP ? (float)(end * (1 + WIDER)) : STEEP; }
+static float later(double end) { return end < (double)STEEP ? (float)(end * (1 + WIDE_AIR)) : STEEP; }
 
 void wide_begin(wide_walk *k, vec3 r, vec3 s)
 {
     const double at[3] = {r.x, r.y, r.z}, way[3] = {s.x, s.y, s.z};
-    const double air = WIDER * (fabs(r.x) + fabs(r.y) + fabs(r.z));
+    const double air = WIDE_AIR * (fabs(r.x) + fabs(r.y) + fabs(r.z));
     for (int a = 0; a < 3; a++) {
         k->low[a] = (float)(at[a] + air);
         k->high[a] = (float)(at[a] - air);
@@ -307,12 +51,13 @@ void wide_begin(wide_walk *k, vec3 r, vec3 s)
 }
 
 /* Where the ray enters the node's eight boxes. Returns a bit for each that it passes up to `end`. */
-STAGE static unsigned wide_pass(const node *restrict x, const wide_walk *restrict k, float end, float *restrict enter)
+STAGE static unsigned wide_pass(const wide_node *restrict x, const wide_walk *restrict k, float end,
+                                float *restrict enter)
 {
     const float lx = k->low[0], ly = k->low[1], lz = k->low[2], hx = k->high[0], hy = k->high[1], hz = k->high[2];
     const float ox = k->over[0], oy = k->over[1], oz = k->over[2];
     unsigned met = 0;
-    for (int c = 0; c < WIDTH; c++) {
+    for (int c = 0; c < WIDE_WIDTH; c++) {
         const float ax = (x->lo[0][c] - lx) * ox, bx = (x->hi[0][c] - hx) * ox;
         const float ay = (x->lo[1][c] - ly) * oy, by = (x->hi[1][c] - hy) * oy;
         const float az = (x->lo[2][c] - lz) * oz, bz = (x->hi[2][c] - hz) * oz;
@@ -321,7 +66,7 @@ STAGE static unsigned wide_pass(const node *restrict x, const wide_walk *restric
         const float nz = az < bz ? az : bz, fz = az > bz ? az : bz;
         const float nxy = nx > ny ? nx : ny, fxy = fx < fy ? fx : fy;
         const float in = nxy > nz ? nxy : nz, out = fxy < fz ? fxy : fz;
-        const float from = in > 0 ? in : 0, to = out * (float)(1 + WIDER), last = to < end ? to : end;
+        const float from = in > 0 ? in : 0, to = out * (float)(1 + WIDE_AIR), last = to < end ? to : end;
         enter[c] = from;
         met |= from <= last ? 1u << c : 0;
     }
@@ -329,19 +74,13 @@ STAGE static unsigned wide_pass(const node *restrict x, const wide_walk *restric
 }
 
 /* Put the children that the ray passes on the stack, the nearest last. */
-static void push(const node *x, wide_walk *k, float end)
+static void push(const wide_node *x, wide_walk *k, float end)
 {
-    float enter[WIDTH];
+    float enter[WIDE_WIDTH];
     const int bottom = k->top;
     for (unsigned met = wide_pass(x, k, end, enter) & x->present; met; met &= met - 1) {
         const int c = lowest_bit(met);
-        int at = k->top++;
-        for (; at > bottom && k->enter[at - 1] < enter[c]; at--) {
-            k->enter[at] = k->enter[at - 1];
-            k->left[at] = k->left[at - 1];
-        }
-        k->enter[at] = enter[c];
-        k->left[at] = x->child[c];
+        place_in_order(k->enter, k->left, bottom, k->top++, enter[c], x->child[c]);
     }
 }
 
@@ -390,7 +129,7 @@ STAGE static void wide_beam_ends(wide_beam *restrict k, const float *restrict en
 {
     float none;
     for (int i = 0; i < WIDE_RAYS; i++)
-        k->end[i] = end[i] < STEEP ? end[i] * (float)(1 + WIDER) : STEEP;
+        k->end[i] = end[i] < STEEP ? end[i] * (float)(1 + WIDE_AIR) : STEEP;
     bounds16(k->end, &none, &k->far);
 }
 
@@ -401,7 +140,7 @@ STAGE static void wide_beam_rays_begin(wide_beam *restrict k, const float (*rest
     float none;
     for (int i = 0; i < WIDE_RAYS; i++) {
         const float x = at[0][i], y = at[1][i], z = at[2][i];
-        const float air = (float)WIDER * (fabsf(x) + fabsf(y) + fabsf(z));
+        const float air = (float)WIDE_AIR * (fabsf(x) + fabsf(y) + fabsf(z));
         k->low[0][i] = x + air, k->high[0][i] = x - air;
         k->low[1][i] = y + air, k->high[1][i] = y - air;
         k->low[2][i] = z + air, k->high[2][i] = z - air;
@@ -475,15 +214,15 @@ static inline void bound(float lo, float hi, const wide_beam *k, int a, float *f
 }
 
 /* Where the beam enters the node's eight boxes. Returns a bit for each that some ray may pass. */
-STAGE static unsigned wide_beam_pass(const node *restrict x, const wide_beam *restrict k, float *restrict enter)
+STAGE static unsigned wide_beam_pass(const wide_node *restrict x, const wide_beam *restrict k, float *restrict enter)
 {
     unsigned met = 0;
-    for (int c = 0; c < WIDTH; c++) {
+    for (int c = 0; c < WIDE_WIDTH; c++) {
         float from = 0, to = STEEP;
         bound(x->lo[0][c], x->hi[0][c], k, 0, &from, &to);
         bound(x->lo[1][c], x->hi[1][c], k, 1, &from, &to);
         bound(x->lo[2][c], x->hi[2][c], k, 2, &from, &to);
-        to *= (float)(1 + 2 * WIDER);
+        to *= (float)(1 + 2 * WIDE_AIR);
         const float last = to < k->far ? to : k->far;
         enter[c] = from;
         met |= from <= last ? 1u << c : 0;
@@ -492,7 +231,7 @@ STAGE static unsigned wide_beam_pass(const node *restrict x, const wide_beam *re
 }
 
 /* A bit for each ray of the beam that passes box c of the node. */
-STAGE static unsigned wide_beam_rays(const node *restrict x, int c, const wide_beam *restrict k)
+STAGE static unsigned wide_beam_rays(const wide_node *restrict x, int c, const wide_beam *restrict k)
 {
     const float lx = x->lo[0][c], ly = x->lo[1][c], lz = x->lo[2][c];
     const float hx = x->hi[0][c], hy = x->hi[1][c], hz = x->hi[2][c];
@@ -507,7 +246,7 @@ STAGE static unsigned wide_beam_rays(const node *restrict x, int c, const wide_b
         const float nz = az < bz ? az : bz, fz = az > bz ? az : bz;
         const float nxy = nx > ny ? nx : ny, fxy = fx < fy ? fx : fy;
         const float in = nxy > nz ? nxy : nz, out = fxy < fz ? fxy : fz;
-        const float from = in > 0 ? in : 0, to = out * (float)(1 + WIDER), last = to < k->end[i] ? to : k->end[i];
+        const float from = in > 0 ? in : 0, to = out * (float)(1 + WIDE_AIR), last = to < k->end[i] ? to : k->end[i];
         met |= from <= last ? 1u << i : 0;
     }
     return met;
@@ -516,18 +255,13 @@ STAGE static unsigned wide_beam_rays(const node *restrict x, int c, const wide_b
 /* As for one ray. */
 static void push_beam(const wide_bvh *w, int32_t at_node, wide_beam *k)
 {
-    const node *x = &w->node[at_node];
-    float enter[WIDTH];
+    const wide_node *x = &w->node[at_node];
+    float enter[WIDE_WIDTH];
     const int bottom = k->top;
     for (unsigned met = wide_beam_pass(x, k, enter) & x->present; met; met &= met - 1) {
         const int c = lowest_bit(met);
-        int at = k->top++;
-        for (; at > bottom && k->enter[at - 1] < enter[c]; at--) {
-            k->enter[at] = k->enter[at - 1];
-            k->left[at] = k->left[at - 1];
-        }
-        k->enter[at] = enter[c];
-        k->left[at] = x->child[c] < 0 ? ~(WIDTH * at_node + c) : x->child[c];
+        place_in_order(k->enter, k->left, bottom, k->top++, enter[c],
+                       x->child[c] < 0 ? ~(WIDE_WIDTH * at_node + c) : x->child[c]);
     }
 }
 
@@ -544,10 +278,10 @@ int32_t wide_beam_next(const wide_bvh *w, wide_beam *k, unsigned *rays)
             push_beam(w, x, k);
             continue;
         }
-        const node *of = &w->node[~x / WIDTH];
-        *rays = wide_beam_rays(of, ~x % WIDTH, k);
+        const wide_node *of = &w->node[~x / WIDE_WIDTH];
+        *rays = wide_beam_rays(of, ~x % WIDE_WIDTH, k);
         if (*rays)
-            return ~of->child[~x % WIDTH];
+            return ~of->child[~x % WIDE_WIDTH];
     }
     return -1;
 }

@@ -17,28 +17,31 @@ STAGE static void crowd_mirror_u(const crowd *f, int n, const real *u, real *to)
 
 /* ---- the surface ---- */
 
-static void crowd_locate(const surface *base, int n, const rays *x, const real *t, int32_t *part, real *u, real *w)
+/* surface_ops.locate or foot. */
+typedef void find_uw(const surface *f, int n, const rays *x, const real *t, int32_t *part, real *u, real *w);
+
+static void find_by(find_uw *of_original, const crowd *f, int n, const rays *x, const real *t, int32_t *part, real *u,
+                    real *w)
 {
-    const crowd *f = (const crowd *)base;
     rays y;
     int32_t at[LANES], its[LANES];
     crowd_split(f, n, part, at, its);
     crowd_rays_back(f, n, at, NULL, x, &y);
-    f->from->ops->locate(f->from, n, &y, t, its, u, w);
+    of_original(f->from, n, &y, t, its, u, w);
     crowd_mirror_u(f, n, u, u);
     crowd_join(f, n, at, its, part);
+}
+
+static void crowd_locate(const surface *base, int n, const rays *x, const real *t, int32_t *part, real *u, real *w)
+{
+    const crowd *f = (const crowd *)base;
+    find_by(f->from->ops->locate, f, n, x, t, part, u, w);
 }
 
 static void crowd_foot(const surface *base, int n, const rays *x, const real *t, int32_t *part, real *u, real *w)
 {
     const crowd *f = (const crowd *)base;
-    rays y;
-    int32_t at[LANES], its[LANES];
-    crowd_split(f, n, part, at, its);
-    crowd_rays_back(f, n, at, NULL, x, &y);
-    f->from->ops->foot(f->from, n, &y, t, its, u, w);
-    crowd_mirror_u(f, n, u, u);
-    crowd_join(f, n, at, its, part);
+    find_by(f->from->ops->foot, f, n, x, t, part, u, w);
 }
 
 static void crowd_eval(const surface *base, int n, const int32_t *part, const real *u, const real *w, int order,

@@ -13,6 +13,13 @@
 
 /* ---- rays as axes ---- */
 
+/* Of three coordinates that with the index z. */
+static inline double along(double z, double first, double second, double third)
+{
+    const double later = z == 1 ? second : third;
+    return z == 0 ? first : later;
+}
+
 STAGE static void shear_rays(const bvh_space *restrict space, mesh_packet *restrict k)
 {
     const vec3 C = space->centre;
@@ -22,24 +29,8 @@ STAGE static void shear_rays(const bvh_space *restrict space, mesh_packet *restr
         const double o = k->r[0][i] - C.x, p = k->r[1][i] - C.y, q = k->r[2][i] - C.z;
         const double A = fabs(a), B = fabs(b), D = fabs(c);
         const double z = A > B ? (A > D ? 0 : 2) : (B > D ? 1 : 2);
-        const double Sz = z == 0   ? a
-                          : z == 1 ? b
-                                   : c,
-                     Sx = z == 0   ? b
-                          : z == 1 ? c
-                                   : a,
-                     Sy = z == 0   ? c
-                          : z == 1 ? a
-                                   : b;
-        const double Rz = z == 0   ? o
-                          : z == 1 ? p
-                                   : q,
-                     Rx = z == 0   ? p
-                          : z == 1 ? q
-                                   : o,
-                     Ry = z == 0   ? q
-                          : z == 1 ? o
-                                   : p;
+        const double Sz = along(z, a, b, c), Sx = along(z, b, c, a), Sy = along(z, c, a, b);
+        const double Rz = along(z, o, p, q), Rx = along(z, p, q, o), Ry = along(z, q, o, p);
         const double sz = 1 / Sz, sx = Sx * sz, sy = Sy * sz;
         k->sx[i] = sx;
         k->sy[i] = sy;
