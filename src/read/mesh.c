@@ -4,6 +4,8 @@
 #include "mesh/mesh.h"
 
 #include <stdlib.h>
+#include <string.h>
+#include <strings.h>
 
 static bool is_large(const mesh_data *d)
 {
@@ -19,36 +21,60 @@ static bool is_large(const mesh_data *d)
     return size >= SMALL;
 }
 
-surface *reader_mesh(reader *r, node *at, shape_spec *spec)
+/* The triangles, checked. False with an error. */
+static bool read_triangles(reader *r, node *file, const source *from, mesh_normals normals, double crease, mesh_data *d)
+{
+    char why[MESH_WHY];
+    bool good = from->array
+                    ? mesh_array_read(&from->array->mesh, d, why)
+                    : mesh_file_read(from->path, r->from->model_reader, r->from->progress, &r->s->made_from, d, why);
+    if (good)
+        progress_show(r->from->progress, "checking", 1);
+    good = good && mesh_clean(d, normals, crease, BIG, r->from->threads, why);
+    if (!good)
+        return yaml_error(r->y, file, "'%s' can't be used: %s", from->name, why);
+    return is_large(d) ||
+           yaml_error(r->y, file, "'%s' can't be used: it is smaller than %g, expected some size", from->name, SMALL);
+}
+
+/* A glTF may have its numbers in other files, which may have changed. */
+static bool is_alone(const char *path)
+{
+    const char *dot = path ? strrchr(path, '.') : NULL;
+    return !dot || strcasecmp(dot, ".gltf") != 0;
+}
+
+static surface *new_mesh(reader *r, node *file, const source *from, mesh_normals normals, double crease)
 {
     mesh_data d = {0};
+    char *key = NULL;
+    if (*from->id && is_alone(from->path))
+        key = reader_key(r, "mesh %s %d %.17g %s", from->id, normals, crease, from->name);
+    surface *f = reader_found_surface(r, key);
+    if (!f && read_triangles(r, file, from, normals, crease, &d))
+        f = reader_keep_surface(r, key, reader_made(r, mesh_new(&d, r->from->threads, r->from->progress)));
+    mesh_data_free(&d);
+    free(key);
+    return f;
+}
+
+surface *reader_mesh(reader *r, node *at, shape_spec *spec)
+{
     double crease = 40;
-    char why[MESH_WHY];
+    source from = {.name = NULL};
     if (!yaml_map(r->y, at, "mesh", "file normals crease"))
         return NULL;
     node *file = yaml_need(r->y, at, "file", "mesh");
-    const char *name = file ? yaml_text(r->y, file, "the file of a model") : NULL;
     const int normals = reader_word(r, at, "normals", "file smooth flat", "file, smooth or flat");
-    if (!reader_number(r, at, "crease", 0, false, 180, "an angle of 0 to 180 degrees", &crease) || normals < 0 || !name)
-        return NULL;
-    char *path = reader_beside(r, name);
-    bool good = path && mesh_file_read(path, r->from->model_reader, r->from->progress, &r->s->made_from, &d, why);
-    if (good)
-        progress_show(r->from->progress, "checking", 1);
-    good = good && mesh_clean(&d, (mesh_normals)normals, crease, BIG, r->from->threads, why);
-    if (path && !good)
-        yaml_error(r->y, file, "'%s' can't be used: %s", name, why);
-    else if (path && !is_large(&d))
-        good = yaml_error(r->y, file, "'%s' can't be used: it is smaller than %g, expected some size", name, SMALL);
-    free(path);
-    if (!good) {
-        mesh_data_free(&d);
-        return NULL;
-    }
-    surface *f = reader_made(r, mesh_new(&d, r->from->threads, r->from->progress));
-    if (!f)
-        return NULL;
-    *spec = (shape_spec){
-        .kind = SHAPE_MESH, .file = reader_copy(r, name), .triangles = ((mesh *)f)->d.n, .found = ((mesh *)f)->d.notes};
+    const bool named = file && reader_source(r, file, true, "the file of a model", &from);
+    const bool good =
+        reader_number(r, at, "crease", 0, false, 180, "an angle of 0 to 180 degrees", &crease) && normals >= 0;
+    surface *f = named && good ? new_mesh(r, file, &from, (mesh_normals)normals, crease) : NULL;
+    if (f)
+        *spec = (shape_spec){.kind = SHAPE_MESH,
+                             .file = reader_copy(r, from.name),
+                             .triangles = ((mesh *)f)->d.n,
+                             .found = ((mesh *)f)->d.notes};
+    source_free(&from);
     return f;
 }
