@@ -250,9 +250,10 @@ python: $(MODULES) $(BUILD)/kage-import FORCE
 	@find $(PACKAGE) -type l -delete
 	@ln -s $(abspath $(wildcard python/kage/*.py python/kage/*.pyi python/kage/py.typed) $(BUILD)/kage-import) $(PACKAGE)
 
-$(BUILD)/python/_kage.c: python/build_ext.py include/kage.h $(wildcard python/methods.h)
+# With it python/kage/structs.py, which is under version control as others read it, too.
+$(BUILD)/python/_kage.c: python/build_ext.py python/structs.py include/kage.h $(wildcard python/methods.h)
 	@echo '  PY  $@'
-	$(Q)$(PYTHON) python/build_ext.py $(@D) >/dev/null
+	$(Q)$(PYTHON) python/structs.py && $(PYTHON) python/build_ext.py $(@D) >/dev/null
 
 $(BUILD)/python/_methods.c: $(BUILD)/python/_kage.c
 

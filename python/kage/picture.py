@@ -13,9 +13,11 @@ from numpy.typing import NDArray
 
 from kage._kage import ffi, lib
 from kage.calls import Call
+from kage.convert import converted
 from kage.options import WriteOptions, takes
 from kage.progress import watched
 from kage.requests import check_names, write_struct
+from kage.structs import Stats
 from kage.text import bytes_of, text_of
 
 
@@ -49,6 +51,11 @@ class Picture:
         crop = ffi.new("int[4]")
         lib.kage_film_crop(self._film, crop)
         return (crop[0], crop[1], crop[2], crop[3])
+
+    @property
+    def stats(self) -> Stats:
+        """What rendering counted, and its time."""
+        return converted(Stats, lib.kage_film_get_stats(self._film))
 
     @property
     def rgb(self) -> NDArray[np.float32]:

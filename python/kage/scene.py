@@ -5,16 +5,19 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, Unpack
+from typing import Any, Literal, Unpack
 
 from kage._kage import ffi, lib
 from kage.calls import Call
+from kage.convert import converted
 from kage.options import Progress, RenderOptions, takes
 from kage.picture import Picture
 from kage.progress import watched
-from kage.requests import Struct, check_names, render_struct
+from kage.requests import Struct, check_names, one_of, render_struct, whole
 from kage.source import Source, Text, changes_of
-from kage.text import text_of
+from kage.structs import PovrayReport, Probe, SceneInfo, Survey
+from kage.text import bytes_of, text_of
+from kage.version import __version__
 
 #: The program that reads models, beside this file; the environment may name another.
 READER = Path(__file__).with_name("kage-import")
@@ -54,6 +57,49 @@ class Scene:
             made = render_struct(options, call)
             call.check(lib.kage_render(handle, made.c, film, call.errors))
         return Picture(ffi.gc(film[0], lib.kage_film_free), self.name)
+
+    @property
+    def info(self) -> SceneInfo:
+        """What is in the scene: its settings, lights and objects."""
+        return converted(SceneInfo, lib.kage_scene_get_info(self._handle))
+
+    def probe(self, x: int, y: int) -> Probe:
+        """Every value that is computed for the ray through the middle of pixel x, y, by each method."""
+        handle, call = self._handle, Call()
+        probe = ffi.new("kage_probe **")
+        limit = lib.KAGE_MAX_SIDE
+        place = (whole("x", x, 0, limit), whole("y", y, 0, limit))
+        call.check(lib.kage_scene_probe(handle, *place, probe, call.errors))
+        lights = lib.kage_scene_get_info(handle).light_count
+        return converted(Probe, ffi.gc(probe[0], lib.kage_probe_free), {"visible": lights})
+
+    def survey(self) -> Survey:
+        """How steep the bumps are where the camera sees them, and what to be warned of."""
+        handle, call = self._handle, Call()
+        survey = ffi.new("kage_survey **")
+        call.check(lib.kage_scene_survey(handle, survey, call.errors))
+        objects = lib.kage_scene_get_info(handle).object_count
+        return converted(Survey, ffi.gc(survey[0], lib.kage_survey_free), {"objects": objects})
+
+    def povray(
+        self,
+        path: str | os.PathLike[str],
+        *,
+        surface: Literal["smooth", "displaced"] | None = None,
+        cast: bool = True,
+    ) -> PovrayReport:
+        """Write the scene for POV-Ray 3.7 (docs/povray.md).
+
+        surface: as for `render`. cast: whether objects without a bump cast shadows.
+        """
+        handle, call = self._handle, Call()
+        made = Struct("kage_povray_options")
+        made.text("command", f"kage {__version__} in Python")
+        made.c.no_cast = not cast
+        made.c.displaced = one_of("surface", surface, no="smooth", yes="displaced")
+        report = ffi.new("kage_povray_report *")
+        call.check(lib.kage_scene_write_povray(handle, bytes_of(path), made.c, report, call.errors))
+        return converted(PovrayReport, report)
 
     def _pixels(self, options: RenderOptions) -> int:
         """For the progress; wrong options are found later."""
