@@ -13,9 +13,9 @@ from kage.methods import Bump, Like, Real
 class HeightMap:
     """P(u,w) = scale (sample - zero), from a 2-D array: columns go along u, rows along w, the first at `offset`.
 
-    size: of the map in u and w. wrap: "repeat" or "clamp". lie: where the samples are, in the middles of "cells", like
-    pixels, or at the "corners" of a grid, the outermost at the map's edges; docs/scene.md has more about it. Integers are
-    taken as they are: divide the samples of a PNG by 255 or 65535.
+    size: of the map in u and w. wrap: "repeat" or "clamp". lie: where the samples are, in the middles of "cells",
+    like pixels, or at the "corners" of a grid, the outermost at the map's edges; docs/scene.md has more about it.
+    Integers are taken as they are: divide the samples of a PNG by 255 or 65535.
 
     A HeightMap is a Height of kage.methods: called with u and w it gives P. `bump` gives the partials, too: central
     differences at the samples; between samples each is interpolated bilinearly.
