@@ -75,6 +75,12 @@ struct kage_film {
 bool film_names_plane(const char *word, size_t n, const char *plane);
 bool film_has_layer(const film *f, const char *word, size_t n);
 
+/* Two of the texts in a picture's file, and the value of the second. */
+#define PICTURE_SOFTWARE "Software"
+#define PICTURE_CROP "kage:crop"
+enum { PICTURE_CROP_SIZE = 64 };
+void picture_crop(window w, char text[PICTURE_CROP_SIZE]);
+
 /* A picture's file that is being written, and the planes of films that go into it. */
 typedef struct picture {
     image_writer *writer;

@@ -15,20 +15,25 @@
 enum { TEXTS = 7 };
 typedef struct picture_texts {
     image_text text[TEXTS];
-    char crop[64];
+    char crop[PICTURE_CROP_SIZE];
 } picture_texts;
+
+void picture_crop(window w, char text[PICTURE_CROP_SIZE])
+{
+    snprintf(text, PICTURE_CROP_SIZE, "%d,%d,%d,%d", w.x0, w.y0, w.x1, w.y1);
+}
 
 /* What the picture is made from, except for maps, so that it can be rendered again. No clock, path or number of
  * threads: the same picture has the same bytes. */
 static void texts_of(const kage_film *f, window w, picture_texts *t)
 {
-    snprintf(t->crop, sizeof t->crop, "%d,%d,%d,%d", w.x0, w.y0, w.x1, w.y1);
+    picture_crop(w, t->crop);
     const image_text text[TEXTS] = {
-        {"Software", SOFTWARE " " KAGE_VERSION " " REAL_NAME},
+        {PICTURE_SOFTWARE, SOFTWARE " " KAGE_VERSION " " REAL_NAME},
         {"kage:file", f->file},
         {"kage:scene", f->source},
         {"kage:set", f->sets},
-        {"kage:crop", t->crop},
+        {PICTURE_CROP, t->crop},
         {"kage:shadow", f->method},
         {"kage:guard", f->guard ? "yes" : "no"},
     };
