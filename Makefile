@@ -248,7 +248,8 @@ PY_LINK   = $(CC) $(LDFLAGS) -shared -Wl,--exclude-libs,ALL
 
 python: $(MODULES) $(BUILD)/kage-import FORCE
 	@find $(PACKAGE) -type l -delete
-	@ln -s $(abspath $(wildcard python/kage/*.py python/kage/*.pyi python/kage/py.typed) $(BUILD)/kage-import) $(PACKAGE)
+	@ln -s $(abspath $(wildcard python/kage/*.py python/kage/*.pyi python/kage/py.typed) $(BUILD)/kage-import \
+	    $(patsubst %/__init__.py,%,$(wildcard python/kage/*/__init__.py))) $(PACKAGE)
 
 # With it python/kage/structs.py, which is under version control as others read it, too.
 $(BUILD)/python/_kage.c: python/build_ext.py python/structs.py include/kage.h $(wildcard python/methods.h)

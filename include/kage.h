@@ -294,6 +294,16 @@ KAGE_API kage_status kage_film_write(const kage_film *film, const char *path, co
 KAGE_API kage_status kage_render_file(kage_scene *scene, const kage_render_options *render, const char *path,
                                       const kage_write_options *write, kage_film **film, kage_errors **errors);
 
+/* Join bands of a picture to one file: EXR that kage_film_write or kage_render_file has written with a crop, in any
+ * order. The bytes are those that kage_render_file would have written for all of their rows. Chunks are copied as they
+ * are, so memory is that of 16 rows. Of the options only `progress` and `user` count.
+ *
+ * Bands that do not belong together are KAGE_BAD_INPUT: with a gap, or rows that are in two of them; with other
+ * columns, layers, options, scenes or versions; with a number of rows, above the last band, that is no multiple of 16.
+ */
+KAGE_API kage_status kage_file_join(const char *const *paths, int count, const char *path,
+                                    const kage_write_options *options, kage_errors **errors);
+
 /* Whether a picture could be written at `path` now: its folder is there and may be written, and so may an older file.
  * Nothing is changed. */
 KAGE_API kage_status kage_file_probe(const char *path, kage_errors **errors);

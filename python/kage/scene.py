@@ -125,6 +125,7 @@ def load(
     *,
     sets: Mapping[str, Any] | None = None,
     folder: str | os.PathLike[str] | None = None,
+    name: str | None = None,
     threads: int | None = None,
     progress: Progress = None,
 ) -> Scene:
@@ -133,9 +134,10 @@ def load(
     A str is a text if it has a line end or begins with "{", otherwise a path. A dict may hold numpy arrays: height
     maps, images and meshes, see docs/python.md.
     sets: changes, as {"objects.ground.bump.scale": 0.1}. folder: where relative names of files begin, for a text or a
-    dict (default: the current folder). All errors of the scene are raised at once, as an InputError.
+    dict (default: the current folder). name: what errors and pictures call a text or a dict (default
+    "scene"). All errors of the scene are raised at once, as an InputError.
     """
-    found = Text(source, folder)
+    found = Text(source, folder, name)
     scene = ffi.new("kage_scene **")
     with watched(progress, found.name) as call:
         options = load_struct(sets or {}, call, threads)

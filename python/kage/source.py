@@ -20,10 +20,10 @@ Source = str | os.PathLike[str] | Mapping[str, Any]
 class Text:
     """A scene's text, or its file."""
 
-    def __init__(self, source: Source, folder: str | os.PathLike[str] | None) -> None:
+    def __init__(self, source: Source, folder: str | os.PathLike[str] | None, name: str | None = None) -> None:
         self.path: str | os.PathLike[str] | None = None
         self.text = ""
-        self.name = "scene"
+        self.name = name or "scene"
         self.folder = folder
         if isinstance(source, Mapping):
             self.text = json.dumps(source, default=plain, indent=1, allow_nan=False)
@@ -38,7 +38,8 @@ class Text:
         if self.path is not None:
             return int(lib.kage_scene_load(bytes_of(self.path), options, scene, errors))
         text = self.text.encode()
-        return int(lib.kage_scene_parse(text, len(text), ffi.NULL, bytes_of(self.folder), options, scene, errors))
+        name, folder = bytes_of(self.name), bytes_of(self.folder)
+        return int(lib.kage_scene_parse(text, len(text), name, folder, options, scene, errors))
 
 
 def changes_of(sets: Mapping[str, Any]) -> list[bytes]:
