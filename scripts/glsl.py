@@ -23,7 +23,7 @@ from __future__ import annotations
 import argparse
 import re
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -518,12 +518,14 @@ class Writer:
 
         return re.sub(r"(^ \* {5}.*\n)+", example, text, flags=re.MULTILINE)
 
-    def example(self, text: str) -> list[str]:
+    def example(self, text: str, given: str = GIVEN, functions: Mapping[str, tuple[str, list[str]]] | None = None,
+                ) -> list[str]:
+        """Statements in GLSL; `given`: what is declared before them, beside the header; `functions`: GLSL's own."""
         code, comments = comments_of(text)
         types = TYPEDEFS + "".join(f"typedef int {name};" for name in self.known.structs)
-        given = f"{types}{GIVEN}".replace("\n", " ")
-        tree = CParser().parse(f"{given} void example(void) {{{code}}}", "an example").ext
-        known = Known(dict(self.known.variables), self.known.structs, dict(self.known.functions))
+        declared = f"{types}{given}".replace("\n", " ")
+        tree = CParser().parse(f"{declared} void example(void) {{{code}}}", "an example").ext
+        known = Known({}, self.known.structs, {**self.known.functions, **(functions or {})})
         for node in tree[:-1]:
             if isinstance(node, c_ast.Decl) and isinstance(node.type, c_ast.FuncDecl):
                 known.functions[node.name] = (type_of(node.type), [type_of(p) for p in node.type.args.params])
