@@ -376,7 +376,7 @@ install-files: $(BUILD)/kage.pc
 	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/include $(DESTDIR)$(LIBDIR)/pkgconfig $(DESTDIR)$(LIBEXEC)
 	install -m 755 $(BUILD)/kage $(DESTDIR)$(PREFIX)/bin/kage
 	install -m 755 $(BUILD)/kage-import $(DESTDIR)$(LIBEXEC)/kage-import
-	install -m 644 include/kage.h include/bumpshadow.h $(DESTDIR)$(PREFIX)/include
+	install -m 644 include/kage.h include/bumpshadow.h include/bumpshadow.glsl $(DESTDIR)$(PREFIX)/include
 	install -m 644 $(BUILD)/libkage.a $(DESTDIR)$(LIBDIR)/libkage.a
 	install -m 755 $(BUILD)/$(SONAME) $(DESTDIR)$(LIBDIR)/$(SONAME)
 	ln -sf $(SONAME) $(DESTDIR)$(LIBDIR)/libkage.so
@@ -384,7 +384,8 @@ install-files: $(BUILD)/kage.pc
 
 uninstall:
 	rm -f $(DESTDIR)$(PREFIX)/bin/kage $(DESTDIR)$(LIBEXEC)/kage-import \
-	    $(DESTDIR)$(PREFIX)/include/kage.h $(DESTDIR)$(PREFIX)/include/bumpshadow.h \
+	    $(DESTDIR)$(PREFIX)/include/kage.h \
+	    $(DESTDIR)$(PREFIX)/include/bumpshadow.h $(DESTDIR)$(PREFIX)/include/bumpshadow.glsl \
 	    $(DESTDIR)$(LIBDIR)/libkage.a $(DESTDIR)$(LIBDIR)/$(SONAME) $(DESTDIR)$(LIBDIR)/libkage.so \
 	    $(DESTDIR)$(LIBDIR)/pkgconfig/kage.pc
 	rmdir $(DESTDIR)$(LIBEXEC) 2>/dev/null || true
