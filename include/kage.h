@@ -158,7 +158,14 @@ typedef struct kage_object_info {
     double height[2];             /* bounds of the bump's height P, in scene units */
     int bounded;                  /* P has finite bounds */
     int copies;                   /* how many copies of copy_of it is, from a list; 0: it is one object */
+    const char *bump_of;          /* the object under whose key `bump` the bump is, often itself; NULL: no bump */
+    double bump_scale;            /* the bump's `scale` */
 } kage_object_info;
+
+typedef struct kage_camera_info {
+    double from[3], at[3], up[3]; /* as the scene says */
+    double fov, width;            /* fov in degrees, 0: orthographic; width in scene units, 0: a pinhole */
+} kage_camera_info;
 
 typedef struct kage_scene_info {
     const char *path;    /* or the name of a text in memory */
@@ -173,6 +180,7 @@ typedef struct kage_scene_info {
     const kage_object_info *objects;
     const char *bump_shadow; /* render.bump_shadow */
     int shifted;             /* render.shade: shifted */
+    kage_camera_info camera;
 } kage_scene_info;
 
 /* What is in a scene. */
