@@ -163,8 +163,8 @@ typedef struct kage_object_info {
 } kage_object_info;
 
 typedef struct kage_camera_info {
-    double from[3], at[3], up[3]; /* as the scene says */
-    double fov, width;            /* fov in degrees, 0: orthographic; width in scene units, 0: a pinhole */
+    double eye[3], at[3], up[3]; /* as the scene says; eye: its `from` */
+    double fov, width;           /* fov in degrees, 0: orthographic; width in scene units, 0: a pinhole */
 } kage_camera_info;
 
 typedef struct kage_scene_info {
