@@ -263,12 +263,12 @@ $(PACKAGE)/_kage.abi3.so: $(BUILD)/python/_kage.c python/progress.h $(BUILD)/lib
 	@mkdir -p $(@D)
 	$(Q)$(PY_LINK) $(PY_CFLAGS) -o $@ $< $(BUILD)/libkage.a $(LIBS)
 
-$(BUILD)/python/methods.o: python/methods.c $(BUILD)/flags
+$(BUILD)/python/%.o: python/%.c python/methods.c python/methods.h include/bumpshadow.h $(BUILD)/flags
 	@echo '  CC  $@'
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(CFLAGS) -Ipython -c -o $@ $<
 
-$(PACKAGE)/_methods.abi3.so: $(BUILD)/python/_methods.c $(BUILD)/python/methods.o
+$(PACKAGE)/_methods.abi3.so: $(BUILD)/python/_methods.c $(BUILD)/python/methods.o $(BUILD)/python/methods_double.o
 	@echo '  LD  $@'
 	@mkdir -p $(@D)
 	$(Q)$(PY_LINK) $(PY_CFLAGS) -o $@ $^ -lm

@@ -128,11 +128,11 @@ def shade(image: Picture, normals: np.ndarray, lit: np.ndarray) -> np.ndarray:
     return out
 
 
-def pictures(width: int, height: int, method: str, fineness: int) -> dict[str, tuple[np.ndarray, np.ndarray, np.ndarray]]:
-    """Linear picture, the ground's pixels, and which of these see the lamp: without the shift, with it, and in truth."""
+def pictures(size: tuple[int, int], method: str, fineness: int) -> dict[str, tuple[np.ndarray, ...]]:
+    """The linear picture, the ground's pixels and which of these see the lamp: without the shift, with it, in truth."""
     heights = height_map()
-    smooth = trace({"cube": cube(), "ground": ground()}, width, height)
-    rough = trace({"cube": cube(), "ground": displaced(heights, fineness)}, width, height)
+    smooth = trace({"cube": cube(), "ground": ground()}, *size)
+    rough = trace({"cube": cube(), "ground": displaced(heights, fineness)}, *size)
     made = {}
     for name, image, how in (("none", smooth, "none"), (method, smooth, method), ("displaced", rough, "")):
         found = corrected(image, heights, how) if how else None
@@ -162,8 +162,9 @@ def main() -> None:
     options.add_argument("-o", default="mitsuba_shadows.png", help="the PNG to write")
     options.add_argument("--method", default="2", help="none, 0, 1, 2, 2+, iter:K or march:N")
     options.add_argument("--size", type=int, nargs=2, default=(480, 360), metavar=("WIDTH", "HEIGHT"))
+    options.add_argument("--mesh", type=int, default=1024, metavar="N", help="the displaced mesh has N x N places")
     given = options.parse_args()
-    made = pictures(*given.size, given.method, 1024)
+    made = pictures(given.size, given.method, given.mesh)
     truth = made["displaced"][2]
     panels = {}
     for name, (linear, ground_seen, lit) in made.items():

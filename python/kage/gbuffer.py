@@ -162,7 +162,7 @@ def correct(a: Layers, heights: Heights | Bump, method: str = "1", *, guard: boo
     is that at the smooth hit, or at the place under the origin, "shifted".
     """
     word, _, number = method.partition(":")
-    if word not in _ORDERS or bool(number) != (word in ("iter", "march")) or (number and not number.isdigit()):
+    if word not in ORDERS or bool(number) != (word in ("iter", "march")) or (number and not number.isdigit()):
         raise ValueError(f"method {method!r}: expected none, 0, 1, 2, 2+, iter:K or march:N")
     if shade not in ("smooth", "shifted"):
         raise ValueError(f'shade {shade!r}: expected "smooth" or "shifted"')
@@ -183,7 +183,7 @@ def correct(a: Layers, heights: Heights | Bump, method: str = "1", *, guard: boo
         elif word == "march" and around:
             found = methods.march(v, around, u0, w0, slab, int(number), curvature=bend)
         else:
-            found = methods.shift(max(_ORDERS[word], 0), v, p, slab, curvature=bend, guard=guard)
+            found = methods.shift(max(ORDERS[word], 0), v, p, slab, curvature=bend, guard=guard)
         moved = good & np.isfinite(found.tau) & (word != "none")
         tau = np.maximum(np.where(moved, found.tau, 0), -1)  # not before the eye
         order = np.where(moved, found.order, np.int32(-1))
@@ -196,10 +196,11 @@ def correct(a: Layers, heights: Heights | Bump, method: str = "1", *, guard: boo
         turned = methods.perturbed_normal(methods.normal(*partials_there), *partials_there, p.Pu, p.Pw)
     return Corrected(origin=a.position + a.s * tau[..., None],
                      normal=np.where(good[..., None], _unit(turned), _unit(n)), tau=tau, order=order,
-                     fell_back=a.there & (order != _ORDERS[word]), u=u * a.sign, w=w)
+                     fell_back=a.there & (order != ORDERS[word]), u=u * a.sign, w=w)
 
 
-_ORDERS = {"none": -1, "0": 0, "1": 1, "2": 2, "2+": 3, "iter": 4, "march": 5}
+#: What kage's layer `order` has for a method.
+ORDERS = {"none": -1, "0": 0, "1": 1, "2": 2, "2+": 3, "iter": 4, "march": 5}
 
 
 class _Turned:
