@@ -554,10 +554,10 @@ def aligned(lines: Sequence[str]) -> list[str]:
     return done
 
 
-def main() -> int:
+def main(words: Sequence[str] | None = None) -> int:
     parser = argparse.ArgumentParser(prog="python -m scripts.glsl", description=(__doc__ or "").split("\n", 1)[0])
     parser.add_argument("--check", action="store_true", help="write nothing; exit status 1 where the file is stale")
-    check = parser.parse_args().check
+    check = parser.parse_args(words).check
     try:
         text = Writer(SOURCE.read_text(encoding="utf-8")).write()
     except CannotSayError as error:
@@ -566,7 +566,7 @@ def main() -> int:
     if not check:
         TARGET.write_text(text, encoding="utf-8")
     elif not TARGET.exists() or TARGET.read_text(encoding="utf-8") != text:
-        sys.stderr.write(f"{TARGET.relative_to(TOP)} is stale: scripts/venv python -m scripts.glsl\n")
+        sys.stderr.write(f"{TARGET.name} is stale: scripts/venv python -m scripts.glsl\n")
         return 1
     return 0
 
