@@ -53,7 +53,7 @@ SANITIZER = -fsanitize=$(SANITIZE) -fno-sanitize-recover=all -fno-omit-frame-poi
 endif
 
 # The libraries' headers as system headers: their warnings are not ours.
-PKG_CFLAGS := $(patsubst -I%,-isystem %,$(shell pkg-config --cflags $(PKGS) assimp 2>/dev/null))
+PKG_CFLAGS := $(patsubst -I%,-isystem %,$(shell pkg-config --cflags $(PKGS) assimp libjpeg 2>/dev/null))
 # Embree 4 or 3, whichever has its headers here: it need not have a pkg-config file.
 EMBREE     := $(firstword $(foreach v,4 3,$(shell printf '\043include <embree$(v)/rtcore.h>\n' | \
                   $(CC) -fsyntax-only -x c - 2>/dev/null && echo $(v))))
@@ -66,11 +66,11 @@ override CFLAGS  += -Iinclude -Isrc $(STANDARD) $(OPTIMISE) $(VISIBILITY) $(THRE
                     $(SANITIZER) $(PKG_CFLAGS) -MMD -MP
 override LDFLAGS += $(THREADS) $(SANITIZER)
 LIBS       = $(PKG_LIBS) -lembree$(or $(EMBREE),3) -ldl -lm
-IMPORT_LIBS := $(shell pkg-config --libs assimp 2>/dev/null) -lm
+IMPORT_LIBS := $(shell pkg-config --libs assimp libpng libjpeg 2>/dev/null) -lm
 
 SOURCES   = $(patsubst src/%.c,%,$(wildcard src/*/*.c))
 PROGRAM   = $(filter cli/%,$(SOURCES))
-IMPORT    = $(filter import/%,$(SOURCES)) # kage-import, which alone links assimp
+IMPORT    = $(filter import/%,$(SOURCES)) # kage-import, which alone links assimp and libjpeg
 LIBRARY   = $(filter-out cli/% import/%,$(SOURCES))
 VERSION  := $(shell sed -n 's/.*define KAGE_VERSION "\(.*\)".*/\1/p' include/kage.h)
 SONAME    = libkage.so.$(firstword $(subst ., ,$(VERSION)))
@@ -207,8 +207,8 @@ $(BUILD)/flags: FORCE
 	@mkdir -p $(BUILD)
 	@echo '$(CC) $(CFLAGS) $(LDFLAGS)' | cmp -s - $@ || echo '$(CC) $(CFLAGS) $(LDFLAGS)' > $@
 
-$(BUILD)/mesh/load.o: private DEFINES += -DKAGE_LIBEXEC='"$(LIBEXEC)"'
-$(BUILD)/mesh/load.o: $(BUILD)/libexec
+$(BUILD)/mesh/reader.o: private DEFINES += -DKAGE_LIBEXEC='"$(LIBEXEC)"'
+$(BUILD)/mesh/reader.o: $(BUILD)/libexec
 
 $(BUILD)/libexec: FORCE
 	@mkdir -p $(BUILD)
