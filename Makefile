@@ -53,7 +53,7 @@ SANITIZER = -fsanitize=$(SANITIZE) -fno-sanitize-recover=all -fno-omit-frame-poi
 endif
 
 # The libraries' headers as system headers: their warnings are not ours.
-PKG_CFLAGS := $(patsubst -I%,-isystem %,$(shell pkg-config --cflags $(PKGS) assimp 2>/dev/null))
+PKG_CFLAGS := $(patsubst -I%,-isystem %,$(shell pkg-config --cflags $(PKGS) assimp libjpeg 2>/dev/null))
 # Embree 4 or 3, whichever has its headers here: it need not have a pkg-config file.
 EMBREE     := $(firstword $(foreach v,4 3,$(shell printf '\043include <embree$(v)/rtcore.h>\n' | \
                   $(CC) -fsyntax-only -x c - 2>/dev/null && echo $(v))))
@@ -66,11 +66,11 @@ override CFLAGS  += -Iinclude -Isrc $(STANDARD) $(OPTIMISE) $(VISIBILITY) $(THRE
                     $(SANITIZER) $(PKG_CFLAGS) -MMD -MP
 override LDFLAGS += $(THREADS) $(SANITIZER)
 LIBS       = $(PKG_LIBS) -lembree$(or $(EMBREE),3) -ldl -lm
-IMPORT_LIBS := $(shell pkg-config --libs assimp 2>/dev/null) -lm
+IMPORT_LIBS := $(shell pkg-config --libs assimp libpng libjpeg 2>/dev/null) -lm
 
 SOURCES   = $(patsubst src/%.c,%,$(wildcard src/*/*.c))
 PROGRAM   = $(filter cli/%,$(SOURCES))
-IMPORT    = $(filter import/%,$(SOURCES)) # kage-import, which alone links assimp
+IMPORT    = $(filter import/%,$(SOURCES)) # kage-import, which alone links assimp and libjpeg
 LIBRARY   = $(filter-out cli/% import/%,$(SOURCES))
 VERSION  := $(shell sed -n 's/.*define KAGE_VERSION "\(.*\)".*/\1/p' include/kage.h)
 SONAME    = libkage.so.$(firstword $(subst ., ,$(VERSION)))
@@ -207,8 +207,8 @@ $(BUILD)/flags: FORCE
 	@mkdir -p $(BUILD)
 	@echo '$(CC) $(CFLAGS) $(LDFLAGS)' | cmp -s - $@ || echo '$(CC) $(CFLAGS) $(LDFLAGS)' > $@
 
-$(BUILD)/mesh/load.o: private DEFINES += -DKAGE_LIBEXEC='"$(LIBEXEC)"'
-$(BUILD)/mesh/load.o: $(BUILD)/libexec
+$(BUILD)/mesh/reader.o: private DEFINES += -DKAGE_LIBEXEC='"$(LIBEXEC)"'
+$(BUILD)/mesh/reader.o: $(BUILD)/libexec
 
 $(BUILD)/libexec: FORCE
 	@mkdir -p $(BUILD)
@@ -263,12 +263,12 @@ $(PACKAGE)/_kage.abi3.so: $(BUILD)/python/_kage.c python/progress.h $(BUILD)/lib
 	@mkdir -p $(@D)
 	$(Q)$(PY_LINK) $(PY_CFLAGS) -o $@ $< $(BUILD)/libkage.a $(LIBS)
 
-$(BUILD)/python/methods.o: python/methods.c $(BUILD)/flags
+$(BUILD)/python/%.o: python/%.c python/methods.c python/methods.h include/bumpshadow.h $(BUILD)/flags
 	@echo '  CC  $@'
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(CFLAGS) -Ipython -c -o $@ $<
 
-$(PACKAGE)/_methods.abi3.so: $(BUILD)/python/_methods.c $(BUILD)/python/methods.o
+$(PACKAGE)/_methods.abi3.so: $(BUILD)/python/_methods.c $(BUILD)/python/methods.o $(BUILD)/python/methods_double.o
 	@echo '  LD  $@'
 	@mkdir -p $(@D)
 	$(Q)$(PY_LINK) $(PY_CFLAGS) -o $@ $^ -lm
@@ -376,7 +376,7 @@ install-files: $(BUILD)/kage.pc
 	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/include $(DESTDIR)$(LIBDIR)/pkgconfig $(DESTDIR)$(LIBEXEC)
 	install -m 755 $(BUILD)/kage $(DESTDIR)$(PREFIX)/bin/kage
 	install -m 755 $(BUILD)/kage-import $(DESTDIR)$(LIBEXEC)/kage-import
-	install -m 644 include/kage.h include/bumpshadow.h $(DESTDIR)$(PREFIX)/include
+	install -m 644 include/kage.h include/bumpshadow.h include/bumpshadow.glsl $(DESTDIR)$(PREFIX)/include
 	install -m 644 $(BUILD)/libkage.a $(DESTDIR)$(LIBDIR)/libkage.a
 	install -m 755 $(BUILD)/$(SONAME) $(DESTDIR)$(LIBDIR)/$(SONAME)
 	ln -sf $(SONAME) $(DESTDIR)$(LIBDIR)/libkage.so
@@ -384,7 +384,8 @@ install-files: $(BUILD)/kage.pc
 
 uninstall:
 	rm -f $(DESTDIR)$(PREFIX)/bin/kage $(DESTDIR)$(LIBEXEC)/kage-import \
-	    $(DESTDIR)$(PREFIX)/include/kage.h $(DESTDIR)$(PREFIX)/include/bumpshadow.h \
+	    $(DESTDIR)$(PREFIX)/include/kage.h \
+	    $(DESTDIR)$(PREFIX)/include/bumpshadow.h $(DESTDIR)$(PREFIX)/include/bumpshadow.glsl \
 	    $(DESTDIR)$(LIBDIR)/libkage.a $(DESTDIR)$(LIBDIR)/$(SONAME) $(DESTDIR)$(LIBDIR)/libkage.so \
 	    $(DESTDIR)$(LIBDIR)/pkgconfig/kage.pc
 	rmdir $(DESTDIR)$(LIBEXEC) 2>/dev/null || true

@@ -102,10 +102,10 @@ typedef struct kage_load_options {
     kage_progress *progress; /* NULL: none */
     void *user;              /* for progress */
 
-    /* The program that reads models (OBJ, PLY, STL, glTF, OFF). NULL: the environment's KAGE_IMPORT; without that
-     * kage-import in the folder of libkage.so (or of the program that libkage.a is in), in ../libexec/kage from there,
-     * or in libexec/kage of the prefix that the library was installed to. Without the program a scene with a model is
-     * an error of the scene; other scenes do not need it. It has limited time (3 s and 1 s a MiB) and memory
+    /* The program that reads models (OBJ, PLY, STL, glTF, OFF, COLLADA, FBX, 3DS). NULL: the environment's KAGE_IMPORT;
+     * without that kage-import in the folder of libkage.so (or of the program that libkage.a is in), in ../libexec/kage
+     * from there, or in libexec/kage of the prefix that the library was installed to. Without the program a scene with
+     * a model is an error of the scene; other scenes do not need it. It has limited time (3 s and 1 s a MiB) and memory
      * (512 MiB and 96 times the file); a model that crashes it is an error of the scene, too. */
     const char *model_reader;
     void *reserved[8];
@@ -158,7 +158,14 @@ typedef struct kage_object_info {
     double height[2];             /* bounds of the bump's height P, in scene units */
     int bounded;                  /* P has finite bounds */
     int copies;                   /* how many copies of copy_of it is, from a list; 0: it is one object */
+    const char *bump_of;          /* the object under whose key `bump` the bump is, often itself; NULL: no bump */
+    double bump_scale;            /* the bump's `scale` */
 } kage_object_info;
+
+typedef struct kage_camera_info {
+    double eye[3], at[3], up[3]; /* as the scene says; eye: its `from` */
+    double fov, width;           /* fov in degrees, 0: orthographic; width in scene units, 0: a pinhole */
+} kage_camera_info;
 
 typedef struct kage_scene_info {
     const char *path;    /* or the name of a text in memory */
@@ -173,6 +180,7 @@ typedef struct kage_scene_info {
     const kage_object_info *objects;
     const char *bump_shadow; /* render.bump_shadow */
     int shifted;             /* render.shade: shifted */
+    kage_camera_info camera;
 } kage_scene_info;
 
 /* What is in a scene. */
@@ -206,7 +214,8 @@ typedef struct kage_render_options {
     void *user;              /* for progress */
     const char *bump_shadow; /* the bumps' own shadows: none march:N horizon exact; NULL: as the scene says */
     kage_choice shifted;     /* yes: shade where the shadow rays start; no: at the smooth hit */
-    void *reserved[6];
+    struct kage_film *reuse; /* a film that is no longer needed: see kage_render. NULL: none */
+    void *reserved[5];
 } kage_render_options;
 
 /* The best picture for its cost: options.method, options.bump_shadow, and options.shifted = KAGE_YES. */
@@ -218,7 +227,10 @@ typedef struct kage_film kage_film;
 /* Render the scene into a new film, of at most 2^28 pixels. options: NULL for the defaults. The bytes of a film depend
  * neither on the threads nor on the crop. The first render with another value of `displaced`, with `exact`, `auto` or
  * `horizon`, reads the scene again from its text and files, which must be unchanged; errors then are KAGE_BAD_INPUT.
- * Several threads may render one scene without a lock. The film may outlive the scene. */
+ * Several threads may render one scene without a lock. The film may outlive the scene.
+ *
+ * options.reuse is freed by the call, whatever it returns, but its memory becomes that of the new film where there is
+ * enough of it: pictures of one size, one after another, then cost no page faults. The bytes are the same. */
 KAGE_API kage_status kage_render(kage_scene *scene, const kage_render_options *options, kage_film **film,
                                  kage_errors **errors);
 
@@ -239,6 +251,22 @@ KAGE_API const char *kage_film_plane_name(const kage_film *film, int index); /* 
 
 /* The values of a plane, not a copy: height x width, row by row from the top. NULL: no such plane. */
 KAGE_API const float *kage_film_plane(const kage_film *film, const char *name);
+
+/* The picture in sRGB, into height rows of 4 bytes a pixel, red, green, blue and 255: the very values of an 8-bit PNG.
+ * row_bytes: from the start of a row to that of the next; 0: 4 times the width. rgba has height times row_bytes bytes,
+ * but for what follows the last row's pixels. threads: 0: as many as there are processors. */
+KAGE_API kage_status kage_film_srgb(const kage_film *film, uint8_t *rgba, size_t row_bytes, int threads);
+
+/* A text that a file of the film holds. */
+typedef struct kage_metadata {
+    const char *name, *value; /* the film owns them */
+} kage_metadata;
+
+/* What kage_film_write puts into a file, as PNG texts or EXR attributes: Software, kage:file (the scene's name),
+ * kage:scene (its text), kage:set (its changes, a line each), kage:crop, kage:shadow, kage:guard. NULL fields: no text
+ * of that index. */
+KAGE_API int kage_film_metadata_count(const kage_film *film);
+KAGE_API kage_metadata kage_film_metadata(const kage_film *film, int index);
 
 /* ---- files ---- */
 
@@ -405,6 +433,40 @@ typedef struct kage_povray_report {
  * something that POV-Ray lacks. */
 KAGE_API kage_status kage_scene_write_povray(kage_scene *scene, const char *path, const kage_povray_options *options,
                                              kage_povray_report *report, kage_errors **errors);
+
+/* ---- models as scenes ---- */
+
+typedef struct kage_import_options {
+    const char *const *bumps; /* bump_count times OBJECT=MAP,scale=S,KEY=VALUE...: a height map, its file's name as the
+                               * caller's, for the objects whose name fits OBJECT, which may have * and ? */
+    int bump_count;
+    const char *camera;       /* the name of the model's camera; NULL: its first */
+    int z_up;                 /* not 0: the model's z is up, not its y */
+    double brightness;        /* of all lights together; 0: 1 */
+    int overwrite;            /* not 0: files that exist are replaced */
+    int threads;              /* 0: as many as there are processors */
+    kage_progress *progress;  /* NULL: none */
+    void *user;               /* for progress */
+    const char *model_reader; /* as in kage_load_options */
+    const char *const *sets;  /* set_count changes, only of `scene` below, not of the file */
+    int set_count;
+    void *reserved[8];
+} kage_import_options;
+
+typedef struct kage_import_report {
+    kage_scene *scene; /* as kage_scene_load would give it, with the changes; the report owns it */
+    int note_count;    /* lines on what is in the model but not in the scene */
+    const char *const *notes;
+    int file_count; /* images that were written beside the scene */
+    const char *const *files;
+} kage_import_report;
+
+/* Write a scene for a model that kage_load_options.model_reader reads, with its camera, lights, materials, images and
+ * objects (docs/models.md). The triangles stay in the model's file, which the scene names. All is read and checked
+ * before the scene is written, whole or not at all; after a failure no new file stays. */
+KAGE_API kage_status kage_model_import(const char *model, const char *scene, const kage_import_options *options,
+                                       kage_import_report **report, kage_errors **errors);
+KAGE_API void kage_import_report_free(kage_import_report *report); /* NULL: nothing */
 
 /* ---- methods ---- */
 

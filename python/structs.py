@@ -67,6 +67,8 @@ def python_type(name: str, kind: Any, comment: str, counted: bool) -> str:
         if (kind.item.cname, kind.length) == ("double", 3):
             return "NDArray[np.float64]"
         return f"tuple[{', '.join([python_type('', kind.item, '', False)] * kind.length)}]"
+    if kind.kind == "struct":
+        return class_name(kind.cname)
     if kind.kind == "enum" or kind.item.cname == "char":
         return "str | None" if "None" in comment else "str"
     item = kind.item

@@ -78,6 +78,23 @@ class ObjectInfo:
     bounded: bool
     #: how many copies of copy_of it is, from a list; 0: it is one object
     copies: int
+    #: the object under whose key `bump` the bump is, often itself; None: no bump
+    bump_of: str | None
+    #: the bump's `scale`
+    bump_scale: float
+
+
+@dataclass(frozen=True, eq=False)
+class CameraInfo:
+    """kage_camera_info of kage.h."""
+
+    #: as the scene says; eye: its `from`
+    eye: NDArray[np.float64]
+    at: NDArray[np.float64]
+    up: NDArray[np.float64]
+    #: fov in degrees, 0: orthographic; width in scene units, 0: a pinhole
+    fov: float
+    width: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,6 +123,7 @@ class SceneInfo:
     bump_shadow: str
     #: render.shade: shifted
     shifted: bool
+    camera: CameraInfo
 
 
 @dataclass(frozen=True, eq=False)
