@@ -106,6 +106,11 @@ def label(values: Sequence[str]) -> list[str]:
     if all(re.fullmatch(r"\d+", value) for value in values):
         width = max(map(len, values))
         return [value.zfill(width) for value in values]
-    texts = [re.sub(r"[^A-Za-z0-9.+-]+", "_", value).strip("_") for value in values]
+    texts = [re.sub(r"[^A-Za-z0-9.+-]+", "_", short(value)).strip("_") for value in values]
     good = len(set(texts)) == len(texts) and all(0 < len(text) <= 40 and text.strip(".") for text in texts)
     return texts if good else [f"{k:0{len(str(len(values)))}d}" for k in range(1, len(values) + 1)]
+
+
+def short(value: str) -> str:
+    """A number to 5 digits."""
+    return f"{float(value):.5g}" if re.fullmatch(NUMBER, value) else value

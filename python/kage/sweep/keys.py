@@ -12,6 +12,7 @@ to `hold`, stays as it is until the next key. Before the first key and after the
 
 from __future__ import annotations
 
+import itertools
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -119,7 +120,7 @@ def track(path: str, about: Any, where: str) -> Track:
     if not isinstance(about, list) or not about or not all(is_key(key) for key in about):
         raise SweepError(f"{where}: {path}: expected a list of [frame, value]")
     frames, values = tuple(float(key[0]) for key in about), tuple(key[1] for key in about)
-    if any(a >= b for a, b in zip(frames, frames[1:], strict=False)):
+    if any(a >= b for a, b in itertools.pairwise(frames)):
         raise SweepError(f"{where}: {path}: the frames of the keys do not rise")
     return Track(path, frames, values, between if is_numeric(values) else "hold")
 
