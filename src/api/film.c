@@ -36,9 +36,9 @@ const kage_stats *kage_film_get_stats(const kage_film *f) { return &f->stats; }
 
 /* ---- what a picture's file says of it ---- */
 
-void picture_crop(window w, char text[PICTURE_CROP])
+void picture_crop(window w, char text[PICTURE_CROP_SIZE])
 {
-    snprintf(text, PICTURE_CROP, "%d,%d,%d,%d", w.x0, w.y0, w.x1, w.y1);
+    snprintf(text, PICTURE_CROP_SIZE, "%d,%d,%d,%d", w.x0, w.y0, w.x1, w.y1);
 }
 
 /* What the picture is made from, except for maps, so that it can be rendered again. No clock, path or number of
@@ -46,11 +46,11 @@ void picture_crop(window w, char text[PICTURE_CROP])
 void picture_texts(const kage_film *f, const char *crop, image_text to[PICTURE_TEXTS])
 {
     const image_text text[PICTURE_TEXTS] = {
-        {"Software", SOFTWARE " " KAGE_VERSION " " REAL_NAME},
+        {PICTURE_SOFTWARE, SOFTWARE " " KAGE_VERSION " " REAL_NAME},
         {"kage:file", f->file},
         {"kage:scene", f->source},
         {"kage:set", f->sets},
-        {"kage:crop", crop},
+        {PICTURE_CROP, crop},
         {"kage:shadow", f->method},
         {"kage:guard", f->guard ? "yes" : "no"},
     };

@@ -80,7 +80,7 @@ kage_status picture_begin(picture *p, const kage_film *f, window part, const cha
     const film *planes = f->film;
     const char *layers = has_ending(path, ".png") ? "color" : o->layers;
     image_text text[PICTURE_TEXTS];
-    char crop[PICTURE_CROP];
+    char crop[PICTURE_CROP_SIZE];
     *p = (picture){0};
     if (!options_are_good(path, o, planes, e))
         return KAGE_BAD_OPTION;

@@ -74,6 +74,7 @@ typedef struct object {
     surface *own;        /* the shape before the transform; `shape` itself without one */
     surface *centred;    /* the shape moved to the origin, which a transformed shape wraps */
     const char *copy_of; /* the name of the object that owns `own`; NULL: this one */
+    const char *bump_of; /* the name of the object whose own the bump is; NULL: this one */
     bool moved;          /* it has the transform `placed` */
     bool shares_bump;    /* bump and the texts in bump_spec and map belong to another object */
     affine placed;
@@ -160,7 +161,7 @@ typedef struct scene_source {
     int sets;           /* changes of the form PATH=VALUE */
     const char *const *set;
     int threads;              /* 0: all processors */
-    const char *model_reader; /* the program kage-import; NULL: mesh/load.c looks for it */
+    const char *model_reader; /* the program kage-import; NULL: mesh/reader.c looks for it */
     const progress *progress; /* while large files are read; may be NULL */
     const arrays *arrays;     /* that the scene may name; NULL: none. They live as long as the scene */
     int others;               /* scenes whose shelves may have what this one needs */
