@@ -18,7 +18,7 @@ enum { EXIT_OUTPUT = 1, EXIT_INPUT = 2, MAX_OUTPUTS = 16, MAX_SETS = 256 };
 #endif
 
 /* The commands that take a scene, as bits. */
-enum { COMMAND_RENDER = 1, COMMAND_CHECK = 2, COMMAND_PIXEL = 4, COMMAND_POV = 8 };
+enum { COMMAND_RENDER = 1, COMMAND_CHECK = 2, COMMAND_PIXEL = 4, COMMAND_POV = 8, COMMAND_VIEW = 16 };
 
 /* The parsed command line. Zero: not given. */
 typedef struct arguments {
@@ -33,7 +33,8 @@ typedef struct arguments {
     int crop[4];
     const char *layers; /* of an EXR, with commas; NULL: all */
     int threads, bits;
-    bool stats, quiet, no_cast, overwrite, resume;
+    int frames; /* of view, to measure */
+    bool stats, quiet, no_cast, overwrite, resume, report;
 } arguments;
 
 /* Parse a command's arguments. False: the mistake is on stderr. Call arguments_free in either case. */
@@ -44,6 +45,8 @@ int command_render(const arguments *given);
 int command_check(const arguments *a);
 int command_pixel(const arguments *a);
 int command_pov(const arguments *a);
+int command_view(const arguments *a); /* returns only where the window's program can't be started */
+int command_view_help(void);
 
 /* ---- common.c ---- */
 

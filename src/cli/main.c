@@ -11,6 +11,7 @@ static const char help[] =
     "  kage check SCENE [options]       list what is in a scene, and how steep its bumps are\n"
     "  kage pixel SCENE X,Y [options]   all intermediate values of one pixel, for each method\n"
     "  kage pov SCENE -o FILE [options] write the scene for POV-Ray 3.7\n"
+    "  kage view SCENE [options]        look at a scene in a window, and change it; see kage view --help\n"
     "  kage methods                     list the methods\n"
     "  kage --help, kage --version\n"
     "\n"
@@ -40,6 +41,8 @@ static const char help[] =
     "  --threads N          number of threads (as many as there are processors)\n"
     "  --stats              time and count each stage\n"
     "  --quiet              no progress bar, no closing line\n"
+    "\n"
+    "Options of view: those of render that change the scene, and --threads.\n"
     "\n"
     "Options of pov:\n"
     "  -o FILE              output file, a name that ends in .pov\n"
@@ -76,13 +79,16 @@ int main(int argc, char **argv)
     } commands[] = {{"render", COMMAND_RENDER, command_render},
                     {"check", COMMAND_CHECK, command_check},
                     {"pixel", COMMAND_PIXEL, command_pixel},
-                    {"pov", COMMAND_POV, command_pov}};
+                    {"pov", COMMAND_POV, command_pov},
+                    {"view", COMMAND_VIEW, command_view}};
     if (argc < 2) {
         fputs(help, stderr);
         return EXIT_INPUT;
     }
     for (int k = 1; k < argc; k++)
         if (strcmp(argv[k], "--help") == 0 || strcmp(argv[k], "-h") == 0) {
+            if (strcmp(argv[1], "view") == 0)
+                return command_view_help();
             fputs(help, stdout);
             return finish(0);
         }
@@ -99,6 +105,6 @@ int main(int argc, char **argv)
             arguments_free(&a);
             return finish(status);
         }
-    usage_error("no command '%s', expected render, check, pixel, pov or methods; see kage --help", argv[1]);
+    usage_error("no command '%s', expected render, check, pixel, pov, view or methods; see kage --help", argv[1]);
     return EXIT_INPUT;
 }
