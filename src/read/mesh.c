@@ -5,6 +5,10 @@
 
 #include <stdlib.h>
 #include <string.h>
+<<<<<<< HEAD
+=======
+#include <strings.h>
+>>>>>>> core
 
 static bool is_large(const mesh_data *d)
 {
@@ -20,6 +24,7 @@ static bool is_large(const mesh_data *d)
     return size >= SMALL;
 }
 
+<<<<<<< HEAD
 /* Read all of a model, or one part. Where a part is asked for, the whole is kept for the next object's. */
 static bool read_triangles(reader *r, const char *path, const char *part, mesh_data *d, char why[MESH_WHY])
 {
@@ -62,9 +67,49 @@ static bool read_model(reader *r, node *at, mesh_normals normals, double crease,
 }
 
 surface *reader_mesh(reader *r, node *at, shape_spec *spec)
+=======
+/* The triangles, checked. False with an error. */
+static bool read_triangles(reader *r, node *file, const source *from, mesh_normals normals, double crease, mesh_data *d)
+{
+    char why[MESH_WHY];
+    bool good = from->array
+                    ? mesh_array_read(&from->array->mesh, d, why)
+                    : mesh_file_read(from->path, r->from->model_reader, r->from->progress, &r->s->made_from, d, why);
+    if (good)
+        progress_show(r->from->progress, "checking", 1);
+    good = good && mesh_clean(d, normals, crease, BIG, r->from->threads, why);
+    if (!good)
+        return yaml_error(r->y, file, "'%s' can't be used: %s", from->name, why);
+    return is_large(d) ||
+           yaml_error(r->y, file, "'%s' can't be used: it is smaller than %g, expected some size", from->name, SMALL);
+}
+
+/* A glTF may have its numbers in other files, which may have changed. */
+static bool is_alone(const char *path)
+{
+    const char *dot = path ? strrchr(path, '.') : NULL;
+    return !dot || strcasecmp(dot, ".gltf") != 0;
+}
+
+static surface *new_mesh(reader *r, node *file, const source *from, mesh_normals normals, double crease)
+>>>>>>> core
 {
     mesh_data d = {0};
+    char *key = NULL;
+    if (*from->id && is_alone(from->path))
+        key = reader_key(r, "mesh %s %d %.17g %s", from->id, normals, crease, from->name);
+    surface *f = reader_found_surface(r, key);
+    if (!f && read_triangles(r, file, from, normals, crease, &d))
+        f = reader_keep_surface(r, key, reader_made(r, mesh_new(&d, r->from->threads, r->from->progress)));
+    mesh_data_free(&d);
+    free(key);
+    return f;
+}
+
+surface *reader_mesh(reader *r, node *at, shape_spec *spec)
+{
     double crease = 40;
+<<<<<<< HEAD
     if (!yaml_map(r->y, at, "mesh", "file part normals crease"))
         return NULL;
     node *file = yaml_need(r->y, at, "file", "mesh");
@@ -79,5 +124,22 @@ surface *reader_mesh(reader *r, node *at, shape_spec *spec)
                          .file = reader_copy(r, yaml_text(r->y, file, "the file of a model")),
                          .triangles = ((mesh *)f)->d.n,
                          .found = ((mesh *)f)->d.notes};
+=======
+    source from = {.name = NULL};
+    if (!yaml_map(r->y, at, "mesh", "file normals crease"))
+        return NULL;
+    node *file = yaml_need(r->y, at, "file", "mesh");
+    const int normals = reader_word(r, at, "normals", "file smooth flat", "file, smooth or flat");
+    const bool named = file && reader_source(r, file, true, "the file of a model", &from);
+    const bool good =
+        reader_number(r, at, "crease", 0, false, 180, "an angle of 0 to 180 degrees", &crease) && normals >= 0;
+    surface *f = named && good ? new_mesh(r, file, &from, (mesh_normals)normals, crease) : NULL;
+    if (f)
+        *spec = (shape_spec){.kind = SHAPE_MESH,
+                             .file = reader_copy(r, from.name),
+                             .triangles = ((mesh *)f)->d.n,
+                             .found = ((mesh *)f)->d.notes};
+    source_free(&from);
+>>>>>>> core
     return f;
 }
