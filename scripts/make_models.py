@@ -38,8 +38,12 @@ class Mesh:
     face: np.ndarray = field(default_factory=lambda: np.zeros((0, 3), int))
 
     def __add__(self, other: Mesh) -> Mesh:
-        return Mesh(np.vstack([self.at, other.at]), np.vstack([self.normal, other.normal]),
-                    np.vstack([self.uv, other.uv]), np.vstack([self.face, other.face + len(self.at)]))
+        return Mesh(
+            np.vstack([self.at, other.at]),
+            np.vstack([self.normal, other.normal]),
+            np.vstack([self.uv, other.uv]),
+            np.vstack([self.face, other.face + len(self.at)]),
+        )
 
 
 def grid(at: np.ndarray, normal: np.ndarray, uv: np.ndarray) -> Mesh:
@@ -57,15 +61,22 @@ def quad(corner: list[float], right: list[float], down: list[float], repeat: flo
     c, r, d = np.array(corner, float), np.array(right, float), np.array(down, float)
     at = np.array([[c, c + r], [c + d, c + d + r]])
     n = np.cross(d, r)
-    return grid(at, np.broadcast_to(n / np.linalg.norm(n), at.shape), np.array([[[0, 0], [1, 0]], [[0, 1], [1, 1]]]) * repeat)
+    return grid(
+        at, np.broadcast_to(n / np.linalg.norm(n), at.shape), np.array([[[0, 0], [1, 0]], [[0, 1], [1, 1]]]) * repeat
+    )
 
 
 def box(low: list[float], high: list[float]) -> Mesh:
     (a, b, c), (x, y, z) = low, high
     w, h, d = x - a, y - b, z - c
-    return (quad([a, y, z], [w, 0, 0], [0, -h, 0]) + quad([x, y, c], [-w, 0, 0], [0, -h, 0])
-            + quad([a, y, c], [0, 0, d], [0, -h, 0]) + quad([x, y, z], [0, 0, -d], [0, -h, 0])
-            + quad([a, y, c], [w, 0, 0], [0, 0, d]) + quad([a, b, z], [w, 0, 0], [0, 0, -d]))
+    return (
+        quad([a, y, z], [w, 0, 0], [0, -h, 0])
+        + quad([x, y, c], [-w, 0, 0], [0, -h, 0])
+        + quad([a, y, c], [0, 0, d], [0, -h, 0])
+        + quad([x, y, z], [0, 0, -d], [0, -h, 0])
+        + quad([a, y, c], [w, 0, 0], [0, 0, d])
+        + quad([a, b, z], [w, 0, 0], [0, 0, -d])
+    )
 
 
 def turned(profile: list[tuple[float, float]], around: int = 32) -> Mesh:
@@ -103,7 +114,7 @@ def noise(n: int, cells: int, seed: int) -> np.ndarray:
     i, f = x.astype(int), x % 1
     f = f * f * (3 - 2 * f)
     rows = r[i] * (1 - f)[:, None] + r[(i + 1) % cells] * f[:, None]
-    return rows[:, i] * (1 - f) + rows[:, (i + 1) % cells] * f
+    return np.asarray(rows[:, i] * (1 - f) + rows[:, (i + 1) % cells] * f)
 
 
 def planks(n: int = 128) -> Image.Image:
@@ -138,7 +149,7 @@ def dune(n: int) -> np.ndarray:
     """Heights from 0 to 1 of long low waves, which tile."""
     y, x = np.mgrid[0:n, 0:n] / n * 2 * math.pi
     bent = x + 0.6 * np.sin(y)
-    return 0.5 + 0.35 * np.sin(bent) + 0.15 * np.sin(2 * y - x + 1)
+    return np.asarray(0.5 + 0.35 * np.sin(bent) + 0.15 * np.sin(2 * y - x + 1))
 
 
 def normal_map(n: int = 64) -> Image.Image:
@@ -175,26 +186,52 @@ class Gltf:
 
     def array(self, values: np.ndarray, kind: str) -> int:
         index = kind == "SCALAR"
-        about: dict[str, object] = {"bufferView": self.view(values.astype("<u2" if index else "<f4").tobytes(),
-                                                            target=34963 if index else 34962),
-                                    "componentType": 5123 if index else 5126, "count": len(values), "type": kind}
+        about: dict[str, object] = {
+            "bufferView": self.view(
+                values.astype("<u2" if index else "<f4").tobytes(), target=34963 if index else 34962
+            ),
+            "componentType": 5123 if index else 5126,
+            "count": len(values),
+            "type": kind,
+        }
         if kind == "VEC3":
             low, high = values.astype("f4").min(0), values.astype("f4").max(0)
             about |= {"max": [float(x) for x in high], "min": [float(x) for x in low]}
         return self.add("accessors", about)
 
     def mesh(self, name: str, *pairs: tuple[Mesh, int]) -> int:
-        return self.add("meshes", {"name": name, "primitives": [{
-            "attributes": {"POSITION": self.array(m.at, "VEC3"), "NORMAL": self.array(m.normal, "VEC3"),
-                           "TEXCOORD_0": self.array(m.uv, "VEC2")},
-            "indices": self.array(m.face.ravel(), "SCALAR"), "material": material} for m, material in pairs]})
+        return self.add(
+            "meshes",
+            {
+                "name": name,
+                "primitives": [
+                    {
+                        "attributes": {
+                            "POSITION": self.array(m.at, "VEC3"),
+                            "NORMAL": self.array(m.normal, "VEC3"),
+                            "TEXCOORD_0": self.array(m.uv, "VEC2"),
+                        },
+                        "indices": self.array(m.face.ravel(), "SCALAR"),
+                        "material": material,
+                    }
+                    for m, material in pairs
+                ],
+            },
+        )
 
     def image(self, name: str, data: bytes, mime: str) -> int:
         source = self.add("images", {"bufferView": self.view(data), "mimeType": mime, "name": name})
         return self.add("textures", {"sampler": 0, "source": source})
 
-    def material(self, name: str, metallic: float = 0, roughness: float = 0.5, color: list[float] | None = None,
-                 image: dict[str, object] | None = None, **more: object) -> int:
+    def material(
+        self,
+        name: str,
+        metallic: float = 0,
+        roughness: float = 0.5,
+        color: list[float] | None = None,
+        image: dict[str, object] | None = None,
+        **more: object,
+    ) -> int:
         pbr: dict[str, object] = {"metallicFactor": metallic, "roughnessFactor": roughness}
         pbr |= {"baseColorFactor": color} if color else {}
         pbr |= {"baseColorTexture": image} if image else {}
@@ -202,9 +239,12 @@ class Gltf:
 
     def finish(self, roots: list[int], uri: str | None = None) -> str:
         self.top.setdefault("samplers", [{"magFilter": 9729, "minFilter": 9987}])
-        head = {"asset": {"generator": "kage scripts/make_models.py, after Khronos glTF Blender I/O", "version": "2.0"},
-                "extensionsUsed": ["KHR_lights_punctual", "KHR_texture_transform"], "scene": 0,
-                "scenes": [{"name": "Scene", "nodes": roots}]}
+        head = {
+            "asset": {"generator": "kage scripts/make_models.py, after Khronos glTF Blender I/O", "version": "2.0"},
+            "extensionsUsed": ["KHR_lights_punctual", "KHR_texture_transform"],
+            "scene": 0,
+            "scenes": [{"name": "Scene", "nodes": roots}],
+        }
         buffer = {"byteLength": len(self.bytes)} | ({"uri": uri} if uri else {})
         return json.dumps(head | self.top | {"buffers": [buffer]}, separators=(",", ":"))
 
@@ -222,7 +262,12 @@ def look(eye: list[float], to: list[float]) -> list[float]:
     x /= np.linalg.norm(x)
     m = np.column_stack([x, np.cross(z, x), z])
     w = math.sqrt(max(1 + m[0, 0] + m[1, 1] + m[2, 2], 0)) / 2
-    return [float(m[2, 1] - m[1, 2]) / (4 * w), float(m[0, 2] - m[2, 0]) / (4 * w), float(m[1, 0] - m[0, 1]) / (4 * w), w]
+    return [
+        float(m[2, 1] - m[1, 2]) / (4 * w),
+        float(m[0, 2] - m[2, 0]) / (4 * w),
+        float(m[1, 0] - m[0, 1]) / (4 * w),
+        w,
+    ]
 
 
 def lamp(g: Gltf, name: str, about: dict[str, object], **node: object) -> int:
@@ -232,41 +277,69 @@ def lamp(g: Gltf, name: str, about: dict[str, object], **node: object) -> int:
 
 
 def with_lights(g: Gltf) -> None:
-    g.top["extensions"] = {"KHR_lights_punctual": {"lights": g.top.pop("extensions_lights")}}  # type: ignore[assignment]
+    lights = {"KHR_lights_punctual": {"lights": g.top.pop("extensions_lights")}}
+    g.top["extensions"] = lights  # type: ignore[assignment]
 
 
 def camera(g: Gltf, eye: list[float], to: list[float], yfov: float, aspect: float) -> int:
-    k = g.add("cameras", {"name": "Camera", "perspective": {"aspectRatio": aspect, "yfov": math.radians(yfov), "zfar": 100,
-                                                            "znear": 0.1}, "type": "perspective"})
+    k = g.add(
+        "cameras",
+        {
+            "name": "Camera",
+            "perspective": {"aspectRatio": aspect, "yfov": math.radians(yfov), "zfar": 100, "znear": 0.1},
+            "type": "perspective",
+        },
+    )
     return g.add("nodes", {"camera": k, "name": "Camera", "rotation": look(eye, to), "translation": eye})
 
 
 def corner(folder: Path) -> None:
     g = Gltf()
-    floor = g.material("Floor tiles", image={"index": g.image("tiles", packed(tiles(), "PNG"), "image/png")},
-                       normalTexture={"index": g.image("tiles normal", packed(normal_map(), "PNG"), "image/png")})
+    floor = g.material(
+        "Floor tiles",
+        image={"index": g.image("tiles", packed(tiles(), "PNG"), "image/png")},
+        normalTexture={"index": g.image("tiles normal", packed(normal_map(), "PNG"), "image/png")},
+    )
     wall = g.material("Plaster", 0, 0.9, [0.75, 0.7, 0.62, 1])
     wood = g.material("Wood", 0, 0.6, image={"index": g.image("planks", packed(planks(), "JPEG"), "image/jpeg")})
-    picture = g.material("Picture", 0, 0.8, image={"index": g.image("quarters", packed(quarters(), "PNG"), "image/png")})
+    picture = g.material(
+        "Picture", 0, 0.8, image={"index": g.image("quarters", packed(quarters(), "PNG"), "image/png")}
+    )
     brass = g.material("Brass", 1, 0.15, [0.9, 0.7, 0.3, 1])
     walls = quad([-2, 2.4, -2], [4, 0, 0], [0, -2.4, 0]) + quad([-2, 2.4, 2], [0, 0, -4], [0, -2.4, 0])
-    things = [("Floor", (quad([-2, 0, -2], [4, 0, 0], [0, 0, 4], 2), floor), {}),
-              ("Walls", (walls, wall), {}),
-              ("Picture", (quad([-0.6, 0.45, 0.02], [1.2, 0, 0], [0, -0.9, 0]), picture), {"translation": [0.3, 1.5, -2]}),
-              ("Crate", (box([-0.4, 0, -0.4], [0.4, 0.8, 0.4]), wood),
-               {"rotation": turn([0, 1, 0], 25), "translation": [-0.9, 0, -0.9]}),
-              ("Ball", (ball(0.35, 0.35), brass), {"translation": [0.55, 0, -0.2]})]
+    things = [
+        ("Floor", (quad([-2, 0, -2], [4, 0, 0], [0, 0, 4], 2), floor), {}),
+        ("Walls", (walls, wall), {}),
+        ("Picture", (quad([-0.6, 0.45, 0.02], [1.2, 0, 0], [0, -0.9, 0]), picture), {"translation": [0.3, 1.5, -2]}),
+        (
+            "Crate",
+            (box([-0.4, 0, -0.4], [0.4, 0.8, 0.4]), wood),
+            {"rotation": turn([0, 1, 0], 25), "translation": [-0.9, 0, -0.9]},
+        ),
+        ("Ball", (ball(0.35, 0.35), brass), {"translation": [0.55, 0, -0.2]}),
+    ]
     roots = [g.add("nodes", {"mesh": g.mesh(name, pair), "name": name} | node) for name, pair, node in things]
     roots.append(camera(g, [2.6, 1.9, 3.4], [-0.1, 0.8, -0.6], 32, 4 / 3))
-    roots.append(lamp(g, "Lamp", {"color": [1, 0.95, 0.85], "intensity": 5435.1, "type": "point"},
-                      translation=[1.4, 2.2, 0.9], extras={"export_gltf": 1}))
+    roots.append(
+        lamp(
+            g,
+            "Lamp",
+            {"color": [1, 0.95, 0.85], "intensity": 5435.1, "type": "point"},
+            translation=[1.4, 2.2, 0.9],
+            extras={"export_gltf": 1},
+        )
+    )
     with_lights(g)
     text = g.finish(roots).encode()
     text += b" " * (-len(text) % 4)
     data = g.bytes + b"\0" * (-len(g.bytes) % 4)
     (folder / "corner.glb").write_bytes(
-        struct.pack("<4sII", b"glTF", 2, 12 + 8 + len(text) + 8 + len(data)) + struct.pack("<I4s", len(text), b"JSON") + text
-        + struct.pack("<I4s", len(data), b"BIN\0") + data)
+        struct.pack("<4sII", b"glTF", 2, 12 + 8 + len(text) + 8 + len(data))
+        + struct.pack("<I4s", len(text), b"JSON")
+        + text
+        + struct.pack("<I4s", len(data), b"BIN\0")
+        + data
+    )
 
 
 def garden(folder: Path) -> None:
@@ -274,26 +347,54 @@ def garden(folder: Path) -> None:
     (folder / "garden leaves.png").write_bytes(packed(leaves(), "PNG"))
     g.add("images", {"mimeType": "image/png", "name": "garden leaves", "uri": "garden%20leaves.png"})
     g.add("textures", {"sampler": 0, "source": 0})
-    ground = g.material("Lawn", 0, 1, [0.6, 0.75, 0.4, 1], image={
-        "index": 0, "extensions": {"KHR_texture_transform": {"scale": [6, 6], "offset": [0.25, 0.5]}}})
+    ground = g.material(
+        "Lawn",
+        0,
+        1,
+        [0.6, 0.75, 0.4, 1],
+        image={"index": 0, "extensions": {"KHR_texture_transform": {"scale": [6, 6], "offset": [0.25, 0.5]}}},
+    )
     leaf = g.material("Leaves", 0, 0.8, [1, 0.55, 0.35, 1], image={"index": 0})
     bark = g.material("Bark", 0, 1, [0.3, 0.2, 0.12, 1])
-    tree = g.mesh("Tree", (turned([(0.1, 0.5), (0.12, 0.25), (0.16, 0)], 12), bark),
-                  (turned([(0, 1.8), (0.3, 1.2), (0.5, 0.6), (0.4, 0.5), (0, 0.5)], 16), leaf))
+    tree = g.mesh(
+        "Tree",
+        (turned([(0.1, 0.5), (0.12, 0.25), (0.16, 0)], 12), bark),
+        (turned([(0, 1.8), (0.3, 1.2), (0.5, 0.6), (0.4, 0.5), (0, 0.5)], 16), leaf),
+    )
     lawn = g.add("nodes", {"mesh": g.mesh("Lawn", (quad([-4, 0, -4], [8, 0, 0], [0, 0, 8]), ground)), "name": "Lawn"})
     places: list[dict[str, object]] = [
-        {"translation": [0, 0, 0]}, {"translation": [1.6, 0, 0.4], "rotation": turn([0, 1, 0], 70), "scale": [1.2] * 3},
+        {"translation": [0, 0, 0]},
+        {"translation": [1.6, 0, 0.4], "rotation": turn([0, 1, 0], 70), "scale": [1.2] * 3},
         {"translation": [-1.4, 0, 0.8], "rotation": turn([0.1, 1, 0.2], 200), "scale": [0.7] * 3},
-        {"translation": [0.6, 0, -1.5], "scale": [-1, 1, 1]}, {"translation": [-1.2, 0, -1.3], "scale": [1, 1.6, 0.8]}]
-    trees = [g.add("nodes", {"mesh": tree, "name": f"Tree.{k:03}" if k else "Tree"} | at) for k, at in enumerate(places)]
-    group = g.add("nodes", {"children": trees, "name": "Trees", "rotation": turn([0, 1, 0], 15), "translation": [0, 0, -0.3]})
+        {"translation": [0.6, 0, -1.5], "scale": [-1, 1, 1]},
+        {"translation": [-1.2, 0, -1.3], "scale": [1, 1.6, 0.8]},
+    ]
+    trees = [
+        g.add("nodes", {"mesh": tree, "name": f"Tree.{k:03}" if k else "Tree"} | at) for k, at in enumerate(places)
+    ]
+    group = g.add(
+        "nodes", {"children": trees, "name": "Trees", "rotation": turn([0, 1, 0], 15), "translation": [0, 0, -0.3]}
+    )
     eye = [2.5, 2.6, 5.6]
     spot = {"innerConeAngle": 0.25, "outerConeAngle": 0.4}
-    roots = [lawn, group, camera(g, eye, [0, 0.7, -0.3], 34, 16 / 9),
-             lamp(g, "Sun", {"color": [1, 0.97, 0.9], "intensity": 683 * 3.0, "type": "directional"},
-                  rotation=look([-3, 5, 4], [0, 0, 0])),
-             lamp(g, "Spot", {"color": [0.6, 0.7, 1], "intensity": 2e5, "spot": spot, "type": "spot"},
-                  rotation=look([4, 4, 1], [0.6, 0, 0.2]), translation=[4, 4, 1])]
+    roots = [
+        lawn,
+        group,
+        camera(g, eye, [0, 0.7, -0.3], 34, 16 / 9),
+        lamp(
+            g,
+            "Sun",
+            {"color": [1, 0.97, 0.9], "intensity": 683 * 3.0, "type": "directional"},
+            rotation=look([-3, 5, 4], [0, 0, 0]),
+        ),
+        lamp(
+            g,
+            "Spot",
+            {"color": [0.6, 0.7, 1], "intensity": 2e5, "spot": spot, "type": "spot"},
+            rotation=look([4, 4, 1], [0.6, 0, 0.2]),
+            translation=[4, 4, 1],
+        ),
+    ]
     with_lights(g)
     (folder / "garden.gltf").write_text(g.finish(roots, "garden.bin") + "\n")
     (folder / "garden.bin").write_bytes(g.bytes)
@@ -356,15 +457,21 @@ def still_life(folder: Path) -> None:
     parts: list[tuple[str, list[tuple[str, Mesh]]]] = [
         ("Table", [("Wood", quad([-1.5, 0, -1.2], [3, 0, 0], [0, 0, 2.4]))]),
         ("Card", [("Card", quad([-1.1, 0.7, -0.75], [0.9, 0, 0.2], [0, -0.7, 0]))]),
-        ("Vase", [("Glaze", moved(turned(vase[:3]), [0.35, 0, -0.4])), ("Clay", moved(turned(vase[2:]), [0.35, 0, -0.4]))]),
+        (
+            "Vase",
+            [("Glaze", moved(turned(vase[:3]), [0.35, 0, -0.4])), ("Clay", moved(turned(vase[2:]), [0.35, 0, -0.4]))],
+        ),
         ("Tumbler", [("Glass", moved(turned([(0.18, 0.5), (0.15, 0.01)], 24), [-0.15, 0, 0.35]))]),
-        ("Ball", [("Chrome", moved(ball(0.22, 0.22, 48), [0.85, 0, 0.3]))])]
+        ("Ball", [("Chrome", moved(ball(0.22, 0.22, 48), [0.85, 0, 0.3]))]),
+    ]
     lines, first = ["# Made by scripts/make_models.py, after Blender's OBJ File", "mtllib still-life.mtl"], 1
     for name, pieces in parts:
         lines.append(f"o {name}")
         for material, m in pieces:
             lines += [f"v {x:.6f} {y:.6f} {z:.6f}" for x, y, z in m.at]
-            lines += [f"vt {u:.6f} {1 - v:.6f}" for u, v in m.uv] + [f"vn {x:.4f} {y:.4f} {z:.4f}" for x, y, z in m.normal]
+            lines += [f"vt {u:.6f} {1 - v:.6f}" for u, v in m.uv] + [
+                f"vn {x:.4f} {y:.4f} {z:.4f}" for x, y, z in m.normal
+            ]
             lines += ["s 1", f"usemtl {material}"]
             lines += ["f " + " ".join(f"{first + k}/{first + k}/{first + k}" for k in f) for f in m.face]
             first += len(m.at)
@@ -380,22 +487,30 @@ def still_life(folder: Path) -> None:
 def source(name: str, values: np.ndarray, axes: str) -> str:
     text = " ".join(f"{x:.6g}" for x in values.ravel())
     params = "".join(f'<param name="{a}" type="float"/>' for a in axes)
-    return (f'<source id="{name}"><float_array id="{name}-array" count="{values.size}">{text}</float_array><technique_common>'
-            f'<accessor source="#{name}-array" count="{len(values)}" stride="{len(axes)}">{params}</accessor>'
-            "</technique_common></source>\n")
+    return (
+        f'<source id="{name}"><float_array id="{name}-array" count="{values.size}">{text}</float_array>'
+        f'<technique_common><accessor source="#{name}-array" count="{len(values)}" stride="{len(axes)}">'
+        f"{params}</accessor>"
+        "</technique_common></source>\n"
+    )
 
 
 def geometry(name: str, m: Mesh, material: str) -> str:
     """With z up: (x, y, z) becomes (x, -z, y)."""
     up = np.array([[1, 0, 0], [0, 0, 1], [0, -1, 0]])
     faces = " ".join(f"{k}" for k in m.face.ravel())
-    return (f'<geometry id="{name}-mesh" name="{name}"><mesh>' + source(f"{name}-at", m.at @ up, "XYZ")
-            + source(f"{name}-normal", m.normal @ up, "XYZ")
-            + source(f"{name}-uv", np.column_stack([m.uv[:, 0], 1 - m.uv[:, 1]]), "ST")
-            + f'<vertices id="{name}-v"><input semantic="POSITION" source="#{name}-at"/></vertices>'
-            f'<triangles material="{material}" count="{len(m.face)}"><input semantic="VERTEX" source="#{name}-v" offset="0"/>'
-            f'<input semantic="NORMAL" source="#{name}-normal" offset="0"/>'
-            f'<input semantic="TEXCOORD" source="#{name}-uv" offset="0" set="0"/><p>{faces}</p></triangles></mesh></geometry>\n')
+    return (
+        f'<geometry id="{name}-mesh" name="{name}"><mesh>'
+        + source(f"{name}-at", m.at @ up, "XYZ")
+        + source(f"{name}-normal", m.normal @ up, "XYZ")
+        + source(f"{name}-uv", np.column_stack([m.uv[:, 0], 1 - m.uv[:, 1]]), "ST")
+        + f'<vertices id="{name}-v"><input semantic="POSITION" source="#{name}-at"/></vertices>'
+        f'<triangles material="{material}" count="{len(m.face)}">'
+        f'<input semantic="VERTEX" source="#{name}-v" offset="0"/>'
+        f'<input semantic="NORMAL" source="#{name}-normal" offset="0"/>'
+        f'<input semantic="TEXCOORD" source="#{name}-uv" offset="0" set="0"/><p>{faces}</p>'
+        "</triangles></mesh></geometry>\n"
+    )
 
 
 def matrix(m: np.ndarray) -> str:
@@ -414,21 +529,30 @@ def looking(eye: list[float], to: list[float]) -> np.ndarray:
 
 
 def effect(name: str, color: str) -> str:
-    image = (f'<newparam sid="{name}-surface"><surface type="2D"><init_from>{name}-image</init_from></surface></newparam>'
-             f'<newparam sid="{name}-sampler"><sampler2D><source>{name}-surface</source></sampler2D></newparam>')
-    return (f'<effect id="{name}-effect"><profile_COMMON>{image if "texture" in color else ""}<technique sid="common">'
-            f"<lambert><diffuse>{color}</diffuse></lambert></technique></profile_COMMON></effect>\n")
+    image = (
+        f'<newparam sid="{name}-surface"><surface type="2D"><init_from>{name}-image</init_from></surface></newparam>'
+        f'<newparam sid="{name}-sampler"><sampler2D><source>{name}-surface</source></sampler2D></newparam>'
+    )
+    return (
+        f'<effect id="{name}-effect"><profile_COMMON>{image if "texture" in color else ""}<technique sid="common">'
+        f"<lambert><diffuse>{color}</diffuse></lambert></technique></profile_COMMON></effect>\n"
+    )
 
 
 def tower(folder: Path) -> None:
     (folder / "tower-bricks.png").write_bytes(packed(tiles(64), "PNG"))
-    meshes = [("Tower", turned([(0.62, 1.9), (0.62, 1.6), (0.5, 1.55), (0.55, 0)], 32), "Bricks"),
-              ("Sign", quad([-0.25, 1.35, 0.56], [0.5, 0, 0], [0, -0.5, 0]), "Bricks"),
-              ("Ground", quad([-3, 0, -3], [6, 0, 0], [0, 0, 6]), "Sand")]
-    nodes = "".join(f'<node id="{n}" name="{n}" type="NODE">{matrix(np.eye(4))}<instance_geometry url="#{n}-mesh">'
-                    f'<bind_material><technique_common><instance_material symbol="{k}" target="#{k}-material">'
-                    f'<bind_vertex_input semantic="UVMap" input_semantic="TEXCOORD" input_set="0"/></instance_material>'
-                    f"</technique_common></bind_material></instance_geometry></node>\n" for n, _, k in meshes)
+    meshes = [
+        ("Tower", turned([(0.62, 1.9), (0.62, 1.6), (0.5, 1.55), (0.55, 0)], 32), "Bricks"),
+        ("Sign", quad([-0.25, 1.35, 0.56], [0.5, 0, 0], [0, -0.5, 0]), "Bricks"),
+        ("Ground", quad([-3, 0, -3], [6, 0, 0], [0, 0, 6]), "Sand"),
+    ]
+    nodes = "".join(
+        f'<node id="{n}" name="{n}" type="NODE">{matrix(np.eye(4))}<instance_geometry url="#{n}-mesh">'
+        f'<bind_material><technique_common><instance_material symbol="{k}" target="#{k}-material">'
+        f'<bind_vertex_input semantic="UVMap" input_semantic="TEXCOORD" input_set="0"/></instance_material>'
+        f"</technique_common></bind_material></instance_geometry></node>\n"
+        for n, _, k in meshes
+    )
     at = np.eye(4)
     at[:3, 3] = [2.5, -2.2, 3.2]
     nodes += f'<node id="Camera" name="Camera">{matrix(looking([2.2, -4.6, 2], [0, 0, 0.85]))}'
@@ -447,13 +571,20 @@ def tower(folder: Path) -> None:
         "<constant_attenuation>0</constant_attenuation><linear_attenuation>0</linear_attenuation>"
         "<quadratic_attenuation>1</quadratic_attenuation></point></technique_common></light></library_lights>\n"
         '<library_images><image id="Bricks-image" name="Bricks"><init_from>tower-bricks.png</init_from></image>'
-        "</library_images>\n<library_effects>" + effect("Bricks", texture) + effect("Sand", "<color>0.7 0.6 0.4 1</color>")
+        "</library_images>\n<library_effects>"
+        + effect("Bricks", texture)
+        + effect("Sand", "<color>0.7 0.6 0.4 1</color>")
         + "</library_effects>\n<library_materials>"
-        + "".join(f'<material id="{k}-material" name="{k}"><instance_effect url="#{k}-effect"/></material>'
-                  for k in ("Bricks", "Sand"))
-        + "</library_materials>\n<library_geometries>" + "".join(geometry(*m) for m in meshes)
-        + '</library_geometries>\n<library_visual_scenes><visual_scene id="Scene" name="Scene">\n' + nodes
-        + '</visual_scene></library_visual_scenes>\n<scene><instance_visual_scene url="#Scene"/></scene>\n</COLLADA>\n')
+        + "".join(
+            f'<material id="{k}-material" name="{k}"><instance_effect url="#{k}-effect"/></material>'
+            for k in ("Bricks", "Sand")
+        )
+        + "</library_materials>\n<library_geometries>"
+        + "".join(geometry(*m) for m in meshes)
+        + '</library_geometries>\n<library_visual_scenes><visual_scene id="Scene" name="Scene">\n'
+        + nodes
+        + '</visual_scene></library_visual_scenes>\n<scene><instance_visual_scene url="#Scene"/></scene>\n</COLLADA>\n'
+    )
 
 
 def main() -> None:
