@@ -7,6 +7,7 @@
 #   OPENMP=no             one thread a render, without OpenMP: for SANITIZE=thread, which does not see the barriers of
 #                         its library (CLONES=no, too: functions that choose their copy run before it is ready)
 #   BUILD=DIR             where the objects and the program go
+#   PYTHON=PROGRAM        the Python for which the package is built (with cffi and numpy)
 #   V=1                   print the whole commands
 
 REAL     ?= float
@@ -20,6 +21,7 @@ OBJCOPY  ?= objcopy
 PREFIX   ?= /usr/local
 LIBDIR   ?= $(PREFIX)/lib
 LIBEXEC  ?= $(PREFIX)/libexec/kage
+PYTHON   ?= scripts/venv python
 Q         = $(if $(V),,@)
 comma    := ,
 # As many jobs as processors, unless make was told how many.
@@ -84,7 +86,7 @@ C_FILES   = $(wildcard include/*.h src/*/*.[ch] examples/*.c tests/support/*.h t
 TIDY      = $(filter-out bench/limits/%,$(filter %.c,$(C_FILES)))
 
 .PHONY: all render bench speed readme reference accept counts test unit-tests program-tests programs sanitize format
-.PHONY: lint tidy same install install-files uninstall clean help bootstrap FORCE
+.PHONY: lint tidy same python install install-files uninstall clean help bootstrap FORCE
 all: bootstrap
 	@$(MAKE) --no-print-directory $(JOBS) programs
 
@@ -96,6 +98,7 @@ help:
 	@echo 'make bench      measure cost and accuracy of each method, BENCH=quick|normal|full, into out/bench/index.html'
 	@echo 'make speed      measure what kage demands of its speed, SPEED=quick|normal|full, into out/speed/index.html'
 	@echo 'make readme     the same, then update the tables of README and docs'
+	@echo 'make python     the Python package, to import from $(BUILD)/python'
 	@echo 'make test       all tests'
 	@echo 'make accept     show regression pictures that have changed, and keep them if you confirm'
 	@echo 'make counts     count the instructions of eight renders again, and keep them for the test'
@@ -233,6 +236,43 @@ $(UNITS:%=$(BUILD)/%): $(BUILD)/%: $(BUILD)/%.o $(BUILD)/internal.a
 WRAPPED   = malloc calloc realloc posix_memalign strdup free fy_node_build_from_malloc_string
 $(BUILD)/unit/api/test_memory: private override LDFLAGS += $(WRAPPED:%=-Wl,--wrap=%)
 
+# ---- the Python package ----
+
+# In $(BUILD)/python, to import from there: links to python/kage, and the modules in C for Python's stable ABI, 3.11 on.
+PACKAGE   = $(BUILD)/python/kage
+PY_CFLAGS = -Iinclude -Ipython -DPy_LIMITED_API=0x030b0000 -fPIC -O2 \
+            -isystem $$($(PYTHON) -c 'import sysconfig; print(sysconfig.get_path("include"))')
+MODULES   = $(PACKAGE)/_kage.abi3.so $(if $(wildcard python/methods.h),$(PACKAGE)/_methods.abi3.so)
+# What a module takes from libkage.a is its own.
+PY_LINK   = $(CC) $(LDFLAGS) -shared -Wl,--exclude-libs,ALL
+
+python: $(MODULES) $(BUILD)/kage-import FORCE
+	@find $(PACKAGE) -type l -delete
+	@ln -s $(abspath $(wildcard python/kage/*.py python/kage/*.pyi python/kage/py.typed) $(BUILD)/kage-import \
+	    $(patsubst %/__init__.py,%,$(wildcard python/kage/*/__init__.py))) $(PACKAGE)
+
+# With it python/kage/structs.py, which is under version control as others read it, too.
+$(BUILD)/python/_kage.c: python/build_ext.py python/structs.py include/kage.h $(wildcard python/methods.h)
+	@echo '  PY  $@'
+	$(Q)$(PYTHON) python/structs.py && $(PYTHON) python/build_ext.py $(@D) >/dev/null
+
+$(BUILD)/python/_methods.c: $(BUILD)/python/_kage.c
+
+$(PACKAGE)/_kage.abi3.so: $(BUILD)/python/_kage.c python/progress.h $(BUILD)/libkage.a
+	@echo '  LD  $@'
+	@mkdir -p $(@D)
+	$(Q)$(PY_LINK) $(PY_CFLAGS) -o $@ $< $(BUILD)/libkage.a $(LIBS)
+
+$(BUILD)/python/%.o: python/%.c python/methods.c python/methods.h include/bumpshadow.h $(BUILD)/flags
+	@echo '  CC  $@'
+	@mkdir -p $(@D)
+	$(Q)$(CC) $(CFLAGS) -Ipython -c -o $@ $<
+
+$(PACKAGE)/_methods.abi3.so: $(BUILD)/python/_methods.c $(BUILD)/python/methods.o $(BUILD)/python/methods_double.o
+	@echo '  LD  $@'
+	@mkdir -p $(@D)
+	$(Q)$(PY_LINK) $(PY_CFLAGS) -o $@ $^ -lm
+
 # ---- tests ----
 
 # The units in C, in float and in double; then the program and the scripts, in Python.
@@ -249,7 +289,7 @@ unit-tests: $(UNITS:%=$(BUILD)/%)
 $(UNITS:%=run-%): run-%: $(BUILD)/% $(BUILD)/kage-import
 	@KAGE_IMPORT=$(BUILD)/kage-import $< >$<.log 2>&1 && echo '  OK  $<' || { cat $<.log; echo '  FAILED  $<'; exit 1; }
 
-program-tests: programs
+program-tests: programs python
 	@$(MAKE) --no-print-directory $(JOBS) REAL=double build/double/kage
 	scripts/venv python -m pytest -q -n auto --dist loadfile tests # a file's tests share what they make
 
@@ -336,7 +376,7 @@ install-files: $(BUILD)/kage.pc
 	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/include $(DESTDIR)$(LIBDIR)/pkgconfig $(DESTDIR)$(LIBEXEC)
 	install -m 755 $(BUILD)/kage $(DESTDIR)$(PREFIX)/bin/kage
 	install -m 755 $(BUILD)/kage-import $(DESTDIR)$(LIBEXEC)/kage-import
-	install -m 644 include/kage.h include/bumpshadow.h $(DESTDIR)$(PREFIX)/include
+	install -m 644 include/kage.h include/bumpshadow.h include/bumpshadow.glsl $(DESTDIR)$(PREFIX)/include
 	install -m 644 $(BUILD)/libkage.a $(DESTDIR)$(LIBDIR)/libkage.a
 	install -m 755 $(BUILD)/$(SONAME) $(DESTDIR)$(LIBDIR)/$(SONAME)
 	ln -sf $(SONAME) $(DESTDIR)$(LIBDIR)/libkage.so
@@ -344,7 +384,8 @@ install-files: $(BUILD)/kage.pc
 
 uninstall:
 	rm -f $(DESTDIR)$(PREFIX)/bin/kage $(DESTDIR)$(LIBEXEC)/kage-import \
-	    $(DESTDIR)$(PREFIX)/include/kage.h $(DESTDIR)$(PREFIX)/include/bumpshadow.h \
+	    $(DESTDIR)$(PREFIX)/include/kage.h \
+	    $(DESTDIR)$(PREFIX)/include/bumpshadow.h $(DESTDIR)$(PREFIX)/include/bumpshadow.glsl \
 	    $(DESTDIR)$(LIBDIR)/libkage.a $(DESTDIR)$(LIBDIR)/$(SONAME) $(DESTDIR)$(LIBDIR)/libkage.so \
 	    $(DESTDIR)$(LIBDIR)/pkgconfig/kage.pc
 	rmdir $(DESTDIR)$(LIBEXEC) 2>/dev/null || true

@@ -158,7 +158,14 @@ typedef struct kage_object_info {
     double height[2];             /* bounds of the bump's height P, in scene units */
     int bounded;                  /* P has finite bounds */
     int copies;                   /* how many copies of copy_of it is, from a list; 0: it is one object */
+    const char *bump_of;          /* the object under whose key `bump` the bump is, often itself; NULL: no bump */
+    double bump_scale;            /* the bump's `scale` */
 } kage_object_info;
+
+typedef struct kage_camera_info {
+    double eye[3], at[3], up[3]; /* as the scene says; eye: its `from` */
+    double fov, width;           /* fov in degrees, 0: orthographic; width in scene units, 0: a pinhole */
+} kage_camera_info;
 
 typedef struct kage_scene_info {
     const char *path;    /* or the name of a text in memory */
@@ -173,6 +180,7 @@ typedef struct kage_scene_info {
     const kage_object_info *objects;
     const char *bump_shadow; /* render.bump_shadow */
     int shifted;             /* render.shade: shifted */
+    kage_camera_info camera;
 } kage_scene_info;
 
 /* What is in a scene. */
@@ -206,7 +214,8 @@ typedef struct kage_render_options {
     void *user;              /* for progress */
     const char *bump_shadow; /* the bumps' own shadows: none march:N horizon exact; NULL: as the scene says */
     kage_choice shifted;     /* yes: shade where the shadow rays start; no: at the smooth hit */
-    void *reserved[6];
+    struct kage_film *reuse; /* a film that is no longer needed: see kage_render. NULL: none */
+    void *reserved[5];
 } kage_render_options;
 
 /* The best picture for its cost: options.method, options.bump_shadow, and options.shifted = KAGE_YES. */
@@ -218,7 +227,10 @@ typedef struct kage_film kage_film;
 /* Render the scene into a new film, of at most 2^28 pixels. options: NULL for the defaults. The bytes of a film depend
  * neither on the threads nor on the crop. The first render with another value of `displaced`, with `exact`, `auto` or
  * `horizon`, reads the scene again from its text and files, which must be unchanged; errors then are KAGE_BAD_INPUT.
- * Several threads may render one scene without a lock. The film may outlive the scene. */
+ * Several threads may render one scene without a lock. The film may outlive the scene.
+ *
+ * options.reuse is freed by the call, whatever it returns, but its memory becomes that of the new film where there is
+ * enough of it: pictures of one size, one after another, then cost no page faults. The bytes are the same. */
 KAGE_API kage_status kage_render(kage_scene *scene, const kage_render_options *options, kage_film **film,
                                  kage_errors **errors);
 
@@ -239,6 +251,22 @@ KAGE_API const char *kage_film_plane_name(const kage_film *film, int index); /* 
 
 /* The values of a plane, not a copy: height x width, row by row from the top. NULL: no such plane. */
 KAGE_API const float *kage_film_plane(const kage_film *film, const char *name);
+
+/* The picture in sRGB, into height rows of 4 bytes a pixel, red, green, blue and 255: the very values of an 8-bit PNG.
+ * row_bytes: from the start of a row to that of the next; 0: 4 times the width. rgba has height times row_bytes bytes,
+ * but for what follows the last row's pixels. threads: 0: as many as there are processors. */
+KAGE_API kage_status kage_film_srgb(const kage_film *film, uint8_t *rgba, size_t row_bytes, int threads);
+
+/* A text that a file of the film holds. */
+typedef struct kage_metadata {
+    const char *name, *value; /* the film owns them */
+} kage_metadata;
+
+/* What kage_film_write puts into a file, as PNG texts or EXR attributes: Software, kage:file (the scene's name),
+ * kage:scene (its text), kage:set (its changes, a line each), kage:crop, kage:shadow, kage:guard. NULL fields: no text
+ * of that index. */
+KAGE_API int kage_film_metadata_count(const kage_film *film);
+KAGE_API kage_metadata kage_film_metadata(const kage_film *film, int index);
 
 /* ---- files ---- */
 
@@ -273,6 +301,16 @@ KAGE_API kage_status kage_film_write(const kage_film *film, const char *path, co
  * film: the last band, with the counts of all bands that this call has rendered; NULL: not wanted. */
 KAGE_API kage_status kage_render_file(kage_scene *scene, const kage_render_options *render, const char *path,
                                       const kage_write_options *write, kage_film **film, kage_errors **errors);
+
+/* Join bands of a picture to one file: EXR that kage_film_write or kage_render_file has written with a crop, in any
+ * order. The bytes are those that kage_render_file would have written for all of their rows. Chunks are copied as they
+ * are, so memory is that of 16 rows. Of the options only `progress` and `user` count.
+ *
+ * Bands that do not belong together are KAGE_BAD_INPUT: with a gap, or rows that are in two of them; with other
+ * columns, layers, options, scenes or versions; with a number of rows, above the last band, that is no multiple of 16.
+ */
+KAGE_API kage_status kage_file_join(const char *const *paths, int count, const char *path,
+                                    const kage_write_options *options, kage_errors **errors);
 
 /* Whether a picture could be written at `path` now: its folder is there and may be written, and so may an older file.
  * Nothing is changed. */

@@ -72,6 +72,7 @@ typedef struct object {
     surface *own;        /* the shape before the transform; `shape` itself without one */
     surface *centred;    /* the shape moved to the origin, which a transformed shape wraps */
     const char *copy_of; /* the name of the object that owns `own`; NULL: this one */
+    const char *bump_of; /* the name of the object whose own the bump is; NULL: this one */
     bool moved;          /* it has the transform `placed` */
     bool shares_bump;    /* bump and the texts in bump_spec and map belong to another object */
     affine placed;
