@@ -35,7 +35,7 @@ bool mesh_array_read(const mesh_array *a, mesh_data *out, char why[MESH_WHY])
                      (unsigned long)a->corners[k], a->vertices - 1);
             return false;
         }
-    *out = (mesh_data){a->triangles, malloc(sizeof *out->at * n), malloc(sizeof *out->skin * n), {0}};
+    *out = (mesh_data){.n = a->triangles, .at = malloc(sizeof *out->at * n), .skin = malloc(sizeof *out->skin * n)};
     if (!out->at || !out->skin) {
         mesh_data_free(out);
         snprintf(why, MESH_WHY, "out of memory");

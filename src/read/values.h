@@ -5,12 +5,8 @@
 #ifndef KAGE_READ_VALUES_H
 #define KAGE_READ_VALUES_H
 
-<<<<<<< HEAD
-#include "image/image.h"
-#include "mesh/mesh_data.h"
-=======
 #include "image/array.h"
->>>>>>> core
+#include "mesh/mesh_data.h"
 #include "scene/scene.h"
 #include "yaml/yaml.h"
 
