@@ -141,8 +141,8 @@ static void note_text(kage_scene *k)
         return;
     pthread_mutex_lock(&k->lock);
     if (!k->info.text) {
-        k->text = k->sets ? yaml_edited(k->first->source, k->sets, (const char *const *)k->set) : NULL;
-        __atomic_store_n(&k->info.text, k->sets ? k->text : k->first->source, __ATOMIC_RELEASE);
+        k->text = yaml_edited(k->first->source, k->sets, (const char *const *)k->set);
+        __atomic_store_n(&k->info.text, k->text, __ATOMIC_RELEASE);
     }
     pthread_mutex_unlock(&k->lock);
 }
