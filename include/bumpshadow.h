@@ -21,8 +21,8 @@
  *
  * Symbols and units: Q in scene units; P the height along the unit normal n/|n|, in scene units; n = Qu x Qw
  * points to the side of +P (otherwise swap u and w); s need not be a unit vector; tau is in units of t, like
- * t_hit. The formulas hold for rays from the front (s.n < 0) and from behind. Where bs_regular is 0 (a sphere's
- * pole) use the smooth normal and tau = 0.
+ * t_hit. The formulas hold for rays from the front (s.n < 0) and from behind. Where bs_regular does not hold (a
+ * sphere's pole) use the smooth normal and tau = 0.
  */
 #ifndef BUMPSHADOW_H
 #define BUMPSHADOW_H
@@ -38,6 +38,8 @@ typedef float bs_real;
 #define BS_SQRT(x) sqrtf(x)
 #define BS_ABS(x) fabsf(x)
 #endif
+
+typedef int bs_bool; /* 0 or 1 */
 
 typedef struct bs_vec3 {
     bs_real x, y, z;
@@ -57,10 +59,9 @@ static inline bs_real bs_dot(bs_vec3 a, bs_vec3 b) { return a.x * b.x + a.y * b.
 /* The smooth normal n = Qu x Qw, not normalised. Section 6. */
 static inline bs_vec3 bs_normal(bs_vec3 Qu, bs_vec3 Qw) { return bs_cross(Qu, Qw); }
 
-/* 0 where Qu and Qw are nearly parallel or 0, as at a sphere's pole: P has no gradient there. Otherwise 1. (Ours.
- * The bound is on |n| relative to Qu and Qw, so it does not depend on the scene's scale; below it float has no
- * correct digit.) */
-static inline int bs_regular(bs_vec3 n, bs_vec3 Qu, bs_vec3 Qw)
+/* Not where Qu and Qw are nearly parallel or 0, as at a sphere's pole: P has no gradient there. (Ours. The bound is on
+ * |n| relative to Qu and Qw, so it does not depend on the scene's scale; below it float has no correct digit.) */
+static inline bs_bool bs_regular(bs_vec3 n, bs_vec3 Qu, bs_vec3 Qw)
 {
     bs_real e = bs_dot(Qu, Qu) + bs_dot(Qw, Qw);
     return bs_dot(n, n) > (bs_real)1e-14 * e * e;
@@ -216,12 +217,12 @@ typedef struct bs_shift {
     int order; /* the order really used: 0, 1, 2, or 3 for 2+ */
 } bs_shift;
 
-/* The shift by order 0, 1, 2 or 3 (2+). `guard` != 0 (ours, the default of kage): where the result is outside the
+/* The shift by order 0, 1, 2 or 3 (2+). `guard` (ours, the default of kage): where the result is outside the
  * slab, or the ray does not enter the tangent plane (s.n' >= 0 from the front, that is B <= 0), 3 and 2 fall back to 1,
  * 1 to 0; order 0 is always inside. Without the guard only order 2 falls back, to 1, where it has no real root near
  * that of order 1 (B <= 0, or B^2 < 4 A P). Only order 3 uses `curvature`. Call it with a constant order and guard, so
  * that the rest is compiled away. */
-static inline bs_shift bs_shift_of(int order, int guard, bs_view v, bs_real curvature, bs_bump p, bs_slab slab)
+static inline bs_shift bs_shift_of(int order, bs_bool guard, bs_view v, bs_real curvature, bs_bump p, bs_slab slab)
 {
     bs_real B = bs_slope(v, p), down = v.sn < 0 ? B : -B;
     bs_shift s;
@@ -229,7 +230,7 @@ static inline bs_shift bs_shift_of(int order, int guard, bs_view v, bs_real curv
     s.order = 0;
     if (order >= 1) {
         bs_real tau = bs_tau1(v, p);
-        int good = (guard == 0) | ((down > 0) & (tau >= slab.front) & (tau <= slab.back));
+        bs_bool good = (guard == 0) | ((down > 0) & (tau >= slab.front) & (tau <= slab.back));
         s.tau = good ? tau : s.tau;
         s.order = good ? 1 : s.order;
     }
@@ -237,7 +238,7 @@ static inline bs_shift bs_shift_of(int order, int guard, bs_view v, bs_real curv
         bs_real A = order == 3 ? bs_quadratic_plus(v, p, curvature) : bs_quadratic(v, p);
         bs_real discriminant = bs_discriminant(A, B, p.P), tau = bs_tau2(v, B, discriminant, p.P);
         /* there is a real root, and it is the one near order 1's */
-        int good = (discriminant >= 0) & (down > 0);
+        bs_bool good = (discriminant >= 0) & (down > 0);
         good = guard ? good & (tau >= slab.front) & (tau <= slab.back) : good;
         s.tau = good ? tau : s.tau;
         s.order = good ? order : s.order;
@@ -262,11 +263,11 @@ static inline bs_shift bs_shift_of(int order, int guard, bs_view v, bs_real curv
 typedef struct bs_march {
     bs_real tau; /* the last point above the surface; once found, the shift; infinite where the slab is */
     bs_real gap; /* at that point */
-    int found;
+    bs_bool found;
 } bs_march;
 
 /* Whether the slab is finite. It is not where P has no bounds or s.n is 0. */
-static inline int bs_slab_ends(bs_slab slab) { return slab.back - slab.front < (bs_real)INFINITY; }
+static inline bs_bool bs_slab_ends(bs_slab slab) { return slab.back - slab.front < (bs_real)INFINITY; }
 
 static inline bs_march bs_march_start(bs_slab slab)
 {
@@ -288,7 +289,7 @@ static inline bs_real bs_march_tau(bs_slab slab, int i, int N)
 static inline bs_march bs_march_step(bs_march m, bs_real tau, bs_real gap, bs_view v)
 {
     bs_real above = v.sn < 0 ? gap : -gap; /* from behind the gap has the opposite sign */
-    int looking = (m.found == 0) & (m.tau < (bs_real)INFINITY), hit = looking & (above <= 0);
+    bs_bool looking = (m.found == 0) & (m.tau < (bs_real)INFINITY), hit = looking & (above <= 0);
     bs_real rise = m.gap - above; /* > 0 at a hit, except at step 0, where m.tau is tau */
     bs_real secant = m.tau + (tau - m.tau) * (rise > 0 ? m.gap / rise : 0);
     m.tau = hit ? secant : looking ? tau : m.tau;
@@ -325,8 +326,8 @@ static inline bs_real bs_pixels(bs_vec3 s, bs_vec3 d, bs_real pixel, bs_real res
  * until it leaves the slab:
  *
  *     bs_view d = bs_view_of(light - X, n, Qu, Qw);
- *     bs_way y = bs_way_of(s.n < 0 ? 1 : -1, d, bs_curvature(d, n, Quu, Quw, Qww), P, Pmin, Pmax);
- *     int dark = y.side * bs_dot(np, light - X) <= 0;
+ *     bs_way y = bs_way_of(v.sn < 0 ? 1 : -1, d, bs_curvature(d, n, Quu, Quw, Qww), P, Pmin, Pmax);
+ *     bs_bool dark = y.side * bs_dot(np, light - X) <= 0;
  *     for (int i = 1; i <= N; i++) {
  *         bs_real t = bs_way_step(y.end, i, N);
  *         dark |= bs_way_below(y, t, height(u + y.d.a * t, w + y.d.b * t));
@@ -396,7 +397,7 @@ static inline bs_real bs_way_step(bs_real end, int i, int N)
 }
 
 /* Whether the way is below P at t. */
-static inline int bs_way_below(bs_way y, bs_real t, bs_real P)
+static inline bs_bool bs_way_below(bs_way y, bs_real t, bs_real P)
 {
     return bs_gap(y.d, y.curvature, t, y.side * (P - y.P)) < 0;
 }
@@ -429,15 +430,16 @@ static inline bs_real bs_horizon(bs_real at_k, bs_real at_next, bs_real fraction
     return at_k + (at_next - at_k) * fraction;
 }
 
+/* The mean of max(y + e q, 0) over q in -1..1. */
+static inline bs_real bs_mean_above(bs_real y, bs_real e)
+{
+    bs_real rest = y > e ? y - e : 0, part = (y < e ? y : e) + e, inside = part > 0 ? part : 0;
+    return rest + inside * inside / (4 * e);
+}
+
 /* The share of an area light above the horizon, 0..1 (ours): `above` is the rise minus the horizon in the light's
  * middle, and `u` and `w` what it changes by from there to the edge, along the light's two sides. It is the part of the
  * square -1..1 where above + u x + w y > 0; the larger of |u| and |w| counts as at least `least` > 0. */
-static inline bs_real bs_mean_above(bs_real y, bs_real e) /* the mean of max(y + e q, 0) over q in -1..1 */
-{
-    bs_real rest = y > e ? y - e : 0, part = (y < e ? y : e) + e, in = part > 0 ? part : 0;
-    return rest + in * in / (4 * e);
-}
-
 static inline bs_real bs_horizon_share(bs_real above, bs_real u, bs_real w, bs_real least)
 {
     bs_real U = BS_ABS(u), W = BS_ABS(w), large = U > W ? U : W, small = U > W ? W : U;

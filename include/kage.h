@@ -102,10 +102,10 @@ typedef struct kage_load_options {
     kage_progress *progress; /* NULL: none */
     void *user;              /* for progress */
 
-    /* The program that reads models (OBJ, PLY, STL, glTF, OFF). NULL: the environment's KAGE_IMPORT; without that
-     * kage-import in the folder of libkage.so (or of the program that libkage.a is in), in ../libexec/kage from there,
-     * or in libexec/kage of the prefix that the library was installed to. Without the program a scene with a model is
-     * an error of the scene; other scenes do not need it. It has limited time (3 s and 1 s a MiB) and memory
+    /* The program that reads models (OBJ, PLY, STL, glTF, OFF, COLLADA, FBX, 3DS). NULL: the environment's KAGE_IMPORT;
+     * without that kage-import in the folder of libkage.so (or of the program that libkage.a is in), in ../libexec/kage
+     * from there, or in libexec/kage of the prefix that the library was installed to. Without the program a scene with
+     * a model is an error of the scene; other scenes do not need it. It has limited time (3 s and 1 s a MiB) and memory
      * (512 MiB and 96 times the file); a model that crashes it is an error of the scene, too. */
     const char *model_reader;
     void *reserved[8];
@@ -163,8 +163,8 @@ typedef struct kage_object_info {
 } kage_object_info;
 
 typedef struct kage_camera_info {
-    double from[3], at[3], up[3]; /* as the scene says */
-    double fov, width;            /* fov in degrees, 0: orthographic; width in scene units, 0: a pinhole */
+    double eye[3], at[3], up[3]; /* as the scene says; eye: its `from` */
+    double fov, width;           /* fov in degrees, 0: orthographic; width in scene units, 0: a pinhole */
 } kage_camera_info;
 
 typedef struct kage_scene_info {
@@ -302,6 +302,16 @@ KAGE_API kage_status kage_film_write(const kage_film *film, const char *path, co
 KAGE_API kage_status kage_render_file(kage_scene *scene, const kage_render_options *render, const char *path,
                                       const kage_write_options *write, kage_film **film, kage_errors **errors);
 
+/* Join bands of a picture to one file: EXR that kage_film_write or kage_render_file has written with a crop, in any
+ * order. The bytes are those that kage_render_file would have written for all of their rows. Chunks are copied as they
+ * are, so memory is that of 16 rows. Of the options only `progress` and `user` count.
+ *
+ * Bands that do not belong together are KAGE_BAD_INPUT: with a gap, or rows that are in two of them; with other
+ * columns, layers, options, scenes or versions; with a number of rows, above the last band, that is no multiple of 16.
+ */
+KAGE_API kage_status kage_file_join(const char *const *paths, int count, const char *path,
+                                    const kage_write_options *options, kage_errors **errors);
+
 /* Whether a picture could be written at `path` now: its folder is there and may be written, and so may an older file.
  * Nothing is changed. */
 KAGE_API kage_status kage_file_probe(const char *path, kage_errors **errors);
@@ -423,6 +433,40 @@ typedef struct kage_povray_report {
  * something that POV-Ray lacks. */
 KAGE_API kage_status kage_scene_write_povray(kage_scene *scene, const char *path, const kage_povray_options *options,
                                              kage_povray_report *report, kage_errors **errors);
+
+/* ---- models as scenes ---- */
+
+typedef struct kage_import_options {
+    const char *const *bumps; /* bump_count times OBJECT=MAP,scale=S,KEY=VALUE...: a height map, its file's name as the
+                               * caller's, for the objects whose name fits OBJECT, which may have * and ? */
+    int bump_count;
+    const char *camera;       /* the name of the model's camera; NULL: its first */
+    int z_up;                 /* not 0: the model's z is up, not its y */
+    double brightness;        /* of all lights together; 0: 1 */
+    int overwrite;            /* not 0: files that exist are replaced */
+    int threads;              /* 0: as many as there are processors */
+    kage_progress *progress;  /* NULL: none */
+    void *user;               /* for progress */
+    const char *model_reader; /* as in kage_load_options */
+    const char *const *sets;  /* set_count changes, only of `scene` below, not of the file */
+    int set_count;
+    void *reserved[8];
+} kage_import_options;
+
+typedef struct kage_import_report {
+    kage_scene *scene; /* as kage_scene_load would give it, with the changes; the report owns it */
+    int note_count;    /* lines on what is in the model but not in the scene */
+    const char *const *notes;
+    int file_count; /* images that were written beside the scene */
+    const char *const *files;
+} kage_import_report;
+
+/* Write a scene for a model that kage_load_options.model_reader reads, with its camera, lights, materials, images and
+ * objects (docs/models.md). The triangles stay in the model's file, which the scene names. All is read and checked
+ * before the scene is written, whole or not at all; after a failure no new file stays. */
+KAGE_API kage_status kage_model_import(const char *model, const char *scene, const kage_import_options *options,
+                                       kage_import_report **report, kage_errors **errors);
+KAGE_API void kage_import_report_free(kage_import_report *report); /* NULL: nothing */
 
 /* ---- methods ---- */
 

@@ -60,11 +60,11 @@ const scene *scene_reading(kage_scene *k, reading r, errors *e);
 bool scene_note(kage_scene *k);
 void scene_forget(kage_scene *k);
 
-enum { PICTURE_TEXTS = 7, PICTURE_CROP = 64 };
+enum { PICTURE_TEXTS = 7, PICTURE_CROP_SIZE = 64 };
 
 struct kage_film {
     film *film;
-    char crop[PICTURE_CROP];    /* as a file says it: the part that is on the film */
+    char crop[PICTURE_CROP_SIZE]; /* as a file says it: the part that is on the film */
     char *file, *source, *sets; /* for a picture's metadata: the scene's base name, its text, its changes, one a line */
     char method[METHOD_NAME_SIZE];
     bool guard;
@@ -78,9 +78,13 @@ struct kage_film {
 bool film_names_plane(const char *word, size_t n, const char *plane);
 bool film_has_layer(const film *f, const char *word, size_t n);
 
+/* Two of the texts in a picture's file. */
+#define PICTURE_SOFTWARE "Software"
+#define PICTURE_CROP "kage:crop"
+
 /* What a picture's file says of it; crop: as picture_crop writes it. The film owns the texts. */
 void picture_texts(const kage_film *f, const char *crop, image_text text[PICTURE_TEXTS]);
-void picture_crop(window part, char text[PICTURE_CROP]);
+void picture_crop(window part, char text[PICTURE_CROP_SIZE]);
 
 /* A picture's file that is being written, and the planes of films that go into it. */
 typedef struct picture {

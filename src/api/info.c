@@ -87,7 +87,7 @@ static kage_camera_info of_camera(const scene *s)
 {
     const bool flat = s->camera.orthographic;
     kage_camera_info x = {.fov = flat ? 0 : s->view.fov, .width = flat ? s->view.width : 0};
-    set3(x.from, s->camera.from);
+    set3(x.eye, s->camera.from);
     set3(x.at, s->view.at);
     set3(x.up, s->view.up);
     return x;

@@ -12,9 +12,9 @@
 
 /* ---- what a picture's file says of it ---- */
 
-void picture_crop(window w, char text[PICTURE_CROP])
+void picture_crop(window w, char text[PICTURE_CROP_SIZE])
 {
-    snprintf(text, PICTURE_CROP, "%d,%d,%d,%d", w.x0, w.y0, w.x1, w.y1);
+    snprintf(text, PICTURE_CROP_SIZE, "%d,%d,%d,%d", w.x0, w.y0, w.x1, w.y1);
 }
 
 /* What the picture is made from, except for maps, so that it can be rendered again. No clock, path or number of
@@ -22,11 +22,11 @@ void picture_crop(window w, char text[PICTURE_CROP])
 void picture_texts(const kage_film *f, const char *crop, image_text to[PICTURE_TEXTS])
 {
     const image_text text[PICTURE_TEXTS] = {
-        {"Software", SOFTWARE " " KAGE_VERSION " " REAL_NAME},
+        {PICTURE_SOFTWARE, SOFTWARE " " KAGE_VERSION " " REAL_NAME},
         {"kage:file", f->file},
         {"kage:scene", f->source},
         {"kage:set", f->sets},
-        {"kage:crop", crop},
+        {PICTURE_CROP, crop},
         {"kage:shadow", f->method},
         {"kage:guard", f->guard ? "yes" : "no"},
     };
@@ -106,7 +106,7 @@ kage_status picture_begin(picture *p, const kage_film *f, window part, const cha
     const film *planes = f->film;
     const char *layers = has_ending(path, ".png") ? "color" : o->layers;
     image_text text[PICTURE_TEXTS];
-    char crop[PICTURE_CROP];
+    char crop[PICTURE_CROP_SIZE];
     *p = (picture){0};
     if (!options_are_good(path, o, planes, e))
         return KAGE_BAD_OPTION;

@@ -31,7 +31,7 @@ static void begin_eye(look *l, const kage_scene_info *s)
 {
     if (l->moved)
         return;
-    memcpy(l->from, s->camera.from, sizeof l->from);
+    memcpy(l->from, s->camera.eye, sizeof l->from);
     memcpy(l->at, s->camera.at, sizeof l->at);
     l->moved = 1;
 }

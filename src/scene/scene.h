@@ -158,7 +158,7 @@ typedef struct scene_source {
     int sets;           /* changes of the form PATH=VALUE */
     const char *const *set;
     int threads;              /* 0: all processors */
-    const char *model_reader; /* the program kage-import; NULL: mesh/load.c looks for it */
+    const char *model_reader; /* the program kage-import; NULL: mesh/reader.c looks for it */
     const progress *progress; /* while large files are read; may be NULL */
 } scene_source;
 

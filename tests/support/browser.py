@@ -22,12 +22,13 @@ CHROMIUM = Path("/usr/bin/chromium")
 CHROMEDRIVER = Path("/usr/bin/chromedriver")
 OPTIONS = ("--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
            "--disable-background-networking", "--disable-component-update", "--disable-sync")
+WEBGL = ("--use-angle=swiftshader", "--enable-unsafe-swiftshader")  # WebGL 2 by the processor
 DESKTOP, PHONE = (1280, 900), (390, 844)
 LOCAL = ("file:", "data:")
 
 
 @contextlib.contextmanager
-def browser(script: bool = True) -> Iterator[Chrome]:
+def browser(script: bool = True, webgl: bool = False) -> Iterator[Chrome]:
     """Chromium with a profile of its own; nothing is downloaded. `script=False` turns JavaScript off."""
     webdriver = pytest.importorskip("selenium.webdriver", reason="selenium is missing")
     from selenium.webdriver.chrome.service import Service
@@ -38,7 +39,7 @@ def browser(script: bool = True) -> Iterator[Chrome]:
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
         options = webdriver.ChromeOptions()
         options.binary_location = str(CHROMIUM)
-        for option in (*OPTIONS, f"--user-data-dir={profile}"):
+        for option in (*OPTIONS, *(WEBGL if webgl else ()), f"--user-data-dir={profile}"):
             options.add_argument(option)
         options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
         if not script:
