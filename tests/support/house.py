@@ -15,13 +15,15 @@ from pathlib import Path
 
 from scripts import rooms
 
-PROGRAMS = ("cli", "look", "view", "import")  # rooms that the library has not: only these print, exit and install signal handlers
+#: Rooms that the library has not: only these print, exit and install signal handlers.
+PROGRAMS = ("cli", "look", "view", "import")
 
 #: Headers of other projects, and the only places that include each: beginnings of a path below src/.
 OUTSIDE: dict[str, str | tuple[str, ...]] = {
     "png.h": "image/png.c", "openexr.h": "image/exr_", "OpenEXRConfig.h": "image/exr_zip.c",
     "libdeflate.h": "image/exr_zip.c", "libfyaml.h": "yaml/", "embree": "bvh/embree.c",
-    "assimp/": "import/", "SDL": "view/", "fontconfig/": "view/font.c", "omp.h": "base/threads.h", "pthread.h": ("api/api.h", "bvh/embree.c", "image/"),
+    "assimp/": "import/", "SDL": "view/", "fontconfig/": "view/font.c",
+    "omp.h": "base/threads.h", "pthread.h": ("api/api.h", "bvh/embree.c", "image/"),
 }
 
 #: What a library leaves to its caller: the streams, the process, its signals and settings.
