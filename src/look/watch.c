@@ -1,5 +1,5 @@
 /* Watches a file for changes. */
-#include "view/watch.h"
+#include "look/watch.h"
 
 #include <sys/stat.h>
 

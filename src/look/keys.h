@@ -1,6 +1,6 @@
 /* The keys and what each does: one table for the events, for the window's help and for --help. */
-#ifndef KAGE_VIEW_KEYS_H
-#define KAGE_VIEW_KEYS_H
+#ifndef KAGE_LOOK_KEYS_H
+#define KAGE_LOOK_KEYS_H
 
 typedef enum view_act {
     ACT_NONE, /* a line of the help alone */

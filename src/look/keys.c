@@ -1,9 +1,9 @@
 /* The table of keys. */
-#include "view/keys.h"
+#include "look/keys.h"
 
 #include <stddef.h>
 
-#include "view/state.h"
+#include "look/state.h"
 
 const view_key view_keys[] = {
     {0, ACT_NONE, NULL, 0, 0, "drag", "turn the eye about the point it looks at"},

@@ -1,6 +1,6 @@
 /* The stages of a picture: coarse at once, then full, then antialiased. */
-#ifndef KAGE_VIEW_STAGE_H
-#define KAGE_VIEW_STAGE_H
+#ifndef KAGE_LOOK_STAGE_H
+#define KAGE_LOOK_STAGE_H
 
 /* A stage is its divisor: a picture of STAGE_COARSEST has an eighth of the columns and rows. */
 enum { STAGE_FINE = 0, STAGE_FULL = 1, STAGE_COARSEST = 8 };

@@ -1,5 +1,5 @@
 /* Layers as false colours. */
-#include "view/colours.h"
+#include "look/colours.h"
 
 #include <math.h>
 #include <stddef.h>
@@ -8,14 +8,15 @@
 static const uint8_t blue_to_red[][3] = {{5, 48, 97},     {33, 102, 172},  {67, 147, 195},  {146, 197, 222},
                                          {209, 229, 240}, {247, 247, 247}, {253, 219, 199}, {244, 165, 130},
                                          {214, 96, 77},   {178, 24, 43},   {103, 0, 31}};
-static const uint8_t dark_to_bright[][3] = {{68, 1, 84},    {71, 45, 123},  {59, 82, 139},   {44, 114, 142}, {33, 145, 140},
-                                            {40, 174, 128}, {94, 201, 98},  {173, 220, 48}, {253, 231, 37}};
+static const uint8_t dark_to_bright[][3] = {{68, 1, 84},    {71, 45, 123},  {59, 82, 139},
+                                            {44, 114, 142}, {33, 145, 140}, {40, 174, 128},
+                                            {94, 201, 98},  {173, 220, 48}, {253, 231, 37}};
 
 /* ColorBrewer's Set2 and Dark2: colours that are told apart. */
 static const struct {
     const char *name;
     uint8_t rgb[3];
-} orders[] = {{"none", {150, 150, 150}}, {"0", {102, 194, 165}},  {"1", {252, 141, 98}},   {"2", {141, 160, 203}},
+} orders[] = {{"none", {150, 150, 150}}, {"0", {102, 194, 165}},   {"1", {252, 141, 98}},     {"2", {141, 160, 203}},
               {"2+", {117, 112, 179}},   {"iter", {231, 41, 138}}, {"march", {255, 217, 47}}, {"exact", {217, 95, 2}}};
 enum { ORDERS = sizeof orders / sizeof *orders, STOPS_RED = 11, STOPS_BRIGHT = 9 };
 
@@ -96,7 +97,8 @@ void colours_of(const legend *l, double value, uint8_t rgb[3])
 
 void colours_paint(const kage_film *f, const legend *l, uint8_t *rgba, size_t row_bytes)
 {
-    const float *v = plane_of(f, l->layer), *order = kage_film_plane(f, "order"), *height = kage_film_plane(f, "height");
+    const float *v = plane_of(f, l->layer), *order = kage_film_plane(f, "order"),
+                *height = kage_film_plane(f, "height");
     const size_t columns = (size_t)kage_film_width(f), rows = (size_t)kage_film_height(f);
     for (size_t k = 0; k < columns * rows; k++) {
         const bool bumped = order[k] >= 0 || height[k] != 0; /* what has no bump has no order, and height 0 */

@@ -1,5 +1,5 @@
 /* The values under the mouse. */
-#include "view/readout.h"
+#include "look/readout.h"
 
 #include <stdarg.h>
 #include <stdio.h>

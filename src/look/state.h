@@ -1,6 +1,6 @@
 /* What the user has changed, and what events make of it: plain structs and pure functions, without a window. */
-#ifndef KAGE_VIEW_STATE_H
-#define KAGE_VIEW_STATE_H
+#ifndef KAGE_LOOK_STATE_H
+#define KAGE_LOOK_STATE_H
 
 #include <stdbool.h>
 

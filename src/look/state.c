@@ -1,12 +1,12 @@
 /* What events make of the state. */
-#include "view/state.h"
+#include "look/state.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-#include "view/keys.h"
-#include "view/orbit.h"
+#include "look/keys.h"
+#include "look/orbit.h"
 
 static const double PI = 3.14159265358979323846;
 
@@ -235,8 +235,7 @@ static unsigned reset(view_state *v)
 }
 
 /* Acts that change the picture. */
-static void change(view_state *v, const kage_scene_info *s, const char *pointed, const view_event *e,
-                   const view_key *k)
+static void change(view_state *v, const kage_scene_info *s, const char *pointed, const view_event *e, const view_key *k)
 {
     look *l = &v->look;
     const double step = PI / 36;

@@ -1,8 +1,8 @@
 /* A look as changes of the scene, PATH=VALUE as for --set. */
-#ifndef KAGE_VIEW_CHANGES_H
-#define KAGE_VIEW_CHANGES_H
+#ifndef KAGE_LOOK_CHANGES_H
+#define KAGE_LOOK_CHANGES_H
 
-#include "view/state.h"
+#include "look/state.h"
 
 enum { CHANGE_SIZE = 192, CHANGES_MOST = 2 * VIEW_MOST + 12 };
 

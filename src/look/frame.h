@@ -1,27 +1,27 @@
 /* One picture of a look, or two, one for each side of the split line, as pixels for the window. */
-#ifndef KAGE_VIEW_FRAME_H
-#define KAGE_VIEW_FRAME_H
+#ifndef KAGE_LOOK_FRAME_H
+#define KAGE_LOOK_FRAME_H
 
-#include "view/colours.h"
-#include "view/stage.h"
+#include "look/colours.h"
+#include "look/stage.h"
 
 enum { FRAME_SIDES = 2 };
 
 typedef struct frame {
-    int number;                /* of the look */
-    int stage;                 /* stage.h */
-    int width, height;         /* of the picture in the window */
-    int columns, rows;         /* of the pixels here, fewer where the stage is coarse */
+    int number;                 /* of the look */
+    int stage;                  /* stage.h */
+    int width, height;          /* of the picture in the window */
+    int columns, rows;          /* of the pixels here, fewer where the stage is coarse */
     uint8_t *rgba[FRAME_SIDES]; /* 4 bytes each, without gaps: by the scene's method, and by look.beside */
-    size_t room[FRAME_SIDES];  /* bytes */
-    int sides;                 /* 2: split */
-    bool whole;                /* both sides are whole; otherwise only what is on their side of the line */
-    int split;                 /* the column of the line, of `width`, where it is not whole */
+    size_t room[FRAME_SIDES];   /* bytes */
+    int sides;                  /* 2: split */
+    bool whole;                 /* both sides are whole; otherwise only what is on their side of the line */
+    int split;                  /* the column of the line, of `width`, where it is not whole */
     legend legend;
-    double seconds;            /* for the change of the scene and the picture */
+    double seconds;                                                  /* for the change of the scene and the picture */
     char shadow[VIEW_METHOD], beside[VIEW_METHOD], own[VIEW_METHOD]; /* what it was made by */
     bool shifted, displaced;
-    bool last;                 /* no finer one follows */
+    bool last; /* no finer one follows */
 } frame;
 
 /* How to make one. */

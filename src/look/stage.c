@@ -1,5 +1,5 @@
 /* The stages of a picture. */
-#include "view/stage.h"
+#include "look/stage.h"
 
 /* Of 60 frames a second, less what showing one takes; and how long a picture may take before a coarser one is shown
  * first. */

@@ -1,11 +1,11 @@
 /* Renders the picture of a look. */
-#include "view/frame.h"
+#include "look/frame.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "view/changes.h"
+#include "look/changes.h"
 
 /* Of `pixels` in the window. */
 static int coarse(int pixels, int stage) { return stage > STAGE_FULL ? (pixels + stage - 1) / stage : pixels; }

@@ -1,8 +1,8 @@
 /* Layers as false colours, with what the legend says of them. */
-#ifndef KAGE_VIEW_COLOURS_H
-#define KAGE_VIEW_COLOURS_H
+#ifndef KAGE_LOOK_COLOURS_H
+#define KAGE_LOOK_COLOURS_H
 
-#include "view/state.h"
+#include "look/state.h"
 
 /* tau: blue below 0, white at 0, red above; the range is symmetric. order: a colour for each. height: from dark to
  * bright over the heights in the picture. Where there is no bump: grey. */

@@ -1,6 +1,6 @@
 /* Watches a file for changes, by its date, size and number. */
-#ifndef KAGE_VIEW_WATCH_H
-#define KAGE_VIEW_WATCH_H
+#ifndef KAGE_LOOK_WATCH_H
+#define KAGE_LOOK_WATCH_H
 
 #include <stdbool.h>
 #include <sys/types.h>

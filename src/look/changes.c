@@ -1,5 +1,5 @@
 /* A look as changes of the scene. */
-#include "view/changes.h"
+#include "look/changes.h"
 
 #include <math.h>
 #include <stdarg.h>

@@ -1,5 +1,5 @@
 /* The eye and the lights turn about a point. */
-#include "view/orbit.h"
+#include "look/orbit.h"
 
 #include <math.h>
 
@@ -53,8 +53,8 @@ void orbit_turn(double place[3], const double about[3], const double up[3], doub
     double height = atan2(dot(v, axis), dot(v, flat));
     height = fmin(fmax(height + tilt, -steepest), steepest);
     for (int k = 0; k < 3; k++)
-        place[k] = about[k] +
-                   length * (cos(height) * (cos(turn) * flat[k] + sin(turn) * side[k]) + sin(height) * axis[k]);
+        place[k] =
+            about[k] + length * (cos(height) * (cos(turn) * flat[k] + sin(turn) * side[k]) + sin(height) * axis[k]);
 }
 
 void orbit_approach(double place[3], const double about[3], double factor)

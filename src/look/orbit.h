@@ -1,6 +1,6 @@
 /* Places that turn about a point: the eye and the lights. Vectors of three, in the scene's left-handed coordinates. */
-#ifndef KAGE_VIEW_ORBIT_H
-#define KAGE_VIEW_ORBIT_H
+#ifndef KAGE_LOOK_ORBIT_H
+#define KAGE_LOOK_ORBIT_H
 
 /* Turn `place` about the axis `up` through `about` by `turn`, then tilt it towards `up` by `tilt`, in radians. Its
  * distance stays, and it keeps a degree away from the axis. */
