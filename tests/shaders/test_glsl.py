@@ -12,6 +12,7 @@ import re
 import shutil
 import subprocess
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -84,12 +85,13 @@ def test_what_cannot_be_said(body: str, message: str) -> None:
 # Compilers ------------------------------------------------------------------------------------------------------
 
 
-def run(*command: object) -> str:
-    done = subprocess.run([str(word) for word in command], capture_output=True, text=True, timeout=300)
+def run(*command: object, folder: Path = TOP) -> str:
+    done = subprocess.run([str(word) for word in command], cwd=folder, capture_output=True, text=True, timeout=300)
     assert done.returncode == 0, f"{' '.join(map(str, command))}\n{done.stdout}{done.stderr}"
     return done.stdout
 
 
+@cache
 def every_function() -> str:
     """A main that calls each function with numbers that are not known before, and adds up all it returns."""
     known = glsl.Writer(HEADER).known
@@ -204,6 +206,18 @@ float P, Pu, Pw, Pmin, Pmax, t0, t_hit, u, w, u0, w0, curvature;
 const int N = 8;
 float height(float u, float w) { return 0.1 * u * w; }
 """
+
+
+@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.name)
+def test_example(path: Path, tmp_path: Path) -> None:
+    """By the command that its head names."""
+    (command,) = re.findall(r"^ \* {5}(glslangValidator .*)$", path.read_text(encoding="utf-8"), re.MULTILINE)
+    words = command.split()
+    run(*words, *(["-o", tmp_path / "x.spv"] if "-V" in words else []), folder=path.parent)
+    if "-V" in words:
+        run("spirv-val", "--target-env", words[words.index("--target-env") + 1], tmp_path / "x.spv")
+        assert "intersection_query" in run("spirv-cross", tmp_path / "x.spv", "--msl", "--msl-version", "30000")
+        assert "RayQuery<" in run("spirv-cross", tmp_path / "x.spv", "--hlsl", "--shader-model", "65")
 
 
 def test_examples_in_comments(tmp_path: Path) -> None:
