@@ -22,7 +22,7 @@ uniform float zero, scale; // P = scale (height - zero), in the world's units
 
 layout(location = 0) out vec4 color;  // of the surface
 layout(location = 1) out vec4 rough;  // n', and tau
-layout(location = 2) out vec4 smooth_; // n/|n|
+layout(location = 2) out vec4 normal; // n/|n|
 
 float P_at(vec2 at) { return scale * (texture(heights, at).r - zero); }
 
@@ -57,5 +57,5 @@ void main()
     float tau = bs_shift_of(0, true, v, 0.0, p, slab).tau;                                   // (kage)
     color = vec4(albedo, 1.0);
     rough = vec4(normalize(bs_perturbed_normal(n, Qu, Qw, Pu, Pw)), tau);                    // (kage)
-    smooth_ = vec4(normalize(n), 0.0);
+    normal = vec4(normalize(n), 0.0);
 }

@@ -10,7 +10,7 @@ precision highp float;
 
 in vec2 uv; // of the picture, 0 to 1
 
-uniform highp sampler2D color, rough, smooth_, depth; // what gbuffer.frag has written
+uniform highp sampler2D color, rough, normal, depth; // what gbuffer.frag has written
 uniform mat4 picture_to_world, world_to_map;    // of clip space, both
 uniform vec3 eye, light, light_color, ambient;
 uniform highp sampler2DShadow map;
@@ -38,7 +38,7 @@ void main()
         return;
     }
     vec4 world = picture_to_world * clip;
-    vec3 Q = world.xyz / world.w, n = texture(smooth_, uv).xyz, to_light = light - Q;
+    vec3 Q = world.xyz / world.w, n = texture(normal, uv).xyz, to_light = light - Q;
     float seen = dot(n, to_light) <= 0.0 ? 0.0 : 1.0;
     if (seen > 0.0)
         seen = seen_from(shadow_start(Q, normalize(Q - eye), n_tau.w, n, to_light)); // (kage), before: seen_from(Q)

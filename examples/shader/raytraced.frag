@@ -12,7 +12,7 @@ layout(location = 0) in vec2 uv; // of the picture, 0 to 1
 
 layout(set = 0, binding = 0) uniform sampler2D color;
 layout(set = 0, binding = 1) uniform sampler2D rough; // what gbuffer.frag has written
-layout(set = 0, binding = 2) uniform sampler2D smooth_;
+layout(set = 0, binding = 2) uniform sampler2D normal;
 layout(set = 0, binding = 3) uniform sampler2D depth;
 layout(set = 0, binding = 4) uniform accelerationStructureEXT scene;
 layout(set = 0, binding = 5) uniform Frame
@@ -40,7 +40,7 @@ void main()
 {
     vec4 n_tau = texture(rough, uv);
     vec4 world = picture_to_world * vec4(uv * 2.0 - 1.0, texture(depth, uv).r, 1.0);
-    vec3 Q = world.xyz / world.w, n = texture(smooth_, uv).xyz;
+    vec3 Q = world.xyz / world.w, n = texture(normal, uv).xyz;
     vec3 start = shadow_start(Q, normalize(Q - eye.xyz), n_tau.w, n, light.xyz - Q); // (kage), before: start = Q
     float seen = dot(n, light.xyz - Q) <= 0.0 ? 0.0 : seen_from(start, light.xyz - start, 1e-3);
     float cosine = max(0.0, dot(n_tau.xyz, normalize(light.xyz - Q)));

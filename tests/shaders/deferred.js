@@ -96,18 +96,18 @@ function deferred(given) {
 
   gl.viewport(0, 0, given.width, given.height); // the G-buffer: 8 bits of color, else 16
   const of_picture = (format, type) => target(given.width, given.height, format, gl.RGBA, type);
-  const [color, rough, smooth_] = [of_picture(gl.RGBA8, gl.UNSIGNED_BYTE), of_picture(gl.RGBA16F, gl.HALF_FLOAT),
+  const [color, rough, normal] = [of_picture(gl.RGBA8, gl.UNSIGNED_BYTE), of_picture(gl.RGBA16F, gl.HALF_FLOAT),
     of_picture(gl.RGBA16F, gl.HALF_FLOAT)];
   const depth = depth_of(given.width, given.height);
   const heights = texture(gl.R16F, given.map_size[0], given.map_size[1], gl.RED, gl.FLOAT,
       new Float32Array(Uint8Array.from(atob(given.heights), (c) => c.charCodeAt(0)).buffer), gl.LINEAR,
       gl.REPEAT);
-  framebuffer([color, rough, smooth_], depth);
+  framebuffer([color, rough, normal], depth);
   draw_meshes(program(mesh_vertex, given.gbuffer), {eye: given.eye, heights, zero: given.zero}, given.world_to_picture);
 
   framebuffer([of_picture(gl.RGBA8, gl.UNSIGNED_BYTE)], null); // the picture
   set(program(picture_vertex, given.lighting), {
-    color, rough, smooth_, depth, map, eye: given.eye, light: given.light, light_color: given.light_color,
+    color, rough, normal, depth, map, eye: given.eye, light: given.light, light_color: given.light_color,
     ambient: given.ambient, picture_to_world: given.picture_to_world, world_to_map: given.world_to_map});
   gl.bindVertexArray(null);
   gl.drawArrays(gl.TRIANGLES, 0, 3);

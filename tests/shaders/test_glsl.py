@@ -23,7 +23,7 @@ from tests.support.shaders import functions
 
 HEADER = glsl.SOURCE.read_text(encoding="utf-8")
 LIBRARY = glsl.TARGET.read_text(encoding="utf-8")
-EXAMPLES = sorted((TOP / "examples/shader").glob("*.frag"))
+EXAMPLES = sorted(path.name for kind in ("frag", "comp") for path in (TOP / "examples/shader").glob(f"*.{kind}"))
 
 #: CI must have these compilers: there their absence is a failure.
 pytestmark = pytest.mark.skipif(
@@ -208,16 +208,37 @@ float height(float u, float w) { return 0.1 * u * w; }
 """
 
 
-@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.name)
-def test_example(path: Path, tmp_path: Path) -> None:
-    """By the command that its head names."""
-    (command,) = re.findall(r"^ \* {5}(glslangValidator .*)$", path.read_text(encoding="utf-8"), re.MULTILINE)
-    words = command.split()
-    run(*words, *(["-o", tmp_path / "x.spv"] if "-V" in words else []), folder=path.parent)
-    if "-V" in words:
-        run("spirv-val", "--target-env", words[words.index("--target-env") + 1], tmp_path / "x.spv")
-        assert "intersection_query" in run("spirv-cross", tmp_path / "x.spv", "--msl", "--msl-version", "30000")
-        assert "RayQuery<" in run("spirv-cross", tmp_path / "x.spv", "--hlsl", "--shader-model", "65")
+def by_its_head(name: str, folder: Path) -> Path:
+    """Does what the head of an example says, in a copy; where its files are then."""
+    shutil.copytree(TOP / "examples/shader", folder / "examples/shader")
+    shutil.copytree(TOP / "include", folder / "include")
+    made = folder / "examples/shader"
+    commands = re.findall(r"^ \* {5}((?:glslangV|spirv).*)$", (made / name).read_text(encoding="utf-8"), re.MULTILINE)
+    assert commands
+    for command in commands:
+        run(*command.split(), folder=made)
+    return made
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_example(name: str, tmp_path: Path) -> None:
+    made = by_its_head(name, tmp_path)
+    for path in made.glob("*.spv"):
+        run("spirv-val", "--target-env", "vulkan1.2", path)
+    if name == "raytraced.frag":
+        assert "intersection_query" in run("spirv-cross", made / "frag.spv", "--msl", "--msl-version", "30000")
+        assert "RayQuery<" in run("spirv-cross", made / "frag.spv", "--hlsl", "--shader-model", "65")
+
+
+def test_the_page_shows_what_is_made(tmp_path: Path) -> None:
+    """The HLSL and the Metal of docs/shaders.md are what spirv-cross has made of shift.comp; GLSL is the file's."""
+    made = by_its_head("shift.comp", tmp_path)
+    page = (TOP / "docs/shaders.md").read_text(encoding="utf-8")
+    start = (made / "start.glsl").read_text(encoding="utf-8")
+    for language, text in (("hlsl", (made / "shift.hlsl").read_text()), ("metal", (made / "shift.metal").read_text()),
+                           ("glsl", LIBRARY + start)):
+        shown = re.findall(rf"^```{language}\n(.*?)^```", page, re.MULTILINE | re.DOTALL)
+        assert shown and all(block in text for block in shown), f"{language}: {shown}"
 
 
 def test_examples_in_comments(tmp_path: Path) -> None:
