@@ -6,7 +6,9 @@
 #   CLONES=no             without the AVX2 copies of the stages
 #   OPENMP=no             one thread a render, without OpenMP: for SANITIZE=thread, which does not see the barriers of
 #                         its library (CLONES=no, too: functions that choose their copy run before it is ready)
+#   VIEW=yes|no           kage view, the window; it needs SDL2, SDL2_ttf and fontconfig (yes where they are here)
 #   BUILD=DIR             where the objects and the program go
+#   PYTHON=PROGRAM        the Python for which the package is built (with cffi and numpy)
 #   V=1                   print the whole commands
 
 REAL     ?= float
@@ -20,6 +22,7 @@ OBJCOPY  ?= objcopy
 PREFIX   ?= /usr/local
 LIBDIR   ?= $(PREFIX)/lib
 LIBEXEC  ?= $(PREFIX)/libexec/kage
+PYTHON   ?= scripts/venv python
 Q         = $(if $(V),,@)
 comma    := ,
 # As many jobs as processors, unless make was told how many.
@@ -51,7 +54,7 @@ SANITIZER = -fsanitize=$(SANITIZE) -fno-sanitize-recover=all -fno-omit-frame-poi
 endif
 
 # The libraries' headers as system headers: their warnings are not ours.
-PKG_CFLAGS := $(patsubst -I%,-isystem %,$(shell pkg-config --cflags $(PKGS) assimp 2>/dev/null))
+PKG_CFLAGS := $(patsubst -I%,-isystem %,$(shell pkg-config --cflags $(PKGS) assimp libjpeg 2>/dev/null))
 # Embree 4 or 3, whichever has its headers here: it need not have a pkg-config file.
 EMBREE     := $(firstword $(foreach v,4 3,$(shell printf '\043include <embree$(v)/rtcore.h>\n' | \
                   $(CC) -fsyntax-only -x c - 2>/dev/null && echo $(v))))
@@ -64,12 +67,21 @@ override CFLAGS  += -Iinclude -Isrc $(STANDARD) $(OPTIMISE) $(VISIBILITY) $(THRE
                     $(SANITIZER) $(PKG_CFLAGS) -MMD -MP
 override LDFLAGS += $(THREADS) $(SANITIZER)
 LIBS       = $(PKG_LIBS) -lembree$(or $(EMBREE),3) -ldl -lm
-IMPORT_LIBS := $(shell pkg-config --libs assimp 2>/dev/null) -lm
+VIEW_PKGS   = sdl2 SDL2_ttf fontconfig
+ifndef VIEW
+VIEW       := $(shell pkg-config --exists $(VIEW_PKGS) && echo yes || echo no)
+else ifeq ($(filter yes no,$(VIEW)),)
+$(error VIEW=$(VIEW): expected yes or no)
+endif
+VIEW_CFLAGS := $(patsubst -I%,-isystem %,$(shell pkg-config --cflags $(VIEW_PKGS) 2>/dev/null))
+VIEW_LIBS   := $(shell pkg-config --libs $(VIEW_PKGS) 2>/dev/null)
+IMPORT_LIBS := $(shell pkg-config --libs assimp libpng libjpeg 2>/dev/null) -lm
 
 SOURCES   = $(patsubst src/%.c,%,$(wildcard src/*/*.c))
 PROGRAM   = $(filter cli/%,$(SOURCES))
-IMPORT    = $(filter import/%,$(SOURCES)) # kage-import, which alone links assimp
-LIBRARY   = $(filter-out cli/% import/%,$(SOURCES))
+IMPORT    = $(filter import/%,$(SOURCES)) # kage-import, which alone links assimp and libjpeg
+WINDOW    = $(filter view/% look/%,$(SOURCES)) # kage-view, which alone links SDL2; look/ does without
+LIBRARY   = $(filter-out cli/% import/% view/% look/%,$(SOURCES))
 VERSION  := $(shell sed -n 's/.*define KAGE_VERSION "\(.*\)".*/\1/p' include/kage.h)
 SONAME    = libkage.so.$(firstword $(subst ., ,$(VERSION)))
 UNITS     = $(patsubst tests/%.c,%,$(wildcard tests/unit/*/test_*.c))
@@ -81,14 +93,14 @@ GALLERY   = $(patsubst scenes/gallery/%.yaml,%,$(wildcard scenes/gallery/*.yaml)
 
 # What `make format` and `make lint` look at. The yardsticks in bench/limits are compiled by themselves.
 C_FILES   = $(wildcard include/*.h src/*/*.[ch] examples/*.c tests/support/*.h tests/unit/*/*.[ch] bench/limits/*.c)
-TIDY      = $(filter-out bench/limits/%,$(filter %.c,$(C_FILES)))
+TIDY      = $(filter-out bench/limits/% $(if $(filter yes,$(VIEW)),,src/view/%),$(filter %.c,$(C_FILES)))
 
 .PHONY: all render bench speed readme reference accept counts test unit-tests program-tests programs sanitize format
-.PHONY: lint tidy same install install-files uninstall clean help bootstrap FORCE
+.PHONY: lint tidy same python install install-files uninstall clean help bootstrap FORCE
 all: bootstrap
 	@$(MAKE) --no-print-directory $(JOBS) programs
 
-programs: $(BUILD)/kage $(BUILD)/kage-import $(BUILD)/libkage.a $(BUILD)/libkage.so
+programs: $(BUILD)/kage $(BUILD)/kage-import $(if $(filter yes,$(VIEW)),$(BUILD)/kage-view) $(BUILD)/libkage.a $(BUILD)/libkage.so
 
 help:
 	@echo 'make            build the program, $(BUILD)/kage, and the library'
@@ -96,6 +108,7 @@ help:
 	@echo 'make bench      measure cost and accuracy of each method, BENCH=quick|normal|full, into out/bench/index.html'
 	@echo 'make speed      measure what kage demands of its speed, SPEED=quick|normal|full, into out/speed/index.html'
 	@echo 'make readme     the same, then update the tables of README and docs'
+	@echo 'make python     the Python package, to import from $(BUILD)/python'
 	@echo 'make test       all tests'
 	@echo 'make accept     show regression pictures that have changed, and keep them if you confirm'
 	@echo 'make counts     count the instructions of eight renders again, and keep them for the test'
@@ -178,6 +191,12 @@ $(BUILD)/kage-import: $(IMPORT:%=$(BUILD)/%.o)
 	@echo '  LD  $@'
 	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(IMPORT_LIBS)
 
+$(BUILD)/kage-view: $(WINDOW:%=$(BUILD)/%.o) $(BUILD)/libkage.a
+	@echo '  LD  $@'
+	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(VIEW_LIBS) $(LIBS)
+
+$(patsubst %,$(BUILD)/%.o,$(filter view/%,$(WINDOW))): private override CFLAGS += $(VIEW_CFLAGS)
+
 # ---- the library ----
 
 # One object, in which what is hidden is local: only kage_... can be seen by a program that it is linked to.
@@ -204,8 +223,8 @@ $(BUILD)/flags: FORCE
 	@mkdir -p $(BUILD)
 	@echo '$(CC) $(CFLAGS) $(LDFLAGS)' | cmp -s - $@ || echo '$(CC) $(CFLAGS) $(LDFLAGS)' > $@
 
-$(BUILD)/mesh/load.o: private DEFINES += -DKAGE_LIBEXEC='"$(LIBEXEC)"'
-$(BUILD)/mesh/load.o: $(BUILD)/libexec
+$(BUILD)/mesh/reader.o $(BUILD)/cli/view.o: private DEFINES += -DKAGE_LIBEXEC='"$(LIBEXEC)"'
+$(BUILD)/mesh/reader.o $(BUILD)/cli/view.o: $(BUILD)/libexec
 
 $(BUILD)/libexec: FORCE
 	@mkdir -p $(BUILD)
@@ -229,9 +248,48 @@ $(UNITS:%=$(BUILD)/%): $(BUILD)/%: $(BUILD)/%.o $(BUILD)/internal.a
 	@echo '  LD  $@'
 	$(Q)$(CC) $(LDFLAGS) -o $@ $^ -lcmocka $(LIBS)
 
+$(filter $(BUILD)/unit/look/%,$(UNITS:%=$(BUILD)/%)): $(patsubst %,$(BUILD)/%.o,$(filter look/%,$(WINDOW)))
+
 # A test in which memory runs out: our own objects ask its functions.
 WRAPPED   = malloc calloc realloc posix_memalign strdup free fy_node_build_from_malloc_string
 $(BUILD)/unit/api/test_memory: private override LDFLAGS += $(WRAPPED:%=-Wl,--wrap=%)
+
+# ---- the Python package ----
+
+# In $(BUILD)/python, to import from there: links to python/kage, and the modules in C for Python's stable ABI, 3.11 on.
+PACKAGE   = $(BUILD)/python/kage
+PY_CFLAGS = -Iinclude -Ipython -DPy_LIMITED_API=0x030b0000 -fPIC -O2 \
+            -isystem $$($(PYTHON) -c 'import sysconfig; print(sysconfig.get_path("include"))')
+MODULES   = $(PACKAGE)/_kage.abi3.so $(if $(wildcard python/methods.h),$(PACKAGE)/_methods.abi3.so)
+# What a module takes from libkage.a is its own.
+PY_LINK   = $(CC) $(LDFLAGS) -shared -Wl,--exclude-libs,ALL
+
+python: $(MODULES) $(BUILD)/kage-import FORCE
+	@find $(PACKAGE) -type l -delete
+	@ln -s $(abspath $(wildcard python/kage/*.py python/kage/*.pyi python/kage/py.typed) $(BUILD)/kage-import \
+	    $(patsubst %/__init__.py,%,$(wildcard python/kage/*/__init__.py))) $(PACKAGE)
+
+# With it python/kage/structs.py, which is under version control as others read it, too.
+$(BUILD)/python/_kage.c: python/build_ext.py python/structs.py include/kage.h $(wildcard python/methods.h)
+	@echo '  PY  $@'
+	$(Q)$(PYTHON) python/structs.py && $(PYTHON) python/build_ext.py $(@D) >/dev/null
+
+$(BUILD)/python/_methods.c: $(BUILD)/python/_kage.c
+
+$(PACKAGE)/_kage.abi3.so: $(BUILD)/python/_kage.c python/progress.h $(BUILD)/libkage.a
+	@echo '  LD  $@'
+	@mkdir -p $(@D)
+	$(Q)$(PY_LINK) $(PY_CFLAGS) -o $@ $< $(BUILD)/libkage.a $(LIBS)
+
+$(BUILD)/python/%.o: python/%.c python/methods.c python/methods.h include/bumpshadow.h $(BUILD)/flags
+	@echo '  CC  $@'
+	@mkdir -p $(@D)
+	$(Q)$(CC) $(CFLAGS) -Ipython -c -o $@ $<
+
+$(PACKAGE)/_methods.abi3.so: $(BUILD)/python/_methods.c $(BUILD)/python/methods.o $(BUILD)/python/methods_double.o
+	@echo '  LD  $@'
+	@mkdir -p $(@D)
+	$(Q)$(PY_LINK) $(PY_CFLAGS) -o $@ $^ -lm
 
 # ---- tests ----
 
@@ -249,7 +307,7 @@ unit-tests: $(UNITS:%=$(BUILD)/%)
 $(UNITS:%=run-%): run-%: $(BUILD)/% $(BUILD)/kage-import
 	@KAGE_IMPORT=$(BUILD)/kage-import $< >$<.log 2>&1 && echo '  OK  $<' || { cat $<.log; echo '  FAILED  $<'; exit 1; }
 
-program-tests: programs
+program-tests: programs python
 	@$(MAKE) --no-print-directory $(JOBS) REAL=double build/double/kage
 	scripts/venv python -m pytest -q -n auto --dist loadfile tests # a file's tests share what they make
 
@@ -319,7 +377,7 @@ tidy: $(TIDY:%=tidy-%)
 
 $(TIDY:%=tidy-%): tidy-%: %
 	@clang-tidy --quiet $< -- \
-	    -Iinclude -Isrc -Itests -DKAGE_TESTS_DIR='"tests"' $(STANDARD) $(DEFINES) $(PKG_CFLAGS) 2>&1 | \
+	    -Iinclude -Isrc -Itests -DKAGE_TESTS_DIR='"tests"' $(STANDARD) $(DEFINES) $(PKG_CFLAGS) $(VIEW_CFLAGS) 2>&1 | \
 	    { grep -v ' warnings\{0,1\} .*generated\.$$' && exit 1 || exit 0; }
 
 # Does this tree make the same pictures as another commit? make same REV=main
@@ -336,6 +394,7 @@ install-files: $(BUILD)/kage.pc
 	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/include $(DESTDIR)$(LIBDIR)/pkgconfig $(DESTDIR)$(LIBEXEC)
 	install -m 755 $(BUILD)/kage $(DESTDIR)$(PREFIX)/bin/kage
 	install -m 755 $(BUILD)/kage-import $(DESTDIR)$(LIBEXEC)/kage-import
+	$(if $(filter yes,$(VIEW)),install -m 755 $(BUILD)/kage-view $(DESTDIR)$(LIBEXEC)/kage-view)
 	install -m 644 include/kage.h include/bumpshadow.h include/bumpshadow.glsl $(DESTDIR)$(PREFIX)/include
 	install -m 644 $(BUILD)/libkage.a $(DESTDIR)$(LIBDIR)/libkage.a
 	install -m 755 $(BUILD)/$(SONAME) $(DESTDIR)$(LIBDIR)/$(SONAME)
@@ -343,7 +402,7 @@ install-files: $(BUILD)/kage.pc
 	install -m 644 $(BUILD)/kage.pc $(DESTDIR)$(LIBDIR)/pkgconfig/kage.pc
 
 uninstall:
-	rm -f $(DESTDIR)$(PREFIX)/bin/kage $(DESTDIR)$(LIBEXEC)/kage-import \
+	rm -f $(DESTDIR)$(PREFIX)/bin/kage $(DESTDIR)$(LIBEXEC)/kage-import $(DESTDIR)$(LIBEXEC)/kage-view \
 	    $(DESTDIR)$(PREFIX)/include/kage.h \
 	    $(DESTDIR)$(PREFIX)/include/bumpshadow.h $(DESTDIR)$(PREFIX)/include/bumpshadow.glsl \
 	    $(DESTDIR)$(LIBDIR)/libkage.a $(DESTDIR)$(LIBDIR)/$(SONAME) $(DESTDIR)$(LIBDIR)/libkage.so \

@@ -95,6 +95,31 @@ typedef struct kage_scene kage_scene;
  * nonzero, the call ends soon with KAGE_CANCELLED. It may call the library. */
 typedef int kage_progress(void *user, const char *what, double share);
 
+/* Arrays in the caller's memory, in place of files: where a scene can name a file, "array:NAME" names one of them. They
+ * are copied during the call. A name has up to 59 letters, digits, _ and -. Pictures of the scene name the array, but
+ * do not hold it. */
+
+typedef enum kage_type { KAGE_U8, KAGE_U16, KAGE_F32, KAGE_F64 } kage_type;
+
+/* A height map or an image. Whole numbers mean what those of a PNG mean, floats what those of an EXR mean. A height map
+ * has 1 channel; an image has 1 (grey) or 3 (red, green, blue). One channel more is alpha: height maps ignore it, of
+ * images it must be 1. */
+typedef struct kage_image_array {
+    const char *name;
+    int width, height, channels;
+    kage_type type;
+    const void *samples; /* height rows from the top, of width pixels, of `channels` samples */
+} kage_image_array;
+
+/* A model. All means what it means in a PLY or OBJ file: coordinates are right-handed, corners go round
+ * counterclockwise seen from outside, and v goes up. */
+typedef struct kage_mesh_array {
+    const char *name;
+    int vertex_count, triangle_count;
+    const double *positions, *normals, *uvs; /* 3, 3 and 2 numbers a vertex; normals, uvs: NULL: none */
+    const uint32_t *triangles;               /* 3 vertices each */
+} kage_mesh_array;
+
 typedef struct kage_load_options {
     const char *const *sets; /* set_count changes of the scene, PATH=VALUE as for `kage render --set` */
     int set_count;
@@ -102,13 +127,16 @@ typedef struct kage_load_options {
     kage_progress *progress; /* NULL: none */
     void *user;              /* for progress */
 
-    /* The program that reads models (OBJ, PLY, STL, glTF, OFF). NULL: the environment's KAGE_IMPORT; without that
-     * kage-import in the folder of libkage.so (or of the program that libkage.a is in), in ../libexec/kage from there,
-     * or in libexec/kage of the prefix that the library was installed to. Without the program a scene with a model is
-     * an error of the scene; other scenes do not need it. It has limited time (3 s and 1 s a MiB) and memory
+    /* The program that reads models (OBJ, PLY, STL, glTF, OFF, COLLADA, FBX, 3DS). NULL: the environment's KAGE_IMPORT;
+     * without that kage-import in the folder of libkage.so (or of the program that libkage.a is in), in ../libexec/kage
+     * from there, or in libexec/kage of the prefix that the library was installed to. Without the program a scene with
+     * a model is an error of the scene; other scenes do not need it. It has limited time (3 s and 1 s a MiB) and memory
      * (512 MiB and 96 times the file); a model that crashes it is an error of the scene, too. */
     const char *model_reader;
-    void *reserved[8];
+    const kage_image_array *images;
+    const kage_mesh_array *meshes;
+    int image_count, mesh_count;
+    void *reserved[5];
 } kage_load_options;
 
 /* Read the scene in the file at `path`. options: NULL for the defaults. The list has all errors that were found. */
@@ -158,7 +186,14 @@ typedef struct kage_object_info {
     double height[2];             /* bounds of the bump's height P, in scene units */
     int bounded;                  /* P has finite bounds */
     int copies;                   /* how many copies of copy_of it is, from a list; 0: it is one object */
+    const char *bump_of;          /* the object under whose key `bump` the bump is, often itself; NULL: no bump */
+    double bump_scale;            /* the bump's `scale` */
 } kage_object_info;
+
+typedef struct kage_camera_info {
+    double eye[3], at[3], up[3]; /* as the scene says; eye: its `from` */
+    double fov, width;           /* fov in degrees, 0: orthographic; width in scene units, 0: a pinhole */
+} kage_camera_info;
 
 typedef struct kage_scene_info {
     const char *path;    /* or the name of a text in memory */
@@ -173,6 +208,7 @@ typedef struct kage_scene_info {
     const kage_object_info *objects;
     const char *bump_shadow; /* render.bump_shadow */
     int shifted;             /* render.shade: shifted */
+    kage_camera_info camera;
 } kage_scene_info;
 
 /* What is in a scene. */
@@ -206,7 +242,8 @@ typedef struct kage_render_options {
     void *user;              /* for progress */
     const char *bump_shadow; /* the bumps' own shadows: none march:N horizon exact; NULL: as the scene says */
     kage_choice shifted;     /* yes: shade where the shadow rays start; no: at the smooth hit */
-    void *reserved[6];
+    struct kage_film *reuse; /* a film that is no longer needed: see kage_render. NULL: none */
+    void *reserved[5];
 } kage_render_options;
 
 /* The best picture for its cost: options.method, options.bump_shadow, and options.shifted = KAGE_YES. */
@@ -218,7 +255,10 @@ typedef struct kage_film kage_film;
 /* Render the scene into a new film, of at most 2^28 pixels. options: NULL for the defaults. The bytes of a film depend
  * neither on the threads nor on the crop. The first render with another value of `displaced`, with `exact`, `auto` or
  * `horizon`, reads the scene again from its text and files, which must be unchanged; errors then are KAGE_BAD_INPUT.
- * Several threads may render one scene without a lock. The film may outlive the scene. */
+ * Several threads may render one scene without a lock. The film may outlive the scene.
+ *
+ * options.reuse is freed by the call, whatever it returns, but its memory becomes that of the new film where there is
+ * enough of it: pictures of one size, one after another, then cost no page faults. The bytes are the same. */
 KAGE_API kage_status kage_render(kage_scene *scene, const kage_render_options *options, kage_film **film,
                                  kage_errors **errors);
 
@@ -239,6 +279,22 @@ KAGE_API const char *kage_film_plane_name(const kage_film *film, int index); /* 
 
 /* The values of a plane, not a copy: height x width, row by row from the top. NULL: no such plane. */
 KAGE_API const float *kage_film_plane(const kage_film *film, const char *name);
+
+/* The picture in sRGB, into height rows of 4 bytes a pixel, red, green, blue and 255: the very values of an 8-bit PNG.
+ * row_bytes: from the start of a row to that of the next; 0: 4 times the width. rgba has height times row_bytes bytes,
+ * but for what follows the last row's pixels. threads: 0: as many as there are processors. */
+KAGE_API kage_status kage_film_srgb(const kage_film *film, uint8_t *rgba, size_t row_bytes, int threads);
+
+/* A text that a file of the film holds. */
+typedef struct kage_metadata {
+    const char *name, *value; /* the film owns them */
+} kage_metadata;
+
+/* What kage_film_write puts into a file, as PNG texts or EXR attributes: Software, kage:file (the scene's name),
+ * kage:scene (its text), kage:set (its changes, a line each), kage:crop, kage:shadow, kage:guard. NULL fields: no text
+ * of that index. */
+KAGE_API int kage_film_metadata_count(const kage_film *film);
+KAGE_API kage_metadata kage_film_metadata(const kage_film *film, int index);
 
 /* ---- files ---- */
 
@@ -273,6 +329,16 @@ KAGE_API kage_status kage_film_write(const kage_film *film, const char *path, co
  * film: the last band, with the counts of all bands that this call has rendered; NULL: not wanted. */
 KAGE_API kage_status kage_render_file(kage_scene *scene, const kage_render_options *render, const char *path,
                                       const kage_write_options *write, kage_film **film, kage_errors **errors);
+
+/* Join bands of a picture to one file: EXR that kage_film_write or kage_render_file has written with a crop, in any
+ * order. The bytes are those that kage_render_file would have written for all of their rows. Chunks are copied as they
+ * are, so memory is that of 16 rows. Of the options only `progress` and `user` count.
+ *
+ * Bands that do not belong together are KAGE_BAD_INPUT: with a gap, or rows that are in two of them; with other
+ * columns, layers, options, scenes or versions; with a number of rows, above the last band, that is no multiple of 16.
+ */
+KAGE_API kage_status kage_file_join(const char *const *paths, int count, const char *path,
+                                    const kage_write_options *options, kage_errors **errors);
 
 /* Whether a picture could be written at `path` now: its folder is there and may be written, and so may an older file.
  * Nothing is changed. */
@@ -395,6 +461,40 @@ typedef struct kage_povray_report {
  * something that POV-Ray lacks. */
 KAGE_API kage_status kage_scene_write_povray(kage_scene *scene, const char *path, const kage_povray_options *options,
                                              kage_povray_report *report, kage_errors **errors);
+
+/* ---- models as scenes ---- */
+
+typedef struct kage_import_options {
+    const char *const *bumps; /* bump_count times OBJECT=MAP,scale=S,KEY=VALUE...: a height map, its file's name as the
+                               * caller's, for the objects whose name fits OBJECT, which may have * and ? */
+    int bump_count;
+    const char *camera;       /* the name of the model's camera; NULL: its first */
+    int z_up;                 /* not 0: the model's z is up, not its y */
+    double brightness;        /* of all lights together; 0: 1 */
+    int overwrite;            /* not 0: files that exist are replaced */
+    int threads;              /* 0: as many as there are processors */
+    kage_progress *progress;  /* NULL: none */
+    void *user;               /* for progress */
+    const char *model_reader; /* as in kage_load_options */
+    const char *const *sets;  /* set_count changes, only of `scene` below, not of the file */
+    int set_count;
+    void *reserved[8];
+} kage_import_options;
+
+typedef struct kage_import_report {
+    kage_scene *scene; /* as kage_scene_load would give it, with the changes; the report owns it */
+    int note_count;    /* lines on what is in the model but not in the scene */
+    const char *const *notes;
+    int file_count; /* images that were written beside the scene */
+    const char *const *files;
+} kage_import_report;
+
+/* Write a scene for a model that kage_load_options.model_reader reads, with its camera, lights, materials, images and
+ * objects (docs/models.md). The triangles stay in the model's file, which the scene names. All is read and checked
+ * before the scene is written, whole or not at all; after a failure no new file stays. */
+KAGE_API kage_status kage_model_import(const char *model, const char *scene, const kage_import_options *options,
+                                       kage_import_report **report, kage_errors **errors);
+KAGE_API void kage_import_report_free(kage_import_report *report); /* NULL: nothing */
 
 /* ---- methods ---- */
 

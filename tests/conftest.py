@@ -9,6 +9,7 @@ import os
 import shutil
 import signal
 import subprocess
+import sys
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -18,6 +19,9 @@ import pytest
 
 TOP = Path(__file__).resolve().parent.parent
 PROGRAM = Path(os.environ.get("KAGE", TOP / "build" / "float" / "kage")).resolve()
+
+#: The Python package of the same build (`make python`).
+sys.path.insert(0, str(PROGRAM.parent / "python"))
 
 #: CI must have POV-Ray: there its absence is a failure.
 needs_povray = pytest.mark.skipif(not shutil.which("povray") and not os.environ.get("CI"), reason="no povray")

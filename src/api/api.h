@@ -44,7 +44,14 @@ struct kage_scene {
     /* what a further reading needs; owned */
     char *folder, *model_reader, **set;
     int sets, threads;
+    arrays arrays;
 };
+
+/* Check the caller's arrays. False: errors in *e. */
+bool arrays_are_good(const kage_load_options *o, errors *e);
+
+/* Copy them. False: out of memory. */
+bool arrays_take(arrays *to, const kage_load_options *o);
 
 /* What decides which reading of a scene a render needs. */
 typedef struct reading {
@@ -60,8 +67,14 @@ const scene *scene_reading(kage_scene *k, reading r, errors *e);
 bool scene_note(kage_scene *k);
 void scene_forget(kage_scene *k);
 
+/* The text `Software` in a picture begins with this; the version follows. */
+#define SOFTWARE "kage"
+
+enum { PICTURE_TEXTS = 7, PICTURE_CROP_SIZE = 64 };
+
 struct kage_film {
     film *film;
+    char crop[PICTURE_CROP_SIZE]; /* as a file says it: the part that is on the film */
     char *file, *source, *sets; /* for a picture's metadata: the scene's base name, its text, its changes, one a line */
     char method[METHOD_NAME_SIZE];
     bool guard;
@@ -74,6 +87,14 @@ struct kage_film {
  * and B; and whether it names one of a film's. */
 bool film_names_plane(const char *word, size_t n, const char *plane);
 bool film_has_layer(const film *f, const char *word, size_t n);
+
+/* Two of the texts in a picture's file. */
+#define PICTURE_SOFTWARE "Software"
+#define PICTURE_CROP "kage:crop"
+
+/* What a picture's file says of it; crop: as picture_crop writes it. The film owns the texts. */
+void picture_texts(const kage_film *f, const char *crop, image_text text[PICTURE_TEXTS]);
+void picture_crop(window part, char text[PICTURE_CROP_SIZE]);
 
 /* A picture's file that is being written, and the planes of films that go into it. */
 typedef struct picture {

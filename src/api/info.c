@@ -1,6 +1,7 @@
 /* What can be asked for: the version, the methods, and what is in a scene (kage_scene_get_info). */
 #include "api/api.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -37,6 +38,8 @@ static void note_bump(const object *o, kage_object_info *x)
     x->map_range[1] = o->map.high;
     x->height[0] = (double)o->bump->Pmin;
     x->height[1] = (double)o->bump->Pmax;
+    x->bump_of = o->bump_of ? o->bump_of : o->name;
+    x->bump_scale = o->bump_spec.function ? o->bump_spec.scale : fabs(o->bump_spec.layout.scale);
     x->bounded = o->bump->Pmax - o->bump->Pmin < REAL_FAR;
 }
 
@@ -80,6 +83,16 @@ static bool note_all(const scene *s, kage_scene_info *x)
     return true;
 }
 
+static kage_camera_info of_camera(const scene *s)
+{
+    const bool flat = s->camera.orthographic;
+    kage_camera_info x = {.fov = flat ? 0 : s->view.fov, .width = flat ? s->view.width : 0};
+    set3(x.eye, s->camera.from);
+    set3(x.at, s->view.at);
+    set3(x.up, s->view.up);
+    return x;
+}
+
 bool scene_note(kage_scene *k)
 {
     const scene *s = k->first;
@@ -104,6 +117,7 @@ bool scene_note(kage_scene *k)
         .depth = s->sends ? s->depth : 0,
         .light_count = s->lights,
         .object_count = s->objects,
+        .camera = of_camera(s),
     };
     return note_all(s, &k->info) && name && own;
 }

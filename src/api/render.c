@@ -171,7 +171,7 @@ static kage_film *new_film(const kage_scene *k, const kage_render_options *o, co
     }
     if (!f || !f->file || !f->source || !f->sets || !f->stages)
         errors_add(e, "out of memory");
-    else if ((f->film = film_new(&j->view, j->part, j->layers, o->threads, e)))
+    else if ((f->film = film_new(&j->view, j->part, j->layers, o->threads, o->reuse ? o->reuse->film : NULL, e)))
         return f;
     kage_film_free(f);
     return NULL;
@@ -217,6 +217,7 @@ static bool fill(kage_film *f, const job *j, const kage_render_options *o, const
     stats t;
     const double start = stats_clock();
     const bool good = render(&k, &how, f->film, &t, e);
+    picture_crop(f->film->part, f->crop);
     stats_add(sum, &t);
     *seconds += stats_clock() - start;
     set_stats(f, sum, *seconds);
@@ -246,6 +247,7 @@ kage_status kage_render(kage_scene *k, const kage_render_options *given, kage_fi
     if (status == KAGE_OK && !fits_film(j.part, &e))
         status = KAGE_BAD_OPTION;
     kage_film *f = status == KAGE_OK ? new_film(k, &o, &j, &e) : NULL;
+    kage_film_free(o.reuse);
     const bool good = f && fill(f, &j, &o, w.call ? &p : NULL, &t, &seconds, &e) && !w.cancelled;
     c_locale_end(&l);
     if (!good) {
@@ -330,6 +332,7 @@ kage_status kage_render_file(kage_scene *k, const kage_render_options *given, co
     }
     const int rows = status != KAGE_OK ? 0 : write.band ? write.band : band_rows(&j, o.threads);
     kage_film *f = status == KAGE_OK ? new_band(k, &o, &j, rows, &e) : NULL;
+    kage_film_free(o.reuse);
     if (status == KAGE_OK)
         status = f ? picture_begin(&file, f, j.part, path, &write, &e) : KAGE_NO_MEMORY;
     if (status == KAGE_OK) {

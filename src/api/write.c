@@ -7,34 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The text `Software` in a picture begins with this; the version follows. */
-#define SOFTWARE "kage"
-
-/* ---- what a picture's file says of it ---- */
-
-enum { TEXTS = 7 };
-typedef struct picture_texts {
-    image_text text[TEXTS];
-    char crop[64];
-} picture_texts;
-
-/* What the picture is made from, except for maps, so that it can be rendered again. No clock, path or number of
- * threads: the same picture has the same bytes. */
-static void texts_of(const kage_film *f, window w, picture_texts *t)
-{
-    snprintf(t->crop, sizeof t->crop, "%d,%d,%d,%d", w.x0, w.y0, w.x1, w.y1);
-    const image_text text[TEXTS] = {
-        {"Software", SOFTWARE " " KAGE_VERSION " " REAL_NAME},
-        {"kage:file", f->file},
-        {"kage:scene", f->source},
-        {"kage:set", f->sets},
-        {"kage:crop", t->crop},
-        {"kage:shadow", f->method},
-        {"kage:guard", f->guard ? "yes" : "no"},
-    };
-    memcpy(t->text, text, sizeof text);
-}
-
 /* ---- the options ---- */
 
 /* The word after this one in a list with commas, or NULL. */
@@ -107,7 +79,8 @@ kage_status picture_begin(picture *p, const kage_film *f, window part, const cha
 {
     const film *planes = f->film;
     const char *layers = has_ending(path, ".png") ? "color" : o->layers;
-    picture_texts t;
+    image_text text[PICTURE_TEXTS];
+    char crop[PICTURE_CROP_SIZE];
     *p = (picture){0};
     if (!options_are_good(path, o, planes, e))
         return KAGE_BAD_OPTION;
@@ -121,12 +94,13 @@ kage_status picture_begin(picture *p, const kage_film *f, window part, const cha
     for (int k = 0; k < planes->planes; k++)
         if (is_wanted(layers, planes->name[k]))
             p->plane[p->planes++] = k;
-    texts_of(f, part, &t);
+    picture_crop(part, crop);
+    picture_texts(f, crop, text);
     const image_form form = {.width = part.x1 - part.x0,
                              .height = part.y1 - part.y0,
                              .channels = p->planes,
-                             .texts = TEXTS,
-                             .text = t.text,
+                             .texts = PICTURE_TEXTS,
+                             .text = text,
                              .bits = o->bits ? o->bits : 8,
                              .threads = o->threads,
                              .keep = o->keep != 0,

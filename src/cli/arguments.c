@@ -48,9 +48,10 @@ static bool add_set(arguments *a, const char *fmt, ...)
 static bool read_output(arguments *a, const char *name, const char *v)
 {
     (void)name;
-    if (a->command == COMMAND_POV) {
-        if (!has_ending(v, ".pov"))
-            return usage_error("-o %s: expected a name that ends in .pov", v);
+    if (a->command == COMMAND_POV || a->command == COMMAND_IMPORT) {
+        const char *ending = a->command == COMMAND_POV ? ".pov" : ".yaml";
+        if (!has_ending(v, ending))
+            return usage_error("-o %s: expected a name that ends in %s", v, ending);
         if (a->outputs)
             return usage_error("-o %s: a second output, expected one", v);
     } else if (!has_ending(v, ".png") && !has_ending(v, ".exr"))
@@ -148,6 +149,13 @@ static bool read_threads(arguments *a, const char *name, const char *v)
     return true;
 }
 
+static bool read_frames(arguments *a, const char *name, const char *v)
+{
+    if (!whole_numbers(v, 0, 1, &a->frames) || a->frames < 1)
+        return usage_error("%s %s: expected a number from 1 to 1000000", name, v);
+    return true;
+}
+
 static bool read_layers(arguments *a, const char *name, const char *v)
 {
     (void)name;
@@ -171,6 +179,35 @@ static bool read_set(arguments *a, const char *name, const char *v)
     return add_set(a, "%s", v);
 }
 
+static bool read_bump(arguments *a, const char *name, const char *v)
+{
+    if (a->bumps == MAX_BUMPS)
+        return usage_error("more than %d times %s", MAX_BUMPS, name);
+    a->bump[a->bumps++] = v;
+    return true;
+}
+
+static bool read_camera(arguments *a, const char *name, const char *v)
+{
+    (void)name;
+    a->camera = v;
+    return true;
+}
+
+static bool read_up(arguments *a, const char *name, const char *v)
+{
+    a->z_up = strcmp(v, "z") == 0;
+    return a->z_up || strcmp(v, "y") == 0 || usage_error("%s %s: expected y or z", name, v);
+}
+
+static bool read_brightness(arguments *a, const char *name, const char *v)
+{
+    char *end = NULL;
+    a->brightness = *v && strspn(v, "0123456789.e+-") == strlen(v) ? strtod(v, &end) : -1;
+    return (a->brightness > 0 && a->brightness <= 1e6 && !*end) ||
+           usage_error("%s %s: expected a number above 0 and up to 1000000", name, v);
+}
+
 /* ---- the table ---- */
 
 typedef struct option {
@@ -182,34 +219,45 @@ typedef struct option {
     size_t flag;                     /* the offset of a bool in `arguments` */
 } option;
 
-enum { ALL = COMMAND_RENDER | COMMAND_CHECK | COMMAND_PIXEL | COMMAND_POV, PICTURES = COMMAND_RENDER | COMMAND_POV };
+enum {
+    ALL = COMMAND_RENDER | COMMAND_CHECK | COMMAND_PIXEL | COMMAND_POV | COMMAND_VIEW,
+    PICTURES = COMMAND_RENDER | COMMAND_POV,
+    MAKERS = COMMAND_RENDER | COMMAND_IMPORT,
+    LOOKS = COMMAND_RENDER | COMMAND_VIEW
+};
 
 static const option options[] = {
-    {"-o", PICTURES, read_output, {NULL}, 0},
-    {"--shadow", COMMAND_RENDER, read_shadow, {NULL}, 0},
-    {"--shade", COMMAND_RENDER, read_shade, {NULL}, 0},
-    {"--bump-shadow", COMMAND_RENDER, read_bump_shadow, {NULL}, 0},
+    {"-o", PICTURES | COMMAND_IMPORT, read_output, {NULL}, 0},
+    {"--shadow", LOOKS, read_shadow, {NULL}, 0},
+    {"--shade", LOOKS, read_shade, {NULL}, 0},
+    {"--bump-shadow", LOOKS, read_bump_shadow, {NULL}, 0},
     {"--relief",
-     COMMAND_RENDER,
+     LOOKS,
      NULL,
      {"render.shadow=" KAGE_RELIEF_METHOD, "render.shade=shifted", "render.bump_shadow=" KAGE_RELIEF_BUMP_SHADOW},
      0},
-    {"--surface", PICTURES, read_surface, {NULL}, 0},
+    {"--surface", PICTURES | COMMAND_VIEW, read_surface, {NULL}, 0},
     {"--size", ALL, read_size, {NULL}, 0},
-    {"--aa", COMMAND_RENDER, read_aa, {NULL}, 0},
-    {"--aa-threshold", COMMAND_RENDER, read_threshold, {NULL}, 0},
+    {"--aa", LOOKS, read_aa, {NULL}, 0},
+    {"--aa-threshold", LOOKS, read_threshold, {NULL}, 0},
     {"--crop", COMMAND_RENDER, read_crop, {NULL}, 0},
     {"--set", ALL, read_set, {NULL}, 0},
-    {"--threads", COMMAND_RENDER, read_threads, {NULL}, 0},
+    {"--threads", MAKERS | LOOKS, read_threads, {NULL}, 0},
     {"--bits", COMMAND_RENDER, read_bits, {NULL}, 0},
     {"--layers", COMMAND_RENDER, read_layers, {NULL}, 0},
-    {"--no-guard", COMMAND_RENDER, NULL, {"render.guard=false"}, 0},
-    {"--no-self-shadow", PICTURES, NULL, {"render.self_shadow=false"}, 0},
+    {"--no-guard", LOOKS, NULL, {"render.guard=false"}, 0},
+    {"--no-self-shadow", PICTURES | COMMAND_VIEW, NULL, {"render.self_shadow=false"}, 0},
     {"--no-cast", COMMAND_POV, NULL, {NULL}, offsetof(arguments, no_cast)},
-    {"--overwrite", COMMAND_RENDER, NULL, {NULL}, offsetof(arguments, overwrite)},
+    {"--overwrite", MAKERS, NULL, {NULL}, offsetof(arguments, overwrite)},
     {"--resume", COMMAND_RENDER, NULL, {NULL}, offsetof(arguments, resume)},
     {"--stats", COMMAND_RENDER, NULL, {NULL}, offsetof(arguments, stats)},
-    {"--quiet", COMMAND_RENDER, NULL, {NULL}, offsetof(arguments, quiet)},
+    {"--bump", COMMAND_IMPORT, read_bump, {NULL}, 0},
+    {"--camera", COMMAND_IMPORT, read_camera, {NULL}, 0},
+    {"--up", COMMAND_IMPORT, read_up, {NULL}, 0},
+    {"--brightness", COMMAND_IMPORT, read_brightness, {NULL}, 0},
+    {"--frames", COMMAND_VIEW, read_frames, {NULL}, 0},
+    {"--report", COMMAND_VIEW, NULL, {NULL}, offsetof(arguments, report)},
+    {"--quiet", MAKERS, NULL, {NULL}, offsetof(arguments, quiet)},
 };
 
 /* NULL: the command has no such option. */
@@ -260,7 +308,10 @@ bool arguments_read(arguments *a, int argc, char **argv, int command)
         }
     }
     if (a->operands < operands)
-        return usage_error("'kage %s' lacks %s; see kage --help", a->name, a->operands ? "the pixel X,Y" : "a scene");
+        return usage_error("'kage %s' lacks %s; see kage --help", a->name,
+                           a->operands                 ? "the pixel X,Y"
+                           : command == COMMAND_IMPORT ? "a model"
+                                                       : "a scene");
     return true;
 }
 

@@ -9,7 +9,7 @@
 
 #include "kage.h"
 
-enum { EXIT_OUTPUT = 1, EXIT_INPUT = 2, MAX_OUTPUTS = 16, MAX_SETS = 256 };
+enum { EXIT_OUTPUT = 1, EXIT_INPUT = 2, MAX_OUTPUTS = 16, MAX_SETS = 256, MAX_BUMPS = 256 };
 
 #if defined(__GNUC__)
 #define CLI_PRINTF(fmt, first) __attribute__((format(printf, fmt, first)))
@@ -17,8 +17,15 @@ enum { EXIT_OUTPUT = 1, EXIT_INPUT = 2, MAX_OUTPUTS = 16, MAX_SETS = 256 };
 #define CLI_PRINTF(fmt, first)
 #endif
 
-/* The commands that take a scene, as bits. */
-enum { COMMAND_RENDER = 1, COMMAND_CHECK = 2, COMMAND_PIXEL = 4, COMMAND_POV = 8 };
+/* The commands that take a scene or a model, as bits. */
+enum {
+    COMMAND_RENDER = 1,
+    COMMAND_CHECK = 2,
+    COMMAND_PIXEL = 4,
+    COMMAND_POV = 8,
+    COMMAND_IMPORT = 16,
+    COMMAND_VIEW = 32
+};
 
 /* The parsed command line. Zero: not given. */
 typedef struct arguments {
@@ -33,7 +40,13 @@ typedef struct arguments {
     int crop[4];
     const char *layers; /* of an EXR, with commas; NULL: all */
     int threads, bits;
-    bool stats, quiet, no_cast, overwrite, resume;
+    const char *bump[MAX_BUMPS]; /* values of --bump */
+    int bumps;
+    const char *camera; /* of a model */
+    double brightness;
+    int frames; /* of view, to measure */
+    bool z_up;
+    bool stats, quiet, no_cast, overwrite, resume, report;
 } arguments;
 
 /* Parse a command's arguments. False: the mistake is on stderr. Call arguments_free in either case. */
@@ -44,6 +57,9 @@ int command_render(const arguments *given);
 int command_check(const arguments *a);
 int command_pixel(const arguments *a);
 int command_pov(const arguments *a);
+int command_import(const arguments *a);
+int command_view(const arguments *a); /* returns only where the window's program can't be started */
+int command_view_help(void);
 
 /* ---- common.c ---- */
 

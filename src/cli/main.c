@@ -11,10 +11,12 @@ static const char help[] =
     "  kage check SCENE [options]       list what is in a scene, and how steep its bumps are\n"
     "  kage pixel SCENE X,Y [options]   all intermediate values of one pixel, for each method\n"
     "  kage pov SCENE -o FILE [options] write the scene for POV-Ray 3.7\n"
+    "  kage view SCENE [options]        look at a scene in a window, and change it; see kage view --help\n"
+    "  kage import MODEL -o FILE [options]  write a scene for a model: glTF, OBJ, COLLADA and others\n"
     "  kage methods                     list the methods\n"
     "  kage --help, kage --version\n"
     "\n"
-    "Options of all commands:\n"
+    "Options of all commands but import:\n"
     "  --set PATH=VALUE     change a value of the scene: --set objects.ground.bump.scale=0.1\n"
     "  --size WxH           size of the picture in pixels\n"
     "\n"
@@ -41,14 +43,26 @@ static const char help[] =
     "  --stats              time and count each stage\n"
     "  --quiet              no progress bar, no closing line\n"
     "\n"
+    "Options of view: those of render that change the scene, and --threads.\n"
+    "\n"
     "Options of pov:\n"
     "  -o FILE              output file, a name that ends in .pov\n"
     "  --surface KIND       smooth (without the bumps), or displaced: surfaces that are truly displaced by P\n"
     "  --no-self-shadow     bumped objects cast no shadows\n"
     "  --no-cast            all other objects cast none\n"
     "\n"
+    "Options of import:\n"
+    "  -o FILE              output file, a name that ends in .yaml\n"
+    "  --bump OBJECT=MAP,scale=S[,KEY=VALUE...]  a height map for the objects of this name, which may have * and ?;\n"
+    "                       scale: height of white above black; other keys: zero (0.5), sign (up), smooth ...\n"
+    "  --camera NAME        this camera of the model (its first)\n"
+    "  --up y|z             the model's axis that points up (y)\n"
+    "  --brightness X       of all lights together (1)\n"
+    "  --overwrite          also replace files that exist\n"
+    "  --threads N, --quiet as for render\n"
+    "\n"
     "Scene files are described in docs/scene.md, the method in docs/method.md, the export to POV-Ray in\n"
-    "docs/povray.md.\n"
+    "docs/povray.md, models in docs/models.md.\n"
     "Exit status: 0; 1 where a picture can't be written; 2 for bad input.\n";
 
 /* Flush stdout. Returns the exit status. */
@@ -73,16 +87,17 @@ int main(int argc, char **argv)
         const char *name;
         int command;
         int (*run)(const arguments *a);
-    } commands[] = {{"render", COMMAND_RENDER, command_render},
-                    {"check", COMMAND_CHECK, command_check},
-                    {"pixel", COMMAND_PIXEL, command_pixel},
-                    {"pov", COMMAND_POV, command_pov}};
+    } commands[] = {{"render", COMMAND_RENDER, command_render}, {"check", COMMAND_CHECK, command_check},
+                    {"pixel", COMMAND_PIXEL, command_pixel},    {"pov", COMMAND_POV, command_pov},
+                    {"import", COMMAND_IMPORT, command_import}, {"view", COMMAND_VIEW, command_view}};
     if (argc < 2) {
         fputs(help, stderr);
         return EXIT_INPUT;
     }
     for (int k = 1; k < argc; k++)
         if (strcmp(argv[k], "--help") == 0 || strcmp(argv[k], "-h") == 0) {
+            if (strcmp(argv[1], "view") == 0)
+                return command_view_help();
             fputs(help, stdout);
             return finish(0);
         }
@@ -99,6 +114,7 @@ int main(int argc, char **argv)
             arguments_free(&a);
             return finish(status);
         }
-    usage_error("no command '%s', expected render, check, pixel, pov or methods; see kage --help", argv[1]);
+    usage_error("no command '%s', expected render, check, pixel, pov, import, view or methods; see kage --help",
+                argv[1]);
     return EXIT_INPUT;
 }

@@ -28,21 +28,36 @@ static float *new_plane(size_t bytes)
     return posix_memalign(&p, 64, bytes) == 0 ? p : NULL;
 }
 
-/* All values 0. The memory is touched here, so that rendering does not wait for page faults, nor for its threads to
- * start. */
-static void clear(film *f, size_t pixels, int threads)
+/* The new memory, of the planes from `first` on, is touched here, so that rendering does not wait for page faults, nor
+ * for its threads to start. */
+static void clear(film *f, int first, size_t pixels, int threads)
 {
     enum { PART = 1 << 18 }; /* values; so few are not worth a thread */
     const long parts = (long)((pixels + PART - 1) / PART), all = parts * f->planes;
     (void)threads; /* without OpenMP */
 #pragma omp parallel for num_threads(threads) schedule(static) if (parts > 1)
-    for (long k = 0; k < all; k++) {
+    for (long k = parts * first; k < all; k++) {
         const size_t from = (size_t)(k % parts) * PART, rest = pixels - from;
         memset(f->plane[k / parts] + from, 0, (rest < PART ? rest : PART) * sizeof **f->plane);
     }
 }
 
-film *film_new(const scene *s, window part, bool layers, int threads, errors *e)
+/* Take planes from a film that has the room, but no more than a few times of it. Returns how many. */
+static int take_planes(film *f, film *spare, size_t pixels)
+{
+    enum { WASTE = 4 };
+    int k = 0;
+    if (!spare || spare->room < pixels || spare->room / WASTE > pixels)
+        return 0;
+    for (; k < f->planes && k < spare->planes; k++) {
+        f->plane[k] = spare->plane[k];
+        spare->plane[k] = NULL;
+    }
+    f->room = spare->room;
+    return k;
+}
+
+film *film_new(const scene *s, window part, bool layers, int threads, film *spare, errors *e)
 {
     film *f = calloc(1, sizeof *f);
     size_t pixels = (size_t)(part.x1 - part.x0) * (size_t)(part.y1 - part.y0);
@@ -53,13 +68,16 @@ film *film_new(const scene *s, window part, bool layers, int threads, errors *e)
         f->name = calloc((size_t)f->planes, sizeof *f->name);
     }
     bool good = f && f->plane && f->name;
+    if (good)
+        f->room = pixels;
+    const int taken = good ? take_planes(f, spare, pixels) : 0;
     for (int k = 0; good && k < f->planes; k++) {
-        f->plane[k] = new_plane(pixels * sizeof **f->plane);
+        f->plane[k] = k < taken ? f->plane[k] : new_plane(f->room * sizeof **f->plane);
         f->name[k] = plane_name(s, k);
         good = f->plane[k] && f->name[k];
     }
     if (good) {
-        clear(f, pixels, threads_of(threads));
+        clear(f, taken, pixels, threads_of(threads));
         return f;
     }
     film_free(f);

@@ -305,7 +305,7 @@ static bool render_adaptive(const tracer *tr, const render_options *o, film *f, 
                  wide = {part.x0 - (part.x0 > 0), part.y0 - (part.y0 > 0), part.x1 + (part.x1 < tr->scene->width),
                          part.y1 + (part.y1 < tr->scene->height)};
     pass first = {1, NULL, 0, tiles(wide) + tiles(part), false}, second = {o->aa, NULL, tiles(wide), first.all, false};
-    film *margin = memcmp(&wide, &part, sizeof wide) ? film_new(tr->scene, wide, tr->layers, o->threads, e) : f;
+    film *margin = memcmp(&wide, &part, sizeof wide) ? film_new(tr->scene, wide, tr->layers, o->threads, NULL, e) : f;
     bool good = margin && run(tr, o, &first, margin, sum, e);
     if (good && margin != f)
         film_copy(f, margin);

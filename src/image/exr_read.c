@@ -3,70 +3,15 @@
  */
 #include <openexr.h>
 
-#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include "base/real.h"
 #include "base/threads.h"
+#include "image/exr_open.h"
 #include "image/exr_zip.h"
-#include "image/format.h"
-
-/* The largest allocation for a (perhaps damaged) header: more than any chunk within our limits needs. */
-#define MEMORY_LIMIT ((size_t)1 << 32)
-
-/* Zeroed, as a damaged chunk may fill less of its buffer than it claims: the same file gives the same answer. */
-static void *limited_alloc(size_t size) { return size > MEMORY_LIMIT ? NULL : calloc(1, size); }
-
-typedef struct exr_reader {
-    int fd;
-    char *why; /* IMAGE_WHY; the first reason counts */
-} exr_reader;
-
-static void on_read_error(exr_const_context_t ctx, exr_result_t code, const char *message)
-{
-    void *r = NULL;
-    (void)code;
-    if (exr_get_user_data(ctx, &r) == EXR_ERR_SUCCESS && r)
-        image_refuse(((exr_reader *)r)->why, "OpenEXR: %s", message);
-}
-
-/* Whether a call of the library succeeded; if not, there is a reason. */
-static bool good(exr_reader *r, exr_result_t result)
-{
-    return result == EXR_ERR_SUCCESS || image_refuse(r->why, "OpenEXR: %s", exr_get_default_error_message(result));
-}
-
-static int64_t read_at(exr_const_context_t ctx, void *data, void *buffer, uint64_t size, uint64_t offset,
-                       exr_stream_error_func_ptr_t error)
-{
-    exr_reader *r = data;
-    uint64_t done = 0;
-    (void)ctx, (void)error;
-    while (done < size) {
-        ssize_t n = pread(r->fd, (char *)buffer + done, (size_t)(size - done), (off_t)(offset + done));
-        if (n < 0 && errno == EINTR)
-            continue;
-        if (n < 0) {
-            image_refuse(r->why, "%s", strerror(errno));
-            return -1;
-        }
-        if (n == 0)
-            break;
-        done += (uint64_t)n;
-    }
-    return (int64_t)done;
-}
-
-static int64_t size_of_file(exr_const_context_t ctx, void *data)
-{
-    struct stat st;
-    (void)ctx;
-    return fstat(((exr_reader *)data)->fd, &st) == 0 ? (int64_t)st.st_size : -1;
-}
 
 static const exr_attr_chlist_entry_t *find(const exr_attr_chlist_t *list, const char *name)
 {
@@ -241,15 +186,15 @@ static bool decode_chunk(exr_worker *w, const exr_chunk_info_t *chunk, int x, in
     if (chunk->packed_size == 0 ||
         (chunk->compression == EXR_COMPRESSION_NONE && chunk->packed_size != chunk->unpacked_size))
         return image_refuse(r->why, "OpenEXR: a chunk has a wrong size");
-    if (!good(r, w->started ? exr_decoding_update(w->ctx, 0, chunk, &w->pipe)
-                            : exr_decoding_initialize(w->ctx, 0, chunk, &w->pipe)))
+    if (!exr_good(r, w->started ? exr_decoding_update(w->ctx, 0, chunk, &w->pipe)
+                                : exr_decoding_initialize(w->ctx, 0, chunk, &w->pipe)))
         return false;
-    if (!w->started &&
-        !(good(r, exr_decoding_choose_default_routines(w->ctx, 0, &w->pipe)) && good(r, exr_unzip_begin(&w->pipe))))
+    if (!w->started && !(exr_good(r, exr_decoding_choose_default_routines(w->ctx, 0, &w->pipe)) &&
+                         exr_good(r, exr_unzip_begin(&w->pipe))))
         return false;
     w->started = true;
     w->pipe.unpack_and_convert_fn = NULL;
-    return good(r, exr_decoding_run(w->ctx, 0, &w->pipe)) && unpack(w, x, y);
+    return exr_good(r, exr_decoding_run(w->ctx, 0, &w->pipe)) && unpack(w, x, y);
 }
 
 /* Of a pyramid, the finest level. */
@@ -258,8 +203,9 @@ static bool decode_numbered(exr_worker *w, int k)
     const exr_plan *p = w->plan;
     exr_chunk_info_t chunk = {0};
     const int row = k / p->across, column = k % p->across;
-    return good(&w->reader, p->tiled ? exr_read_tile_chunk_info(w->ctx, 0, column, row, 0, 0, &chunk)
-                                     : exr_read_scanline_chunk_info(w->ctx, 0, p->first_y + row * p->height, &chunk)) &&
+    return exr_good(&w->reader, p->tiled
+                                    ? exr_read_tile_chunk_info(w->ctx, 0, column, row, 0, 0, &chunk)
+                                    : exr_read_scanline_chunk_info(w->ctx, 0, p->first_y + row * p->height, &chunk)) &&
            decode_chunk(w, &chunk, column * p->width, row * p->height);
 }
 
@@ -270,29 +216,29 @@ static bool plan_channels(exr_reader *r, exr_context_t ctx, const char *name, ex
     int parts = 0;
     exr_storage_t storage = EXR_STORAGE_LAST_TYPE;
     const exr_attr_chlist_t *list = NULL;
-    if (!good(r, exr_get_count(ctx, &parts)))
+    if (!exr_good(r, exr_get_count(ctx, &parts)))
         return false;
     if (parts != 1)
         return image_refuse(r->why, "the OpenEXR file has several parts; one is expected");
-    if (!good(r, exr_get_storage(ctx, 0, &storage)))
+    if (!exr_good(r, exr_get_storage(ctx, 0, &storage)))
         return false;
     if (storage != EXR_STORAGE_SCANLINE && storage != EXR_STORAGE_TILED)
         return image_refuse(r->why, "the OpenEXR file holds deep samples; a flat image is expected");
     p->tiled = storage == EXR_STORAGE_TILED;
-    return good(r, exr_get_channels(ctx, 0, &list)) &&
+    return exr_good(r, exr_get_channels(ctx, 0, &list)) &&
            (p->to->values > 1 ? choose_colors(r, list, p->channel) : choose(r, list, name, p->channel));
 }
 
 static bool plan_chunks(exr_reader *r, exr_context_t ctx, exr_plan *p)
 {
     exr_attr_box2i_t window;
-    if (!good(r, exr_get_data_window(ctx, 0, &window)) ||
+    if (!exr_good(r, exr_get_data_window(ctx, 0, &window)) ||
         !image_begin(p->to, (int64_t)window.max.x - window.min.x + 1, (int64_t)window.max.y - window.min.y + 1, r->why))
         return false;
     p->first_y = window.min.y;
     p->width = p->to->width;
-    if (!good(r, p->tiled ? exr_get_tile_sizes(ctx, 0, 0, 0, &p->width, &p->height)
-                          : exr_get_scanlines_per_chunk(ctx, 0, &p->height)))
+    if (!exr_good(r, p->tiled ? exr_get_tile_sizes(ctx, 0, 0, 0, &p->width, &p->height)
+                              : exr_get_scanlines_per_chunk(ctx, 0, &p->height)))
         return false;
     if (p->width < 1 || p->height < 1)
         return image_refuse(r->why, "OpenEXR: chunks without samples");
@@ -302,21 +248,6 @@ static bool plan_chunks(exr_reader *r, exr_context_t ctx, exr_plan *p)
 }
 
 /* ---- threads ---- */
-
-static bool start(exr_reader *r, exr_context_t *ctx)
-{
-    exr_context_initializer_t init = EXR_DEFAULT_CONTEXT_INITIALIZER;
-    init.error_handler_fn = on_read_error;
-    init.alloc_fn = limited_alloc;
-    init.free_fn = free;
-    init.user_data = r;
-    init.read_fn = read_at;
-    init.size_fn = size_of_file;
-    init.max_image_width = init.max_image_height = IMAGE_MAX_SIDE;
-    init.max_tile_width = init.max_tile_height = IMAGE_MAX_SIDE;
-    init.flags = EXR_CONTEXT_FLAG_DISABLE_CHUNK_RECONSTRUCTION; /* an incomplete file is an error */
-    return good(r, exr_start_read(ctx, "image", &init));
-}
 
 /* The first chunk that could not be read, and why: the same for any number of threads. */
 typedef struct exr_failure {
@@ -334,7 +265,7 @@ static bool begin_worker(exr_worker *w)
         return image_refuse(w->reader.why, "there is not enough memory for the image");
     for (size_t k = 0; k < values * width; k++)
         w->line[k] = 1; /* alpha, where there is no such channel */
-    return start(&w->reader, &w->ctx);
+    return exr_good(&w->reader, exr_open(&w->reader, &w->ctx));
 }
 
 static void end_worker(exr_worker *w)
@@ -387,7 +318,7 @@ bool image_read_exr(FILE *file, const char *channel, int threads, image_stream *
     exr_context_t ctx = NULL;
     exr_plan p = {.to = to};
     exr_failure bad;
-    bool ok = start(&r, &ctx) && plan_channels(&r, ctx, channel, &p) && plan_chunks(&r, ctx, &p);
+    bool ok = exr_good(&r, exr_open(&r, &ctx)) && plan_channels(&r, ctx, channel, &p) && plan_chunks(&r, ctx, &p);
     if (ok && st.st_size / (off_t)sizeof(uint64_t) < p.chunks) /* else each of up to 2^28 chunks would be refused */
         ok = image_refuse(why, "OpenEXR: the file is shorter than its table of chunks");
     if (ok) {

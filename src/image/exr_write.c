@@ -8,6 +8,7 @@
 
 #include "base/file_writer.h"
 #include "base/threads.h"
+#include "image/exr_write.h"
 #include "image/exr_zip.h"
 #include "image/format.h"
 
@@ -179,6 +180,18 @@ static bool add(image_writer *base, int rows, const float *const *plane, const p
         return false;
     add_chunks(w, &k, plane, p);
     return !k.stop;
+}
+
+bool exr_writer_add_chunk(image_writer *base, const void *bytes, uint64_t size)
+{
+    exr_writer *w = (exr_writer *)base;
+    const int left = base->height - base->rows;
+    if (!w->result)
+        w->result = exr_write_scanline_chunk(w->ctx, 0, base->rows, bytes, size);
+    if (!w->result)
+        base->rows += left < IMAGE_ROWS ? left : IMAGE_ROWS;
+    base->failed = base->failed || w->result;
+    return !w->result;
 }
 
 static bool close_exr(image_writer *base, bool whole, errors *e)

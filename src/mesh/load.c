@@ -1,247 +1,67 @@
-/* Reads a model's file by running kage-import (room import) and taking the triangles from a pipe. A broken file can
- * make the importer crash, loop for ever or use up its memory. In a process of its own that is only an error here.
- */
-#define _GNU_SOURCE /* dladdr, secure_getenv, pipe2 */
+/* Reads a model's triangles, by kage-import (reader.h). */
+#include "mesh/reader.h"
 
-#include "mesh/letter.h"
-
-#include <dlfcn.h>
-#include <errno.h>
-#include <fcntl.h>
-#include <signal.h>
-#include <spawn.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
-#include <sys/stat.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
-#ifndef KAGE_LIBEXEC
-#define KAGE_LIBEXEC "/usr/local/libexec/kage"
-#endif
-
-enum {
-    MOST_MIB = 1024, /* of a file: no model of MESH_MOST triangles is larger */
-    PATH_SIZE = 4096,
-};
-
-/* ---- where kage-import is ---- */
-
-/* Whether `folder`, n bytes long, with `below` behind it has the program. */
-static bool has(const char *folder, size_t n, const char *below, char path[PATH_SIZE])
+static bool take_triangles(void *user, reader_pipe *p)
 {
-    const int size = snprintf(path, PATH_SIZE, "%.*s%s/kage-import", (int)n, folder, below);
-    return size > 0 && size < PATH_SIZE && access(path, X_OK) == 0;
-}
-
-static bool is_near(const char *file, char path[PATH_SIZE])
-{
-    const char *slash = strrchr(file, '/');
-    const size_t n = slash ? (size_t)(slash - file) : 0;
-    return slash && (has(file, n, "", path) || has(file, n, "/../libexec/kage", path));
-}
-
-/* Beside the file that holds this code. For a program dladdr only knows the name that it was called by, which may be
- * without a folder; so /proc is asked as well. */
-static bool is_beside(char path[PATH_SIZE])
-{
-    static const char here = 0;
-    char program[PATH_SIZE];
-    Dl_info about;
-    const ssize_t n = readlink("/proc/self/exe", program, sizeof program - 1);
-    program[n > 0 ? n : 0] = 0;
-    return (dladdr(&here, &about) != 0 && about.dli_fname && is_near(about.dli_fname, path)) ||
-           (n > 0 && is_near(program, path));
-}
-
-/* The path of kage-import: `asked`, which may be NULL, else the environment's KAGE_IMPORT, else beside this code or in
- * ../libexec/kage from there, else where the library was installed. False, with the reason: there is none. */
-static bool find_reader(const char *asked, char path[PATH_SIZE], char why[MESH_WHY])
-{
-    const char *said = asked ? asked : secure_getenv("KAGE_IMPORT"),
-               *by = asked ? "as asked for" : "as KAGE_IMPORT says";
-    if (said) {
-        const int n = snprintf(path, PATH_SIZE, "%s", said);
-        if (n < PATH_SIZE && access(path, X_OK) == 0)
-            return true;
-        snprintf(why, MESH_WHY, "no program %.150s to read models, %s", said, by);
-        return false;
-    }
-    if (is_beside(path) || has(KAGE_LIBEXEC, strlen(KAGE_LIBEXEC), "", path))
-        return true;
-    snprintf(why, MESH_WHY,
-             "no program kage-import to read models, expected it beside kage, in " KAGE_LIBEXEC
-             ", or where KAGE_IMPORT says");
-    return false;
-}
-
-/* ---- its letters ---- */
-
-static bool receive(int from, void *to, size_t size)
-{
-    for (char *at = to; size > 0;) {
-        const ssize_t n = read(from, at, size);
-        if (n == 0 || (n < 0 && errno != EINTR))
-            return false;
-        at += n > 0 ? n : 0;
-        size -= n > 0 ? (size_t)n : 0;
-    }
-    return true;
-}
-
-static bool receive_letter(int from, letter *l) { return receive(from, l, sizeof *l) && l->magic == LETTER_MAGIC; }
-
-static bool fails(letter *l, const char *why)
-{
-    l->is = LETTER_WRONG;
-    snprintf(l->why, sizeof l->why, "%s", why);
-    return false;
-}
-
-/* The last letter; LETTER_READ where none came. */
-static void receive_last(int from, const progress *w, files *opened, letter *l)
-{
-    bool come = receive_letter(from, l);
-    for (; come && (l->is == LETTER_OPENED || l->is == LETTER_READ); come = receive_letter(from, l))
-        if (l->is == LETTER_OPENED && !files_add(opened, l->opened)) {
-            fails(l, "out of memory");
-            return;
-        } else if (l->is == LETTER_READ && !progress_show(w, l->share < 1 ? "reading" : "unpacking", l->share)) {
-            fails(l, "cancelled");
-            return;
-        }
-    if (!come)
-        l->is = LETTER_READ;
-}
-
-static bool receive_all(int from, const progress *w, files *opened, letter *l, mesh_data *out)
-{
-    receive_last(from, w, opened, l);
-    if (l->is != LETTER_DONE)
-        return false;
-    *out = l->data;
-    out->at = malloc(sizeof *out->at * (size_t)out->n);
-    out->skin = malloc(sizeof *out->skin * (size_t)out->n);
-    const bool room = out->at && out->skin;
-    if (room && receive(from, out->at, sizeof *out->at * (size_t)out->n) &&
-        receive(from, out->skin, sizeof *out->skin * (size_t)out->n))
-        return true;
-    mesh_data_free(out);
-    return fails(l, room ? "its reader ended too soon" : "out of memory");
-}
-
-/* Messages go to a terminal: without line ends or other controls. */
-static void clean(char *text)
-{
-    for (char *c = text; *c; c++)
-        *c = (unsigned char)*c < 0x20 || *c == 0x7f ? ' ' : *c;
-    for (size_t n = strlen(text); n > 0 && (text[n - 1] == ' ' || text[n - 1] == '.'); n--)
-        text[n - 1] = 0;
-}
-
-static bool can_open(const char *path, size_t *size, char why[MESH_WHY])
-{
-    static const char *const ends[] = {".obj", ".ply", ".stl", ".gltf", ".glb", ".off"};
-    const char *dot = strrchr(path, '.');
-    bool known = false;
-    for (size_t k = 0; dot && k < sizeof ends / sizeof *ends; k++)
-        known |= strcasecmp(dot, ends[k]) == 0;
-    FILE *f = fopen(path, "rb");
-    struct stat about;
-    if (!f || fstat(fileno(f), &about) != 0)
-        snprintf(why, MESH_WHY, "%s", strerror(errno));
-    else if (!known)
-        snprintf(why, MESH_WHY,
-                 "no known kind of model, expected a name that ends in .obj, .ply, .stl, .gltf, .glb or .off");
-    else if (!S_ISREG(about.st_mode))
-        snprintf(why, MESH_WHY, "no regular file");
-    else if (about.st_size == 0)
-        snprintf(why, MESH_WHY, "the file is empty");
-    else if ((size_t)about.st_size > MOST_MIB * MIB)
-        snprintf(why, MESH_WHY, "the file is too large, expected at most %d MiB", MOST_MIB);
-    else
-        *size = (size_t)about.st_size;
-    if (f)
-        fclose(f);
-    return *size > 0;
-}
-
-/* The program, with `to` as its descriptor LETTER_FD, nothing else to read from or write to, and the signals as any
- * program finds them, whatever the caller's process does with its own. 0, or an errno. */
-static int start(const char *program, const char *path, int to, pid_t *pid)
-{
-    char *argv[] = {(char *)program, (char *)path, NULL};
-    posix_spawn_file_actions_t ends;
-    posix_spawnattr_t how;
-    sigset_t none, usual;
-    sigemptyset(&none);
-    sigemptyset(&usual);
-    sigaddset(&usual, SIGPIPE);
-    sigaddset(&usual, SIGXCPU);
-    int error = posix_spawn_file_actions_init(&ends);
-    if (error)
-        return error;
-    error = posix_spawnattr_init(&how);
-    if (!error) {
-        error = posix_spawn_file_actions_adddup2(&ends, to, LETTER_FD);
-        for (int k = 0; k < 3 && !error; k++)
-            error = posix_spawn_file_actions_addopen(&ends, k, "/dev/null", O_RDWR, 0);
-        error = error ? error : posix_spawnattr_setsigmask(&how, &none);
-        error = error ? error : posix_spawnattr_setsigdefault(&how, &usual);
-        error = error ? error : posix_spawnattr_setflags(&how, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
-        error = error ? error : posix_spawn(pid, program, &ends, &how, argv, environ);
-        posix_spawnattr_destroy(&how);
-    }
-    posix_spawn_file_actions_destroy(&ends);
-    return error;
-}
-
-/* Why the last letter is no LETTER_DONE. `status`: of the program, as waitpid gives it. */
-static void explain(const letter *l, int status, size_t size, char why[MESH_WHY])
-{
-    if (l->is == LETTER_WRONG)
-        snprintf(why, MESH_WHY, "%s", l->why);
-    else if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU)
-        snprintf(why, MESH_WHY, "reading it takes too long, expected at most %d seconds",
-                 LETTER_SECONDS + (int)(size / MIB / LETTER_MIB_A_SECOND));
-    else
-        snprintf(why, MESH_WHY, "its reader failed, expected a valid file");
+    mesh_data *out = user;
+    const mesh_data come = p->letter.data;
+    if (p->letter.is != LETTER_DONE || come.n <= 0 || come.parts <= 0)
+        return reader_fails(p, "its reader failed, expected a valid file");
+    const size_t n = (size_t)come.n, parts = (size_t)come.parts;
+    *out = (mesh_data){come.n,     malloc(sizeof *out->at * n),       malloc(sizeof *out->skin * n),
+                       come.notes, malloc(sizeof *out->part * parts), come.parts};
+    return (out->at && out->skin && out->part) ? reader_receive(p, out->at, sizeof *out->at * n) &&
+                                                     reader_receive(p, out->skin, sizeof *out->skin * n) &&
+                                                     reader_receive(p, out->part, sizeof *out->part * parts)
+                                               : reader_fails(p, "out of memory");
 }
 
 bool mesh_file_read(const char *path, const char *reader, const progress *w, files *opened, mesh_data *out,
                     char why[MESH_WHY])
 {
-    letter l = {.is = LETTER_READ};
-    char program[PATH_SIZE];
-    size_t size = 0;
-    int ends[2], status = 0;
-    pid_t pid;
-    if (!can_open(path, &size, why) || !find_reader(reader, program, why))
-        return false;
-    if (!progress_show(w, "reading", 0)) {
-        snprintf(why, MESH_WHY, "cancelled");
-        return false;
-    }
-    if (pipe2(ends, O_CLOEXEC) != 0) { /* so that programs that other threads start do not inherit the pipe */
-        snprintf(why, MESH_WHY, "%s", strerror(errno));
-        return false;
-    }
-    fcntl(ends[0], F_SETPIPE_SZ, (int)MIB); /* a wish: 16 times fewer turns between the two programs */
-    const int error = start(program, path, ends[1], &pid);
-    close(ends[1]);
-    const bool good = !error && receive_all(ends[0], w, opened, &l, out);
-    close(ends[0]);
-    if (!error && !good)
-        kill(pid, SIGKILL); /* where it still runs: nobody waits for what it does */
-    while (!error && waitpid(pid, &status, 0) < 0 && errno == EINTR)
-        ;
-    if (error)
-        snprintf(why, MESH_WHY, "%.100s can't be started: %s", program, strerror(error));
-    else if (!good)
-        explain(&l, status, size, why);
+    const reader_call c = {
+        .path = path, .reader = reader, .show = w, .opened = opened, .take = take_triangles, .user = out};
+    *out = (mesh_data){0};
+    const bool good = reader_run(&c, why);
     if (!good)
-        clean(why);
+        mesh_data_free(out);
     return good;
+}
+
+/* Say which parts there are, as many as there is room for. */
+static bool refuse(const mesh_data *d, const char *name, char why[MESH_WHY])
+{
+    size_t n = (size_t)snprintf(why, MESH_WHY, "no part '%.100s', expected one of its %d: ", name, d->parts);
+    for (int k = 0; k < d->parts; k++) {
+        if (n + strlen(d->part[k].name) + 8 >= MESH_WHY) {
+            snprintf(why + n, MESH_WHY - n, "...");
+            break;
+        }
+        n += (size_t)snprintf(why + n, MESH_WHY - n, "%s'%s'", k ? ", " : "", d->part[k].name);
+    }
+    return false;
+}
+
+bool mesh_data_part(const mesh_data *d, const char *name, mesh_data *out, char why[MESH_WHY])
+{
+    int k = 0;
+    while (k < d->parts && strcmp(d->part[k].name, name) != 0)
+        k++;
+    if (k == d->parts)
+        return refuse(d, name, why);
+    const int first = d->part[k].first, n = d->part[k].n;
+    *out =
+        (mesh_data){.n = n, .at = malloc(sizeof *out->at * (size_t)n), .skin = malloc(sizeof *out->skin * (size_t)n)};
+    if (!out->at || !out->skin) {
+        mesh_data_free(out);
+        snprintf(why, MESH_WHY, "out of memory");
+        return false;
+    }
+    memcpy(out->at, d->at + first, sizeof *out->at * (size_t)n);
+    memcpy(out->skin, d->skin + first, sizeof *out->skin * (size_t)n);
+    return true;
 }

@@ -292,8 +292,10 @@ surface *mesh_moved(const surface *base, const affine *m, int threads)
     f->textured = from->textured;
     memcpy(f->u, from->u, sizeof f->u);
     memcpy(f->w, from->w, sizeof f->w);
-    f->d = (mesh_data){from->d.n, malloc(sizeof *f->d.at * (size_t)from->d.n),
-                       malloc(sizeof *f->d.skin * (size_t)from->d.n), from->d.notes};
+    f->d = (mesh_data){.n = from->d.n,
+                       .at = malloc(sizeof *f->d.at * (size_t)from->d.n),
+                       .skin = malloc(sizeof *f->d.skin * (size_t)from->d.n),
+                       .notes = from->d.notes};
     for (int k = 0; f->d.at && f->d.skin && k < f->d.n; k++)
         for (int i = 0; i < 3; i++) {
             const int to = mirrors && i ? 3 - i : i;
@@ -315,5 +317,6 @@ void mesh_data_free(mesh_data *d)
 {
     free(d->at);
     free(d->skin);
+    free(d->part);
     *d = (mesh_data){0};
 }

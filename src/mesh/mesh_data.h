@@ -16,6 +16,7 @@
 enum {
     MESH_MOST = 1 << 24, /* triangles; more are refused */
     MESH_WHY = 400,      /* bytes of a message */
+    MESH_PART_NAME = 128,
 };
 
 /* What shading needs of a triangle; intersection needs only its corners. */
@@ -34,11 +35,19 @@ typedef struct mesh_notes {
     int spread; /* triangles on which the texture has no area */
 } mesh_notes;
 
+/* A model's part: the triangles of one node and material, which follow each other. */
+typedef struct mesh_part {
+    char name[MESH_PART_NAME];
+    int first, n; /* triangles */
+} mesh_part;
+
 typedef struct mesh_data {
     int n;             /* triangles */
     float (*at)[3][3]; /* the corners of each, in scene units; owned */
     mesh_skin *skin;   /* of each; owned */
     mesh_notes notes;
+    mesh_part *part; /* owned; NULL once the triangles are changed */
+    int parts;
 } mesh_data;
 
 /* A vertex or a normal as a vector in double, and back. */
@@ -50,15 +59,28 @@ static inline void mesh_set(float to[3], vec3 v)
     to[2] = (float)v.z;
 }
 
+/* A model in memory, which means what a file means: right-handed, v upward. normals, uvs: NULL: none. */
+typedef struct mesh_array {
+    int vertices, triangles;
+    const double *positions, *normals, *uvs; /* 3, 3 and 2 numbers a vertex */
+    const uint32_t *corners;                 /* 3 a triangle */
+} mesh_array;
+
+/* Its triangles. False, with the reason in one line. (array.c) */
+bool mesh_array_read(const mesh_array *a, mesh_data *out, char why[MESH_WHY]);
+
 /* Free the arrays and empty *d. */
 void mesh_data_free(mesh_data *d);
 
 typedef enum mesh_normals { MESH_NORMALS_FILE, MESH_NORMALS_SMOOTH, MESH_NORMALS_FLAT } mesh_normals;
 
-/* Read a model with the program `reader`; NULL: the one that load.c finds. The model's file and those that it refers to
- * are added to *opened. False, with the reason in one line. Reentrant. */
+/* Read a model with the program `reader`; NULL: the one that reader.c finds. The model's file and those that it refers
+ * to are added to *opened. False, with the reason in one line. Reentrant. */
 bool mesh_file_read(const char *path, const char *reader, const progress *w, files *opened, mesh_data *out,
                     char why[MESH_WHY]);
+
+/* The triangles of one part; the result is the caller's. False, with the reason: no such part, or out of memory. */
+bool mesh_data_part(const mesh_data *d, const char *name, mesh_data *out, char why[MESH_WHY]);
 
 /* Check the numbers, remove triangles without an area, and find a normal for every corner: the file's where it is
  * usable, otherwise the mean over the triangles about the vertex that are within `crease` degrees of this one. False,

@@ -42,6 +42,7 @@ static void take(object *o, const object *from)
     *o = *from;
     o->name = name;
     o->copy_of = from->copy_of ? from->copy_of : from->name;
+    o->bump_of = from->bump_of ? from->bump_of : from->name;
     o->shape = from->own;
     o->centred = o->displaced = NULL;
     o->hidden = false;
@@ -65,6 +66,7 @@ static void place(reader *r, node *v, object *o)
 static void read_own_bump(reader *r, node *at, object *o)
 {
     o->shares_bump = false;
+    o->bump_of = NULL;
     o->map = (map_note){0};
     o->bump_spec = (bump_spec){0};
     o->bump = reader_bump(r, at, o);

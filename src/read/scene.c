@@ -45,6 +45,8 @@ scene *scene_read(const scene_source *from, errors *e)
         }
         yaml_close(r.y);
     }
+    free(r.model_path);
+    mesh_data_free(&r.model);
     if (!r.y && e->count == before)
         errors_add(e, "%s: out of memory", from->path);
     if (e->count == before)

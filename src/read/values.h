@@ -5,7 +5,8 @@
 #ifndef KAGE_READ_VALUES_H
 #define KAGE_READ_VALUES_H
 
-#include "image/image.h"
+#include "image/array.h"
+#include "mesh/mesh_data.h"
 #include "scene/scene.h"
 #include "yaml/yaml.h"
 
@@ -28,6 +29,8 @@ typedef struct reader {
     const scene_source *from;
     int lists;
     copies_list *list;
+    char *model_path; /* the last model of which a part was asked for, which need not be read again for the next part */
+    mesh_data model;
 } reader;
 
 /* Returns p. Adds the error "out of memory" where it is NULL. */

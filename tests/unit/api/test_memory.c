@@ -124,6 +124,14 @@ static const char *work_on(const char *text, const kage_render_options *o, const
         *status = kage_render_file(s, o, exr, &write, NULL, &e);
     }
     if (*status == KAGE_OK) {
+        step = "join bands";
+        *status = kage_file_join((const char *const[]){exr}, 1, exr, NULL, &e);
+        /* OpenEXR 3.1 reads a text as empty where there is no memory for it: the band then seems to be none, or
+         * another's. */
+        if (*status == KAGE_BAD_INPUT && strstr(kage_errors_get(e, 0)->text, ": it "))
+            *status = KAGE_NO_MEMORY;
+    }
+    if (*status == KAGE_OK) {
         step = "export";
         *status = kage_scene_write_povray(s, path, NULL, NULL, &e);
     }

@@ -142,6 +142,36 @@ static void the_scene_says_what_is_in_it(void **state)
     kage_scene_free(s);
 }
 
+static void the_scene_says_where_the_camera_and_the_bumps_are(void **state)
+{
+    (void)state;
+    static const char text[] = GROUND "  leaf: {copy: ball, transform: [{translate: [3, 0, 0]}]}\n"
+                                      "  twig: {copy: leaf}\n"
+                                      "  ball: {sphere: {center: [0, 2, 0], radius: 1}, material: clay, bump: {map: "
+                                      "{file: bumps.png}, scale: 0.2, zero: 0.5, sign: down}}\n";
+    kage_scene *s = parse_with(text, KAGE_TESTS_DIR "/../scenes/data", NULL);
+    const kage_scene_info *i = kage_scene_get_info(s);
+    NEAR(i->camera.from[2], -5, 1e-6);
+    NEAR(i->camera.at[2], 0, 1e-6);
+    NEAR(i->camera.up[1], 1, 1e-6);
+    NEAR(i->camera.fov, 40, 1e-6);
+    NEAR(i->camera.width, 0, 1e-9);
+    assert_null(i->objects[0].bump_of);
+    assert_string_equal(i->objects[1].bump_of, "ground");
+    NEAR(i->objects[1].bump_scale, 1, 1e-9);
+    for (int k = 2; k < 5; k++) {
+        assert_string_equal(i->objects[k].bump_of, "ball");
+        NEAR(i->objects[k].bump_scale, 0.2, 1e-6);
+    }
+    kage_scene_free(s);
+    static const char *const sets[] = {"camera={from: [0, 3, -5], at: [0, 0, 1], width: 6}"};
+    const kage_load_options o = {.sets = sets, .set_count = 1};
+    s = parse_with(GROUND, NULL, &o);
+    NEAR(kage_scene_get_info(s)->camera.width, 6, 1e-6);
+    NEAR(kage_scene_get_info(s)->camera.fov, 0, 1e-9);
+    kage_scene_free(s);
+}
+
 static void layers_have_names(void **state)
 {
     (void)state;
@@ -264,6 +294,7 @@ int main(void)
         cmocka_unit_test(changes_are_made),
         cmocka_unit_test(files_are_found_in_the_folder),
         cmocka_unit_test(the_scene_says_what_is_in_it),
+        cmocka_unit_test(the_scene_says_where_the_camera_and_the_bumps_are),
         cmocka_unit_test(layers_have_names),
         cmocka_unit_test(a_model_needs_its_reader),
         cmocka_unit_test(a_reader_that_breaks_down_is_an_error_of_the_scene),

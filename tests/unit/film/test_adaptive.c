@@ -10,7 +10,7 @@ static unsigned char *marks(float grey, double threshold, window part, int threa
 {
     static const scene none = {.lights = 0};
     errors e = {0};
-    film *f = film_new(&none, (window){0, 0, 5, 4}, false, 1, &e);
+    film *f = film_new(&none, (window){0, 0, 5, 4}, false, 1, NULL, &e);
     assert_non_null(f);
     for (int k = FILM_R; k <= FILM_B; k++)
         f->plane[k][5 + 2] = grey;

@@ -1,0 +1,155 @@
+"""Scenes: loaded from a file, a text or a dict; rendered."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, Literal, Unpack
+
+from kage._kage import ffi, lib
+from kage.calls import Call
+from kage.convert import converted
+from kage.options import Progress, RenderOptions, takes
+from kage.picture import Picture
+from kage.progress import watched
+from kage.requests import Struct, check_names, one_of, render_struct, whole
+from kage.source import Source, Text, changes_of
+from kage.structs import PovrayReport, Probe, SceneInfo, Survey
+from kage.text import bytes_of, text_of
+from kage.version import __version__
+
+#: The program that reads models, beside this file; the environment may name another.
+READER = Path(__file__).with_name("kage-import")
+
+
+class Scene:
+    """A scene that was read by `kage.load`."""
+
+    def __init__(self, handle: Any) -> None:
+        self._handle = handle
+
+    @property
+    def name(self) -> str:
+        """Of its file, or of the text."""
+        return Path(text_of(lib.kage_scene_get_info(self._handle).path) or "").name
+
+    @takes(RenderOptions)
+    def render(self, **options: Unpack[RenderOptions]) -> Picture:
+        """Render a picture. An option that is not given, or None, is as the scene says.
+
+        shadow: where shadow rays start: none 0 1 2 2+ iter:K march:N exact auto[:E] (`kage methods` describes them).
+        shade: "smooth", or "shifted": shade where the shadow rays start.
+        bump_shadow: the bumps' shadows on their own surface: none march:N horizon exact.
+        surface: "smooth", bump mapping; "displaced", truly displaced surfaces.
+        self_shadow: whether bumped objects cast shadows. guard: keep to the slab between the lowest and highest P.
+        relief: the best picture for its cost: sets shadow, shade and bump_shadow where they are not given.
+        size: (width, height) in pixels. crop: (x0, y0, x1, y1), only this part.
+        aa: aa x aa samples a pixel, 1 to 16. aa_threshold: only where neighbours differ by more, above 0 and up to 3.
+        layers: whether the picture has the other planes besides R, G and B (default True).
+        timing: whether the stages in `Picture.stats` are timed. threads: default as many as there are processors.
+        progress: see docs/python.md. The picture depends neither on threads nor on the crop.
+        """
+        check_names("render", options, RenderOptions)
+        handle = self._handle
+        film = ffi.new("kage_film **")
+        with watched(options.get("progress"), self.name, self._pixels(options)) as call:
+            made = render_struct(options, call)
+            call.check(lib.kage_render(handle, made.c, film, call.errors))
+        return Picture(ffi.gc(film[0], lib.kage_film_free), self.name)
+
+    @property
+    def info(self) -> SceneInfo:
+        """What is in the scene: its settings, lights and objects."""
+        return converted(SceneInfo, lib.kage_scene_get_info(self._handle))
+
+    def probe(self, x: int, y: int) -> Probe:
+        """Every value that is computed for the ray through the middle of pixel x, y, by each method."""
+        handle, call = self._handle, Call()
+        probe = ffi.new("kage_probe **")
+        limit = lib.KAGE_MAX_SIDE
+        place = (whole("x", x, 0, limit), whole("y", y, 0, limit))
+        call.check(lib.kage_scene_probe(handle, *place, probe, call.errors))
+        lights = lib.kage_scene_get_info(handle).light_count
+        return converted(Probe, ffi.gc(probe[0], lib.kage_probe_free), {"visible": lights})
+
+    def survey(self) -> Survey:
+        """How steep the bumps are where the camera sees them, and what to be warned of."""
+        handle, call = self._handle, Call()
+        survey = ffi.new("kage_survey **")
+        call.check(lib.kage_scene_survey(handle, survey, call.errors))
+        objects = lib.kage_scene_get_info(handle).object_count
+        return converted(Survey, ffi.gc(survey[0], lib.kage_survey_free), {"objects": objects})
+
+    def povray(
+        self,
+        path: str | os.PathLike[str],
+        *,
+        surface: Literal["smooth", "displaced"] | None = None,
+        cast: bool = True,
+    ) -> PovrayReport:
+        """Write the scene for POV-Ray 3.7 (docs/povray.md).
+
+        surface: as for `render`. cast: whether objects without a bump cast shadows.
+        """
+        handle, call = self._handle, Call()
+        made = Struct("kage_povray_options")
+        made.text("command", f"kage {__version__} in Python")
+        made.c.no_cast = not cast
+        made.c.displaced = one_of("surface", surface, no="smooth", yes="displaced")
+        report = ffi.new("kage_povray_report *")
+        call.check(lib.kage_scene_write_povray(handle, bytes_of(path), made.c, report, call.errors))
+        return converted(PovrayReport, report)
+
+    def _pixels(self, options: RenderOptions) -> int:
+        """For the progress; wrong options are found later."""
+        info = lib.kage_scene_get_info(self._handle)
+        try:
+            if crop := options.get("crop"):
+                return max(0, (crop[2] - crop[0]) * (crop[3] - crop[1]))
+            width, height = options.get("size") or (info.width, info.height)
+            return max(0, int(width * height))
+        except (TypeError, ValueError, IndexError):
+            return 0
+
+    def __repr__(self) -> str:
+        info = lib.kage_scene_get_info(self._handle)
+        return (
+            f"<kage.Scene {self.name}: {info.width} x {info.height} pixels, {info.light_count} lights, "
+            f"{info.object_count} objects, shadow {text_of(info.method)}>"
+        )
+
+
+def load(
+    source: Source,
+    *,
+    sets: Mapping[str, Any] | None = None,
+    folder: str | os.PathLike[str] | None = None,
+    name: str | None = None,
+    threads: int | None = None,
+    progress: Progress = None,
+) -> Scene:
+    """Read a scene: a file's path, a text of YAML, or a dict with the keys of docs/scene.md.
+
+    A str is a text if it has a line end or begins with "{", otherwise a path. A dict may hold numpy arrays: height
+    maps, images and meshes, see docs/python.md.
+    sets: changes, as {"objects.ground.bump.scale": 0.1}. folder: where relative names of files begin, for a text or a
+    dict (default: the current folder). name: what errors and pictures call a text or a dict (default
+    "scene"). All errors of the scene are raised at once, as an InputError.
+    """
+    found = Text(source, folder, name)
+    scene = ffi.new("kage_scene **")
+    with watched(progress, found.name) as call:
+        options = load_struct(sets or {}, call, threads)
+        call.check(found.read(options.c, scene, call.errors))
+    return Scene(ffi.gc(scene[0], lib.kage_scene_free))
+
+
+def load_struct(sets: Mapping[str, Any], call: Call, threads: int | None) -> Struct:
+    made = Struct("kage_load_options", call, threads)
+    texts = [made.keep(ffi.new("char[]", text)) for text in changes_of(sets)]
+    made.c.sets = made.keep(ffi.new("char *[]", texts))
+    made.c.set_count = len(texts)
+    if "KAGE_IMPORT" not in os.environ:
+        made.text("model_reader", str(READER))
+    return made
