@@ -287,8 +287,8 @@ class ImportReport:
 
     #: as kage_scene_load would give it, with the changes; the report owns it
     scene: Scene | None
-    notes: tuple[Char *, ...]
-    files: tuple[Char *, ...]
+    notes: tuple[str, ...]
+    files: tuple[str, ...]
 
 
 @dataclass(frozen=True, eq=False)
