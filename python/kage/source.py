@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from kage._kage import ffi, lib
+from kage._kage import lib
 from kage.text import bytes_of
 
 #: A path, a text of YAML, or a dict with the keys of docs/scene.md.

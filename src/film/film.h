@@ -25,7 +25,8 @@ typedef struct window {
 typedef struct film {
     window part;   /* the part of the picture that is on the film */
     int planes;    /* FILM_PICTURE, or FILM_LIGHTS + lights */
-    size_t room;   /* pixels that each plane has memory for */
+    float *memory; /* of all planes, one after another at equal distances */
+    size_t room;   /* of the memory, in values */
     float **plane; /* each (y1 - y0) x (x1 - x0), row by row from the top */
     char **name;   /* of each plane: its channel in an OpenEXR file */
 } film;
