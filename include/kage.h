@@ -95,6 +95,31 @@ typedef struct kage_scene kage_scene;
  * nonzero, the call ends soon with KAGE_CANCELLED. It may call the library. */
 typedef int kage_progress(void *user, const char *what, double share);
 
+/* Arrays in the caller's memory, in place of files: where a scene can name a file, "array:NAME" names one of them. They
+ * are copied during the call. A name has up to 59 letters, digits, _ and -. Pictures of the scene name the array, but
+ * do not hold it. */
+
+typedef enum kage_type { KAGE_U8, KAGE_U16, KAGE_F32, KAGE_F64 } kage_type;
+
+/* A height map or an image. Whole numbers mean what those of a PNG mean, floats what those of an EXR mean. A height map
+ * has 1 channel; an image has 1 (grey) or 3 (red, green, blue). One channel more is alpha: height maps ignore it, of
+ * images it must be 1. */
+typedef struct kage_image_array {
+    const char *name;
+    int width, height, channels;
+    kage_type type;
+    const void *samples; /* height rows from the top, of width pixels, of `channels` samples */
+} kage_image_array;
+
+/* A model. All means what it means in a PLY or OBJ file: coordinates are right-handed, corners go round
+ * counterclockwise seen from outside, and v goes up. */
+typedef struct kage_mesh_array {
+    const char *name;
+    int vertex_count, triangle_count;
+    const double *positions, *normals, *uvs; /* 3, 3 and 2 numbers a vertex; normals, uvs: NULL: none */
+    const uint32_t *triangles;               /* 3 vertices each */
+} kage_mesh_array;
+
 typedef struct kage_load_options {
     const char *const *sets; /* set_count changes of the scene, PATH=VALUE as for `kage render --set` */
     int set_count;
@@ -108,7 +133,10 @@ typedef struct kage_load_options {
      * a model is an error of the scene; other scenes do not need it. It has limited time (3 s and 1 s a MiB) and memory
      * (512 MiB and 96 times the file); a model that crashes it is an error of the scene, too. */
     const char *model_reader;
-    void *reserved[8];
+    const kage_image_array *images;
+    const kage_mesh_array *meshes;
+    int image_count, mesh_count;
+    void *reserved[5];
 } kage_load_options;
 
 /* Read the scene in the file at `path`. options: NULL for the defaults. The list has all errors that were found. */
@@ -416,10 +444,12 @@ KAGE_API void kage_survey_free(kage_survey *survey); /* NULL: nothing */
 /* ---- POV-Ray ---- */
 
 typedef struct kage_povray_options {
-    const char *command;   /* for the file's header: what wrote it. NULL: "libkage" */
-    int no_cast;           /* not 0: objects without a bump cast no shadows */
-    kage_choice displaced; /* as in kage_render_options */
-    void *reserved[8];
+    const char *command;     /* for the file's header: what wrote it. NULL: "libkage" */
+    int no_cast;             /* not 0: objects without a bump cast no shadows */
+    kage_choice displaced;   /* as in kage_render_options */
+    kage_progress *progress; /* NULL: none. A call that it cancels leaves no file */
+    void *user;              /* for progress */
+    void *reserved[6];
 } kage_povray_options;
 
 typedef struct kage_povray_report {

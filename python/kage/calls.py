@@ -30,11 +30,14 @@ class Call:
         lib.kage_py_begin(self.user)
         self.progress = ffi.addressof(lib, "kage_py_progress")
 
-    def run(self, function: Callable[[], int]) -> None:
-        """Make the call: `function` does, and returns its kage_status. Ctrl-C and what the listener raises end it."""
-        self.make(function)
+    def run(self, function: Callable[[], int], *, files: bool = False) -> None:
+        """Make the call: `function` does, and returns its kage_status. Ctrl-C and what the listener raises end it.
 
-    def make(self, function: Callable[[], int], made: Any = None, free: Any = None) -> Any:
+        files: it writes some, so that a program which ends should wait until none is left unfinished.
+        """
+        self.make(function, files=files)
+
+    def make(self, function: Callable[[], int], made: Any = None, free: Any = None, *, files: bool = False) -> Any:
         """The same of a call that makes something, which it stores in *made and `free` frees."""
         def body() -> tuple[int, Any]:
             status = function()
@@ -43,7 +46,7 @@ class Call:
         if self.listener is None and threading.current_thread() is not threading.main_thread():
             status, owned = body()  # Ctrl-C is for the main thread
         else:
-            status, owned = workers.run(body, self.look, lambda: lib.kage_py_stop(self.user))
+            status, owned = workers.run(body, self.look, lambda: lib.kage_py_stop(self.user), files)
         self.check(status)
         return owned
 

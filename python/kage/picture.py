@@ -116,7 +116,7 @@ class Picture:
 
     def _write(self, path: str | os.PathLike[str], options: WriteOptions, call: Call) -> None:
         made = write_struct(options, call)
-        call.run(lambda: lib.kage_film_write(self._film, bytes_of(path), made.c, call.errors))
+        call.run(lambda: lib.kage_film_write(self._film, bytes_of(path), made.c, call.errors), files=True)
 
     def _repr_png_(self) -> bytes:
         """For notebooks."""

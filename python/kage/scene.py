@@ -81,7 +81,10 @@ class Scene:
             to = write_struct({"keep": exr, **options})
             place = bytes_of(path)
             owned = call.make(
-                lambda: lib.kage_render_file(handle, how.c, place, to.c, film, call.errors), film, lib.kage_film_free
+                lambda: lib.kage_render_file(handle, how.c, place, to.c, film, call.errors),
+                film,
+                lib.kage_film_free,
+                files=True,
             )
         return converted(Stats, lib.kage_film_get_stats(owned))
 
@@ -101,19 +104,24 @@ class Scene:
         return converted(Survey, owned, {"objects": lib.kage_scene_get_info(handle).object_count})
 
     def povray(
-        self, path: str | os.PathLike[str], *, surface: Literal["smooth", "displaced"] | None = None, cast: bool = True
+        self,
+        path: str | os.PathLike[str],
+        *,
+        surface: Literal["smooth", "displaced"] | None = None,
+        cast: bool = True,
+        progress: Progress = None,
     ) -> PovrayReport:
         """Write the scene for POV-Ray 3.7 (docs/povray.md).
 
         surface: as for `render`. cast: whether objects without a bump cast shadows.
         """
-        handle, call, report = self._handle, Call(), ffi.new("kage_povray_report *")
-        made = Struct("kage_povray_options")
-        made.text("command", f"kage {__version__} in Python")
-        made.c.no_cast = not cast
-        made.c.displaced = one_of("surface", surface, no="smooth", yes="displaced")
-        place = bytes_of(path)
-        call.run(lambda: lib.kage_scene_write_povray(handle, place, made.c, report, call.errors))
+        handle, report, place = self._handle, ffi.new("kage_povray_report *"), bytes_of(path)
+        with watched(progress, Path(path).name) as call:
+            made = Struct("kage_povray_options", call)
+            made.text("command", f"kage {__version__} in Python")
+            made.c.no_cast = not cast
+            made.c.displaced = one_of("surface", surface, no="smooth", yes="displaced")
+            call.run(lambda: lib.kage_scene_write_povray(handle, place, made.c, report, call.errors), files=True)
         return converted(PovrayReport, report)
 
     def _pixels(self, options: How) -> int:

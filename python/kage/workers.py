@@ -19,8 +19,8 @@ T = TypeVar("T")
 #: Seconds after which what a worker was told to stop, and did not, is left behind.
 PATIENCE = 0.1
 
-#: Seconds that a program which ends waits for what was left behind, so that no unfinished file stays.
-LAST_PATIENCE = 5.0
+#: Seconds that a program which ends waits for what was left behind and writes files, so that no unfinished one stays.
+LAST_PATIENCE = 3.0
 
 
 class Job(Generic[T]):
@@ -68,9 +68,9 @@ idle: list[Worker] = []
 left: list[Job[object]] = []
 
 
-def run(function: Callable[[], T], look: Callable[[], object], stop: Callable[[], object]) -> T:
+def run(function: Callable[[], T], look: Callable[[], object], stop: Callable[[], object], files: bool) -> T:
     """function(), called by a worker. look() is called here 20 times a second. Where that, or Ctrl-C, raises something,
-    stop() tells the call to end, and it is left behind unless it does so soon.
+    stop() tells the call to end, and it is left behind unless it does so soon. files: whether it writes some.
     """
     try:
         worker = idle.pop()
@@ -87,7 +87,8 @@ def run(function: Callable[[], T], look: Callable[[], object], stop: Callable[[]
         if not job.ended.wait(PATIENCE):
             job.wanted = False
             left[:] = [other for other in left if not other.ended.is_set()]
-            left.append(job)  # type: ignore[arg-type]
+            if files:
+                left.append(job)  # type: ignore[arg-type]
             raise
         idle.append(worker)
         raise

@@ -44,7 +44,14 @@ struct kage_scene {
     /* what a further reading needs; owned */
     char *folder, *model_reader, **set;
     int sets, threads;
+    arrays arrays;
 };
+
+/* Check the caller's arrays. False: errors in *e. */
+bool arrays_are_good(const kage_load_options *o, errors *e);
+
+/* Copy them. False: out of memory. */
+bool arrays_take(arrays *to, const kage_load_options *o);
 
 /* What decides which reading of a scene a render needs. */
 typedef struct reading {
@@ -59,6 +66,9 @@ const scene *scene_reading(kage_scene *k, reading r, errors *e);
 /* Fill in, and free, k->info. False: out of memory. */
 bool scene_note(kage_scene *k);
 void scene_forget(kage_scene *k);
+
+/* The text `Software` in a picture begins with this; the version follows. */
+#define SOFTWARE "kage"
 
 enum { PICTURE_TEXTS = 7, PICTURE_CROP_SIZE = 64 };
 

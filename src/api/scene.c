@@ -27,7 +27,7 @@ static bool keep(kage_scene *k, const char *folder, const kage_load_options *o)
     k->set = calloc((size_t)o->set_count + 1, sizeof *k->set);
     for (; k->set && k->sets < o->set_count && good; k->sets++)
         k->set[k->sets] = copy(o->sets[k->sets], &good);
-    return good && k->set;
+    return good && k->set && arrays_take(&k->arrays, o);
 }
 
 static kage_status load(scene_source *from, const kage_load_options *given, kage_scene **out, kage_errors **to)
@@ -38,6 +38,8 @@ static kage_status load(scene_source *from, const kage_load_options *given, kage
         return error_give(KAGE_BAD_OPTION, to, "%d threads and %d changes, expected 0 to %d and 0 or more", o.threads,
                           o.set_count, KAGE_MAX_THREADS);
     errors e = {0};
+    if (!arrays_are_good(&o, &e))
+        return errors_give(&e, KAGE_BAD_OPTION, NULL, to);
     c_locale l = c_locale_begin();
     watch w = {o.progress, o.user, &l, false};
     const progress p = watch_progress(&w);
@@ -51,6 +53,7 @@ static kage_status load(scene_source *from, const kage_load_options *given, kage
     from->threads = o.threads;
     from->model_reader = o.model_reader;
     from->progress = &p;
+    from->arrays = k ? &k->arrays : NULL;
     scene *s = k && keep(k, from->folder, &o) ? scene_read(from, &e) : NULL;
     if (s) {
         k->first = s;
@@ -90,6 +93,7 @@ void kage_scene_free(kage_scene *k)
     free(k->set);
     free(k->folder);
     free(k->model_reader);
+    arrays_free(&k->arrays);
     pthread_mutex_destroy(&k->lock);
     free(k);
 }
@@ -111,6 +115,11 @@ static scene *read_again(const kage_scene *k, reading r, errors *e)
     for (int i = 0; i < k->sets; i++)
         set[i] = k->set[i];
     memcpy(set + k->sets, more, sizeof more);
+    const scene *other[READINGS];
+    int others = 0;
+    for (int i = 0; i < READINGS; i++)
+        if (k->reading[i])
+            other[others++] = k->reading[i];
     const scene_source from = {
         .path = k->first->path,
         .text = k->first->source,
@@ -120,6 +129,9 @@ static scene *read_again(const kage_scene *k, reading r, errors *e)
         .set = set,
         .threads = k->threads,
         .model_reader = k->model_reader,
+        .arrays = &k->arrays,
+        .others = others,
+        .other = other,
     };
     scene *s = scene_read(&from, e);
     free(set);

@@ -37,11 +37,11 @@ static void clear(float *memory, size_t values, int threads)
     }
 }
 
-/* Memory for so many values: that of a film that has enough, but no more than a few times of it, or new. False: out of
- * memory. */
+/* Memory for so many values: that of a film that has enough, but not far more (layers may come and go), or new. False:
+ * out of memory. */
 static bool take_memory(film *f, film *spare, size_t values, int threads)
 {
-    enum { WASTE = 4 };
+    enum { WASTE = 24 };
     void *p;
     if (spare && spare->room >= values && spare->room / WASTE <= values) {
         f->memory = spare->memory;

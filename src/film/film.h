@@ -39,7 +39,7 @@ static inline size_t film_index(const film *f, int x, int y)
 }
 
 /* A film whose memory several threads have touched (0: all processors); its values are for a render to set. spare, or
- * NULL: a film whose planes it takes where they are large enough. NULL: out of memory, with a message. */
+ * NULL: a film whose memory it takes where that is large enough. NULL: out of memory, with a message. */
 film *film_new(const scene *s, window part, bool layers, int threads, film *spare, errors *e);
 
 /* Move the film down to the rows y0 to y1 of the picture, at most as many as it was made for. */

@@ -58,14 +58,14 @@ static void read_bytes(png_structp png, png_bytep data, size_t size)
 STAGE static void png_to_float8(int n, const unsigned char *restrict from, float *restrict to)
 {
     for (int i = 0; i < n; i++)
-        to[i] = (float)from[i] / 255.0f;
+        to[i] = image_of_u8(from[i]);
 }
 
 /* Big-endian. */
 STAGE static void png_to_float16(int n, const unsigned char *restrict from, float *restrict to)
 {
     for (int i = 0; i < n; i++)
-        to[i] = (float)(from[2 * i] << 8 | from[2 * i + 1]) / 65535.0f;
+        to[i] = image_of_u16(from[2 * i] << 8 | from[2 * i + 1]);
 }
 
 /* Pass on n rows, from row y on. (The samples are finite, so none is refused.) */

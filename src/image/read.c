@@ -48,6 +48,21 @@ bool image_read(const char *path, const char *channel, int threads, const image_
     return ok;
 }
 
+static bool read_memory(const image_array *a, const char *channel, image_stream *to, errors *e)
+{
+    char why[IMAGE_WHY] = "";
+    return image_read_array(a, channel, to, why) || errors_add(e, "%s", why);
+}
+
+bool image_array_read(const image_array *a, const char *channel, const image_taker *to, float range[2], errors *e)
+{
+    image_stream s = {.to = to, .values = 1};
+    const bool ok = read_memory(a, channel, &s, e);
+    range[0] = s.range[0];
+    range[1] = s.range[1];
+    return ok;
+}
+
 /* ---- in colour: all pixels in memory ---- */
 
 static const char *begin_pixels(void *user, int width, int height)
@@ -84,16 +99,35 @@ static bool all_opaque(const image *m, errors *e)
     return true;
 }
 
+/* wrong: why samples can't be in sRGB, which are linear in any case. */
+static bool finish_color(image_encoding encoding, bool linear, const char *wrong, image *out, errors *e)
+{
+    if (!all_opaque(out, e))
+        return false;
+    if (linear && encoding == IMAGE_SRGB)
+        return errors_add(e, "%s", wrong);
+    return linear || encoding == IMAGE_LINEAR || srgb_decode((size_t)out->width * (size_t)out->height, out->v) ||
+           errors_add(e, "there is not enough memory for the image");
+}
+
 bool image_read_color(const char *path, image_encoding encoding, int threads, image *out, bool *is_exr, errors *e)
 {
     const image_taker to = {out, begin_pixels, take_pixels};
     image_stream s = {.to = &to, .values = 4};
     *out = (image){0};
-    bool ok = read_file(path, NULL, threads, &s, is_exr, e) && all_opaque(out, e);
-    if (ok && *is_exr && encoding == IMAGE_SRGB)
-        ok = errors_add(e, "an OpenEXR file is linear; srgb is for PNG");
-    if (ok && !*is_exr && encoding != IMAGE_LINEAR)
-        ok = srgb_decode((size_t)out->width * (size_t)out->height, out->v) ||
-             errors_add(e, "there is not enough memory for the image");
-    return keep_if(ok, out);
+    return keep_if(read_file(path, NULL, threads, &s, is_exr, e) &&
+                       finish_color(encoding, *is_exr, "an OpenEXR file is linear; srgb is for PNG", out, e),
+                   out);
+}
+
+bool image_array_read_color(const image_array *a, image_encoding encoding, image *out, bool *is_float, errors *e)
+{
+    const image_taker to = {out, begin_pixels, take_pixels};
+    image_stream s = {.to = &to, .values = 4};
+    *out = (image){0};
+    *is_float = a->type >= IMAGE_F32;
+    return keep_if(
+        read_memory(a, NULL, &s, e) &&
+            finish_color(encoding, *is_float, "an array of floats is linear; srgb is for whole numbers", out, e),
+        out);
 }

@@ -118,7 +118,7 @@ static bool put_object(pov_text *t, const scene *s, const pov_options *how, int 
 bool pov_write(const scene *s, const pov_options *how, const char *path, pov_report *report, errors *e)
 {
     pov_text t;
-    bool good = true;
+    bool good = true, stopped = false;
     *report = (pov_report){0};
     if (!pov_begin(&t, path, e))
         return false;
@@ -128,7 +128,10 @@ bool pov_write(const scene *s, const pov_options *how, const char *path, pov_rep
         put_light(&t, &s->light[k]);
     pov_print(&t, "\n");
     pov_materials(&t, s);
-    for (int k = 0; good && k < s->objects; k++)
-        good = put_object(&t, s, how, k, report);
-    return pov_end(&t, good ? NULL : "out of memory", e);
+    for (int k = 0; good && !stopped && k <= s->objects; k++) {
+        stopped = !progress_show(how->progress, "writing", (double)k / (s->objects + 1));
+        if (!stopped && k < s->objects)
+            good = put_object(&t, s, how, k, report);
+    }
+    return pov_end(&t, stopped ? "stopped" : good ? NULL : "out of memory", e);
 }

@@ -6,12 +6,14 @@
 #include "base/errors.h"
 #include "base/files.h"
 #include "base/progress.h"
+#include "base/shelf.h"
 #include "crowd/crowd.h"
 #include "geometry/closed_form.h"
 #include "geometry/surface.h"
 #include "mesh/mesh_data.h"
 #include "method/bump_shadow.h"
 #include "method/method.h"
+#include "scene/arrays.h"
 #include "scene/camera.h"
 #include "scene/light.h"
 #include "scene/material.h"
@@ -96,6 +98,7 @@ typedef struct scene {
     char *path;      /* of the file, or the name of a text in memory */
     char *source;    /* the text of the scene, before --set changes */
     files made_from; /* all files that were read */
+    shelf shelf;     /* what other scenes may use, too */
     int width, height;
     vec3 background;
     camera camera;
@@ -160,6 +163,10 @@ typedef struct scene_source {
     int threads;              /* 0: all processors */
     const char *model_reader; /* the program kage-import; NULL: mesh/reader.c looks for it */
     const progress *progress; /* while large files are read; may be NULL */
+    const arrays *arrays;     /* that the scene may name; NULL: none. They live as long as the scene */
+    int others;               /* scenes whose shelves may have what this one needs */
+    const struct scene *const *other;
+    bool again; /* others will follow this one: keep what they need */
 } scene_source;
 
 /* Read a scene. NULL: all errors are in *e, as `file:line:col: ...`, the line and a caret. */

@@ -129,10 +129,11 @@ def test_all_errors_of_a_scene_at_once(tmp_path: Path) -> None:
     with pytest.raises(kage.InputError) as caught:
         kage.load(path)
     error = caught.value
-    assert (error.file, error.line, error.column) == (str(path), 1, 63) and "expected the horizontal angle" in error.text
+    assert (error.file, error.line, error.column) == (str(path), 1, 63)
+    assert error.text == "400 is more than 175, expected the horizontal angle in degrees, above 0 and up to 175"
     assert [entry.line for entry in error.errors] == [1, 17, 22]  # the map is missing, too
     assert str(error).count("^") == 3 and isinstance(error, ValueError)
-    again = pickle.loads(pickle.dumps(error))  # as Dask sends it
+    again = pickle.loads(pickle.dumps(error))  # noqa: S301 - as Dask sends it, our own
     assert (type(again), again.line, again.errors) == (kage.InputError, 1, error.errors)
 
 
