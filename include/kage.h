@@ -148,6 +148,14 @@ KAGE_API kage_status kage_scene_load(const char *path, const kage_load_options *
 KAGE_API kage_status kage_scene_parse(const char *text, size_t size, const char *name, const char *folder,
                                       const kage_load_options *options, kage_scene **scene, kage_errors **errors);
 
+/* A new scene: `scene` with options->sets after its own, as if it had been read with all of them. `scene` stays as it
+ * is, and either may be freed first. It is not read from files again, but for what the changes touch, and for files
+ * that have changed: maps, images, models and the hierarchies over surfaces are shared between the scenes. Of an image
+ * or a model that is given again under its name the new one counts. options: threads 0 and model_reader NULL mean those
+ * that `scene` was read with. */
+KAGE_API kage_status kage_scene_change(kage_scene *scene, const kage_load_options *options, kage_scene **changed,
+                                       kage_errors **errors);
+
 KAGE_API void kage_scene_free(kage_scene *scene); /* NULL: nothing */
 
 typedef struct kage_light_info {

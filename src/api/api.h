@@ -44,8 +44,14 @@ struct kage_scene {
     /* what a further reading needs; owned */
     char *folder, *model_reader, **set;
     int sets, threads;
+    bool from_file; /* first->path is a file's */
     arrays arrays;
+    shelf spare; /* of the scene that it is a change of: what its further readings had made */
 };
+
+/* Add a change after those of k, which has room for it. A change of the same place is replaced, so that changes one
+ * after another do not pile up. False: out of memory. */
+bool sets_put(kage_scene *k, const char *set);
 
 /* Check the caller's arrays. False: errors in *e. */
 bool arrays_are_good(const kage_load_options *o, errors *e);

@@ -85,10 +85,23 @@ static kept_samples *read_kept(reader *r, const source *from, const char *layer,
     return NULL;
 }
 
+static char *key_of_samples(reader *r, const source *from, const char *layer)
+{
+    return *from->id ? reader_key(r, "samples %s %s", from->id, layer ? layer : "") : NULL;
+}
+
+/* Samples that are kept are so for the next change, too, if this one does not need them. */
+static void pass_on(reader *r, const source *from, const char *layer)
+{
+    char *key = key_of_samples(r, from, layer);
+    reader_found(r, key);
+    free(key);
+}
+
 /* The samples of a file, which are kept once a scene is changed. NULL: they are not, or an error is in *e. */
 static const image_array *kept_of(reader *r, const source *from, const char *layer, errors *e)
 {
-    char *key = *from->id ? reader_key(r, "samples %s %s", from->id, layer ? layer : "") : NULL;
+    char *key = key_of_samples(r, from, layer);
     kept_samples *k = reader_found(r, key);
     if (!k && key && r->from->again && (k = read_kept(r, from, layer, e)) && !reader_keep(r, key, k, free))
         k = NULL;
@@ -146,6 +159,8 @@ static bump *table_of(reader *r, node *at, node *file, const source *from, const
     const bool found = made;
     if (!found)
         made = make_map(r, at, file, from, layer, l);
+    else if (!from->array)
+        pass_on(r, from, layer);
     bump *p = made ? bump_share(made->p) : NULL;
     if (made) {
         *note = made->note;
@@ -202,8 +217,6 @@ static void widest_extent(const surface *f, double u[2], double w[2])
     }
 }
 
-static void free_bump(void *p) { bump_free(p); }
-
 static bump *read_function(reader *r, node *at, const surface *f, bump_spec *spec)
 {
     double scale = 1, u[2], w[2];
@@ -221,12 +234,11 @@ static bump *read_function(reader *r, node *at, const surface *f, bump_spec *spe
     widest_extent(f, u, w);
     char *key =
         text ? reader_key(r, "function %.17g %.17g %.17g %.17g %.17g %s", scale, u[0], u[1], w[0], w[1], text) : NULL;
-    bump *p = reader_found(r, key);
-    if (p) {
+    bump *p = reader_found_bump(r, key);
+    if (p)
         expr_free(e);
-        bump_share(p);
-    } else if ((p = reader_made(r, bump_function_new(e, scale, u, w))))
-        reader_keep(r, key, bump_share(p), free_bump);
+    else
+        p = reader_keep_bump(r, key, reader_made(r, bump_function_new(e, scale, u, w)));
     free(key);
     return p;
 }

@@ -53,6 +53,8 @@ static bool read_triangles(reader *r, const wanted *m, mesh_data *d)
 {
     char why[MESH_WHY];
     const char *name = m->from.name;
+    if (m->from.array && m->part)
+        return yaml_error(r->y, m->part, "an array has no parts, expected none to be named");
     bool good = m->from.array ? mesh_array_read(&m->from.array->mesh, d, why) : read_file(r, m, d, why);
     if (good)
         progress_show(r->from->progress, "checking", 1);
@@ -77,7 +79,7 @@ static surface *new_mesh(reader *r, const wanted *m)
     mesh_data d = {0};
     char *key = NULL;
     if (*m->from.id && is_alone(m->from.path))
-        key = reader_key(r, "mesh %s %d %.17g %s part %s", m->from.id, m->normals, m->crease, m->from.name,
+        key = reader_key(r, "mesh %s %d %.17g %s part %s", m->from.id, (int)m->normals, m->crease, m->from.name,
                          m->part ? m->part_name : "");
     surface *f = reader_found_surface(r, key);
     if (!f && read_triangles(r, m, &d))
