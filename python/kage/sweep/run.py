@@ -22,6 +22,8 @@ from kage.sweep.records import Record
 from kage.sweep.worker import Result, work
 from kage.text import bytes_of
 
+#: Above all levels of logging: at the end of a cluster on this machine, Dask calls what is as it should be critical.
+SILENT = 60
 #: Tasks that wait at the scheduler for each thread of a worker, and at least: so that millions of tasks need no memory
 #: there, and no worker ever waits.
 AHEAD, LEAST = 20, 200
@@ -55,7 +57,8 @@ def cluster(scheduler: str | None = None, workers: int | None = None) -> Iterato
         return
     count = workers or len(os.sched_getaffinity(0))
     with dask.config.set({"distributed.scheduler.allowed-failures": DEATHS}), LocalCluster(
-        n_workers=count, threads_per_worker=1, processes=True, dashboard_address=None, silence_logs=50
+        n_workers=count, threads_per_worker=1, processes=True, dashboard_address=None, silence_logs=SILENT,
+        preload="kage.sweep.quiet",
     ) as local, Client(local, set_as_default=False) as client:
         yield client
 
