@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import os
+import threading
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Literal, Unpack
 
 from kage._kage import ffi, lib
+from kage.arrays import Arrays
 from kage.calls import Call
 from kage.convert import converted
 from kage.options import FileOptions, How, Progress, RenderOptions, takes
@@ -28,6 +30,7 @@ class Scene:
 
     def __init__(self, handle: Any) -> None:
         self._handle = handle
+        self._lock = threading.Lock()  # of changes
 
     @property
     def name(self) -> str:
@@ -87,6 +90,37 @@ class Scene:
                 files=True,
             )
         return converted(Stats, lib.kage_film_get_stats(owned))
+
+    @property
+    def text(self) -> str:
+        """The scene as YAML, with all changes in it; comments are kept."""
+        return text_of(lib.kage_scene_get_info(self._handle).text) or ""
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write `text` to a file, whole or not at all."""
+        handle, call = self._handle, Call()
+        call.run(lambda: lib.kage_scene_write(handle, bytes_of(path), call.errors), files=True)
+
+    def set(
+        self, path: str | Mapping[str, Any], value: Any = None, *, arrays: Mapping[str, Any] | None = None
+    ) -> None:
+        """Change the scene: scene.set("objects.ground.bump.scale", 0.1), or several keys at once by a dict.
+
+        A value is what a dict for `kage.load` may hold. A key of a map that is not there yet is added. Where a value is
+        wrong, the scene stays as it was. Only what the changes touch is read again. Renders in other threads go on with
+        the scene as they found it.
+        """
+        with self._lock:
+            self._handle = self.changed(path, value, arrays=arrays)._handle
+
+    def changed(
+        self, path: str | Mapping[str, Any], value: Any = None, *, arrays: Mapping[str, Any] | None = None
+    ) -> Scene:
+        """A new scene with the changes of `set`. This one stays as it is; the two share what is the same."""
+        handle, call, scene = self._handle, Call(), ffi.new("kage_scene **")
+        options = load_struct({path: value} if isinstance(path, str) else path, Arrays(arrays), call, None)
+        free = lib.kage_scene_free
+        return Scene(call.make(lambda: lib.kage_scene_change(handle, options.c, scene, call.errors), scene, free))
 
     def probe(self, x: int, y: int) -> Probe:
         """Every value that is computed for the ray through the middle of pixel x, y, by each method."""
@@ -149,6 +183,7 @@ def load(
     sets: Mapping[str, Any] | None = None,
     folder: str | os.PathLike[str] | None = None,
     name: str | None = None,
+    arrays: Mapping[str, Any] | None = None,
     threads: int | None = None,
     progress: Progress = None,
 ) -> Scene:
@@ -157,19 +192,22 @@ def load(
     A str is a text if it has a line end or begins with "{", otherwise a path. A dict may hold numpy arrays: height
     maps, images and meshes, see docs/python.md.
     sets: changes, as {"objects.ground.bump.scale": 0.1}. folder: where relative names of files begin, for a text or a
-    dict (default: the current folder). name: what errors and pictures call a text or a dict (default
-    "scene"). All errors of the scene are raised at once, as an InputError.
+    dict (default: the current folder). name: what errors and pictures call a text or a dict (default "scene").
+    arrays: what "array:NAME" is, where the scene has that in place of a file. All errors of the scene are raised at
+    once, as an InputError.
     """
-    found = Text(source, folder, name)
+    named = Arrays(arrays)
+    found = Text(source, folder, name, named)
     scene = ffi.new("kage_scene **")
     with watched(progress, found.name) as call:
-        options = load_struct(sets or {}, call, threads)
+        options = load_struct(sets or {}, named, call, threads)
         return Scene(call.make(lambda: found.read(options.c, scene, call.errors), scene, lib.kage_scene_free))
 
 
-def load_struct(sets: Mapping[str, Any], call: Call, threads: int | None) -> Struct:
+def load_struct(sets: Mapping[str, Any], arrays: Arrays, call: Call, threads: int | None) -> Struct:
     made = Struct("kage_load_options", call, threads)
-    texts = [made.keep(ffi.new("char[]", text)) for text in changes_of(sets)]
+    texts = [made.keep(ffi.new("char[]", text)) for text in changes_of(sets, arrays)]
+    arrays.fill(made)
     made.c.sets = made.keep(ffi.new("char *[]", texts))
     made.c.set_count = len(texts)
     if "KAGE_IMPORT" not in os.environ:

@@ -17,7 +17,8 @@ kage_status kage_scene_write_povray(kage_scene *k, const char *path, const kage_
     const scene *s = scene_reading(k, (reading){displaced, k->first->shadow, k->first->bump_shadow}, &e);
     bool good = s && pov_possible(s, &e);
     if (good) {
-        const pov_options how = {o.command ? o.command : "libkage", o.no_cast != 0, &show};
+        const pov_options how = {
+            .command = o.command ? o.command : "libkage", .no_cast = o.no_cast != 0, .progress = &show};
         status = KAGE_NOT_WRITTEN;
         good = pov_write(s, &how, path, &r, &e);
     }
