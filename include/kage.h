@@ -466,10 +466,12 @@ KAGE_API void kage_survey_free(kage_survey *survey); /* NULL: nothing */
 /* ---- POV-Ray ---- */
 
 typedef struct kage_povray_options {
-    const char *command;   /* for the file's header: what wrote it. NULL: "libkage" */
-    int no_cast;           /* not 0: objects without a bump cast no shadows */
-    kage_choice displaced; /* as in kage_render_options */
-    void *reserved[8];
+    const char *command;     /* for the file's header: what wrote it. NULL: "libkage" */
+    int no_cast;             /* not 0: objects without a bump cast no shadows */
+    kage_choice displaced;   /* as in kage_render_options */
+    kage_progress *progress; /* NULL: none. A call that it cancels leaves no file */
+    void *user;              /* for progress */
+    void *reserved[6];
 } kage_povray_options;
 
 typedef struct kage_povray_report {
