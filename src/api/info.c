@@ -39,6 +39,8 @@ static void note_bump(const object *o, kage_object_info *x)
     x->map_size[1] = o->map.height;
     x->map_range[0] = o->map.low;
     x->map_range[1] = o->map.high;
+    x->map_bits = o->map.bits;
+    x->map_smooth = o->map.file ? o->bump_spec.layout.smooth : 0;
     x->height[0] = (double)o->bump->Pmin;
     x->height[1] = (double)o->bump->Pmax;
     x->bump_of = o->bump_of ? o->bump_of : o->name;
