@@ -71,7 +71,7 @@ typedef struct reading {
 const scene *scene_reading(kage_scene *k, reading r, errors *e);
 
 /* Fill in, and free, k->info. False: out of memory. */
-bool scene_note(kage_scene *k);
+bool scene_describe(kage_scene *k);
 void scene_forget(kage_scene *k);
 
 /* The text `Software` in a picture begins with this; the version follows. */

@@ -98,7 +98,7 @@ static kage_camera_info of_camera(const scene *s)
     return x;
 }
 
-bool scene_note(kage_scene *k)
+bool scene_describe(kage_scene *k)
 {
     const scene *s = k->first;
     char *name = malloc(METHOD_NAME_SIZE);

@@ -113,7 +113,7 @@ static kage_status load(kage_scene *before, scene_source *from, const kage_load_
     const progress p = watch_progress(&w);
     from->progress = &p;
     kage_scene *k = new_scene();
-    const bool good = k && read_first(k, before, from, &o, &e) && !w.cancelled && scene_note(k);
+    const bool good = k && read_first(k, before, from, &o, &e) && !w.cancelled && scene_describe(k);
     c_locale_end(&l);
     if (good)
         *out = k;
