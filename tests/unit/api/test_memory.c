@@ -223,7 +223,7 @@ static void of_changes(void **state)
 {
     (void)state;
     change = "objects.ball.bump.scale=0.2";
-    each_fails(WITH_MAP, &plain, 3);
+    each_fails(WITH_MAP, &plain, 11);
     change = NULL;
 }
 
@@ -240,7 +240,7 @@ static void of_arrays(void **state)
     const kage_load_options o = {
         .sets = set, .set_count = 2, .images = &h, .image_count = 1, .meshes = &m, .mesh_count = 1};
     arrays = &o;
-    each_fails(WITH_MAP, &plain, 3);
+    each_fails(WITH_MAP, &plain, 11);
     arrays = NULL;
 }
 
