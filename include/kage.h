@@ -217,10 +217,18 @@ typedef struct kage_scene_info {
     const char *bump_shadow; /* render.bump_shadow */
     int shifted;             /* render.shade: shifted */
     kage_camera_info camera;
+    const char *text; /* the scene's YAML, with the changes in it that it was read with; NULL: out of memory */
 } kage_scene_info;
 
 /* What is in a scene. */
 KAGE_API const kage_scene_info *kage_scene_get_info(const kage_scene *scene);
+
+/* Write kage_scene_info.text. A change is written where the value stood that it replaces, or behind the last entry of
+ * its map; all other bytes, comments and layout, stay. A scene that is read from the file is the same one, if files
+ * that it names with relative names are found from there, and arrays are given again. The file appears whole or not at
+ * all.
+ */
+KAGE_API kage_status kage_scene_write(const kage_scene *scene, const char *path, kage_errors **errors);
 
 /* Whether the file at `path`, links followed, was read for the scene, so that no output should replace it. */
 KAGE_API int kage_scene_uses_file(const kage_scene *scene, const char *path);

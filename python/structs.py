@@ -74,6 +74,8 @@ def python_type(name: str, kind: Any, comment: str, counted: bool) -> str:
     item = kind.item
     if item.kind == "primitive":
         return "tuple[float, ...]"
+    if item.kind == "pointer":
+        return "tuple[str, ...]"
     return f"tuple[{class_name(item.cname)}, ...]" if counted else f"{class_name(item.cname)} | None"
 
 

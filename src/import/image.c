@@ -102,9 +102,12 @@ static char *send_file(importer *k, const char *name, const char *ending, const 
     char *file = stem ? malloc(strlen(k->wish->stem) + TEXT_NAME + 32) : NULL;
     if (file) {
         text_scene_name(part, *stem ? stem : "image");
-        sprintf(file, "%s-%s%s", k->wish->stem, part, ending);
+        const bool after =
+            strncmp(part, k->wish->stem, strlen(k->wish->stem)) != 0; /* it has the scene's name not yet */
+        const char *first = after ? k->wish->stem : "", *dash = after ? "-" : "";
+        sprintf(file, "%s%s%s%s", first, dash, part, ending);
         for (int n = 2; is_taken(k, file); n++)
-            sprintf(file, "%s-%s-%d%s", k->wish->stem, part, n, ending);
+            sprintf(file, "%s%s%s-%d%s", first, dash, part, n, ending);
         k->to->file(k->to->user, file, bytes, size);
     }
     free(stem);

@@ -79,11 +79,13 @@ static void of_metal(const struct aiMaterial *m, double metallic, look *l)
 static void of_phong(const struct aiMaterial *m, look *l)
 {
     double shine[4] = {0, 0, 0, 1}, n = 0, share = 0;
-    int illum = 0;
+    int illum = 0, shading = 0;
+    aiGetMaterialIntegerArray(m, AI_MATKEY_SHADING_MODEL, &shading, NULL);
+    const bool dull = shading == aiShadingMode_Flat || shading == aiShadingMode_Gouraud;
     get_color(m, AI_MATKEY_COLOR_SPECULAR, shine);
     get_number(m, AI_MATKEY_SHININESS, &n);
     l->diffuse = 1;
-    if (n > 0 && grey(shine) > 0) {
+    if (n > 0 && grey(shine) > 0 && !dull) {
         l->specular = within(grey(shine), 0, 1);
         l->roughness = within(1 / n, 1e-4, 100);
     }

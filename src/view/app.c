@@ -78,6 +78,14 @@ static void report_text(const app *a, const char *what, const char *text)
     fflush(stdout);
 }
 
+static void report_under(const app *a)
+{
+    const readout *r = &a->shown.news.under;
+    char text[2 * VIEW_NAME];
+    snprintf(text, sizeof text, "%d %d %s", r->x, r->y, r->owner);
+    report_text(a, "under", text);
+}
+
 /* ---- events ---- */
 
 static void take_event(app *a, const view_event *e, unsigned *asked)
@@ -147,9 +155,10 @@ static void hear_news(app *a)
         tell(a, x->news.saved);
         report_text(a, x->news.saved, "");
     }
-    if (strcmp(under.owner, x->news.under.owner) != 0)
-        report_text(a, "under", x->news.under.owner);
-    a->stale = a->stale || under.x != x->news.under.x || under.y != x->news.under.y;
+    if (under.x != x->news.under.x || under.y != x->news.under.y) {
+        a->stale = true;
+        report_under(a);
+    }
 }
 
 /* Take the newest picture and texts. True: the picture is another one. */

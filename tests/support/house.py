@@ -20,9 +20,9 @@ PROGRAMS = ("cli", "look", "view", "import")
 
 #: Headers of other projects, and the only places that include each: beginnings of a path below src/.
 OUTSIDE: dict[str, str | tuple[str, ...]] = {
-    "png.h": "image/png.c", "openexr.h": "image/exr_", "OpenEXRConfig.h": "image/exr_zip.c",
-    "libdeflate.h": "image/exr_zip.c", "libfyaml.h": "yaml/", "embree": "bvh/embree.c",
-    "assimp/": "import/", "SDL": "view/", "fontconfig/": "view/font.c",
+    "png.h": ("image/png.c", "import/picture.c"), "jpeglib.h": "import/picture.c", "openexr.h": "image/exr_",
+    "OpenEXRConfig.h": "image/exr_zip.c", "libdeflate.h": "image/exr_zip.c", "libfyaml.h": "yaml/",
+    "embree": "bvh/embree.c", "assimp/": "import/", "SDL": "view/", "fontconfig/": "view/font.c",
     "omp.h": "base/threads.h", "pthread.h": ("api/api.h", "bvh/embree.c", "image/"),
 }
 

@@ -90,7 +90,7 @@ def test_the_mouse_changes_the_scene_and_p_saves_it(kage: Kage, screen: Display,
         window.drag(100, 200, 200, 190, hold="shift")
         window.settle()
         window.mouse(350, 230)
-        window.wait("^under ground$")
+        window.wait("^under 350 230 ground$")
         screen.do("click", 4)
         window.settle()
         window.drag(100, 200, 110, 190, button=3)
