@@ -39,6 +39,8 @@ static void note_bump(const object *o, kage_object_info *x)
     x->map_size[1] = o->map.height;
     x->map_range[0] = o->map.low;
     x->map_range[1] = o->map.high;
+    x->map_bits = o->map.bits;
+    x->map_smooth = o->map.file ? o->bump_spec.layout.smooth : 0;
     x->height[0] = (double)o->bump->Pmin;
     x->height[1] = (double)o->bump->Pmax;
     x->bump_of = o->bump_of ? o->bump_of : o->name;
@@ -141,8 +143,8 @@ static void note_text(kage_scene *k)
         return;
     pthread_mutex_lock(&k->lock);
     if (!k->info.text) {
-        k->text = k->sets ? yaml_edited(k->first->source, k->sets, (const char *const *)k->set) : NULL;
-        __atomic_store_n(&k->info.text, k->sets ? k->text : k->first->source, __ATOMIC_RELEASE);
+        k->text = yaml_edited(k->first->source, k->sets, (const char *const *)k->set);
+        __atomic_store_n(&k->info.text, k->text, __ATOMIC_RELEASE);
     }
     pthread_mutex_unlock(&k->lock);
 }
