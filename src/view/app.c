@@ -30,6 +30,7 @@ bool app_start(app *a, const app_options *o, kage_scene *scene)
     memset(a, 0, sizeof *a);
     a->o = *o;
     watch_start(&a->watch, o->path);
+    a->shown.timed = !o->report;
     snprintf(title, sizeof title, "%s - kage", base_name(o->path));
     if (!window_open(&a->window, title, &width, &height)) {
         kage_scene_free(scene);
