@@ -5,8 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "view/events.h"
-
 /* Milliseconds: between two looks at the file, and how long a message stays. */
 enum { LOOK_EACH = 200, MESSAGE_STAYS = 4000 };
 
@@ -66,7 +64,7 @@ static void report_picture(const app *a)
     if (!a->o.report)
         return;
     printf("shown %d %s stage=%d size=%dx%d shadow=%s beside=%s shade=%s own=%s surface=%s layer=%s\n", f->number,
-           f->last ? "last" : "first", f->stage, f->columns, f->rows, f->shadow, *f->beside ? f->beside : "-",
+           f->last ? "last" : "more", f->stage, f->columns, f->rows, f->shadow, *f->beside ? f->beside : "-",
            f->shifted ? "shifted" : "smooth", f->own, f->displaced ? "displaced" : "smooth", layers[f->legend.layer]);
     fflush(stdout);
 }
@@ -112,7 +110,7 @@ static unsigned take_events(app *a, int wait)
     for (bool some = SDL_WaitEventTimeout(&e, wait); some; some = SDL_PollEvent(&e)) {
         if (e.type == SDL_WINDOWEVENT && e.window.event == SDL_WINDOWEVENT_EXPOSED)
             asked |= ASK_WINDOW;
-        else if (events_read(&e, &own))
+        else if (events_read(&a->held, &e, &own))
             take_event(a, &own, &asked);
     }
     return asked;
