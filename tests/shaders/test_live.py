@@ -167,16 +167,17 @@ def test_pixels(driver: Chrome, tmp_path: Path, scene: str) -> None:
         if name == "0":
             assert share_near(found, kage(tmp_path, scene, "--shadow", "none")) < 0.999, "order 0 is as `none`"
     assert {name: share for name, share in worst.items() if share < SHARE} == {}
+    check_samples(driver, tmp_path, scene)
+    check_turned(driver, tmp_path, scene)
 
 
-def test_samples(driver: Chrome, tmp_path: Path) -> None:
+def check_samples(driver: Chrome, tmp_path: Path, scene: str) -> None:
     """Of 2 x 2 a pixel, as the page draws once it stands."""
-    found = pixels(driver, {"scene": "cube"}, "1", samples=2)
-    assert share_near(found, kage(tmp_path, "cube", "--shadow", "1", "--aa", "2")) >= SHARE
+    found = pixels(driver, {"scene": scene, "shade": False, "own": False}, "1", samples=2)
+    assert share_near(found, kage(tmp_path, scene, "--shadow", "1", "--aa", "2")) >= SHARE
 
 
-@pytest.mark.parametrize("scene", SCENES)
-def test_turned(driver: Chrome, tmp_path: Path, scene: str) -> None:
+def check_turned(driver: Chrome, tmp_path: Path, scene: str) -> None:
     """With another eye, light and height: kage draws the same from the numbers that the page says it has."""
     found = pixels(driver, {"scene": scene, "eye": [25, 6, 1.1], "light": [-30, -7], "height": 0.6, "own": False}, "2")
     u = driver.execute_script("return live.uniforms(4, 3);")
@@ -256,10 +257,10 @@ def test_keys(driver: Chrome) -> None:
 
     canvas, line = driver.find_element("id", "canvas"), driver.find_element("id", "divider")
     driver.execute_script("document.getElementById('canvas').focus();")
-    before = pixels(driver, {}, "0")
+    before = pixels(driver, {}, "none")
     ActionChains(driver).send_keys(Keys.ARROW_LEFT, Keys.ARROW_UP).perform()
     assert state(driver)["eye"] == [3, -3, 1]
-    assert share_near(pixels(driver, {}, "0"), before) < SHARE
+    assert share_near(pixels(driver, {}, "none"), before) < SHARE
     ActionChains(driver).key_down(Keys.SHIFT).send_keys(Keys.ARROW_RIGHT).key_up(Keys.SHIFT).perform()
     assert state(driver)["light"] == [3, 0]
     canvas.send_keys("m")
@@ -276,7 +277,7 @@ def test_keys(driver: Chrome) -> None:
         assert state(driver)["line"] == wanted / 100
     canvas.send_keys("r")
     assert state(driver)["eye"] == [0, 0, 1]
-    assert share_near(pixels(driver, {}, "0"), before) == 1
+    assert share_near(pixels(driver, {}, "none"), before) == 1
 
 
 def drag(driver: Chrome, start: tuple[float, float], way: tuple[int, int], shift: bool = False) -> None:
