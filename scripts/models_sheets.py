@@ -52,7 +52,7 @@ def corner(run: Callable[..., None], folder: Path) -> None:
     for name, *options in (("none", "--shadow", "none"), ("kage", "--relief"), ("truth", "--surface", "displaced")):
         run("render", scene, "--quiet", "-o", folder / f"{name}.png", *options)
     sheet("models.png", "A model with a height map on its floor", 3,
-          [f"{folder}/none.png=bump mapping only: shadows are straight, the ball floats",
+          [f"{folder}/none.png=bump mapping only: shadows as on a flat floor",
            f"{folder}/kage.png=kage --relief: they follow the sand", f"{folder}/truth.png=true displacement"])
 
 
