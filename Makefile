@@ -96,7 +96,7 @@ C_FILES   = $(wildcard include/*.h src/*/*.[ch] examples/*.c tests/support/*.h t
 TIDY      = $(filter-out bench/limits/% $(if $(filter yes,$(VIEW)),,src/view/%),$(filter %.c,$(C_FILES)))
 
 .PHONY: all render bench speed readme reference accept counts test unit-tests program-tests programs sanitize format
-.PHONY: lint tidy same python install install-files uninstall clean help bootstrap FORCE
+.PHONY: lint tidy same python wheel install install-files uninstall clean help bootstrap FORCE
 all: bootstrap
 	@$(MAKE) --no-print-directory $(JOBS) programs
 
@@ -110,6 +110,7 @@ help:
 	@echo 'make speed      measure what kage demands of its speed, SPEED=quick|normal|full, into out/speed/index.html'
 	@echo 'make readme     the same, then update the tables of README and docs'
 	@echo 'make python     the Python package, to import from $(BUILD)/python'
+	@echo 'make wheel      its wheel, with all libraries in it, into out/wheel'
 	@echo 'make test       all tests'
 	@echo 'make accept     show regression pictures that have changed, and keep them if you confirm'
 	@echo 'make counts     count the instructions of eight renders again, and keep them for the test'
@@ -291,6 +292,12 @@ $(PACKAGE)/_methods.abi3.so: $(BUILD)/python/_methods.c $(BUILD)/python/methods.
 	@echo '  LD  $@'
 	@mkdir -p $(@D)
 	$(Q)$(PY_LINK) $(PY_CFLAGS) -o $@ $^ -lm
+
+# For machines that have none of the libraries; out/wheel has it.
+wheel: all
+	@CC='$(CC)' scripts/bootstrap python
+	@$(MAKE) --no-print-directory $(JOBS) python
+	scripts/venv python -m scripts.wheel --build $(BUILD)
 
 # ---- tests ----
 

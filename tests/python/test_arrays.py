@@ -78,9 +78,9 @@ def test_a_mesh(tmp_path: Path) -> None:
 @pytest.mark.parametrize(("ground", "words"), [
     ({"bump": bump(HEIGHTS.astype(np.int64))}, r"objects\.ground\.bump\.map: an array of int64, expected uint8"),
     ({"bump": bump(HEIGHTS[0])}, r"map: an array of shape \(24,\), expected height x width"),
-    ({"mesh": {"vertices": HEIGHTS, "triangles": [[0, 1, 2]]}}, r"mesh\.vertices: an array of float64 and shape \(16, 24"),
+    ({"mesh": {"vertices": HEIGHTS, "triangles": [[0, 1, 2]]}}, r"vertices: an array of float64 and shape \(16, 24"),
     ({"mesh": {"vertices": np.eye(3), "triangles": [[0, 1, 3]]}}, r"mesh\.triangles: vertices 0 to 3, but there are 3"),
-    ({"mesh": {"vertices": np.eye(3), "triangles": [[0, 1, 2]], "uvs": np.eye(2)}}, r"mesh\.uvs: 2 of them, expected one"),
+    ({"mesh": {"vertices": np.eye(3), "triangles": [[0, 1, 2]], "uvs": np.eye(2)}}, r"\.uvs: 2 of them, expected one"),
     ({"hidden": float("nan")}, "in a scene: Out of range float"),
     ({"hidden": object()}, "in a scene: object .* expected numbers, texts"),
 ])
