@@ -39,8 +39,9 @@ enum { READINGS = 16 };
 struct kage_scene {
     scene *first;             /* as the caller asked for it */
     scene *reading[READINGS]; /* by reading_index; one is `first`; NULL: not read yet */
-    pthread_mutex_t lock;     /* of reading[] */
+    pthread_mutex_t lock;     /* of reading[] and info.text */
     kage_scene_info info;
+    char *text; /* with the changes, once it is asked for; NULL: not yet, or there are none */
     /* what a further reading needs; owned */
     char *folder, *model_reader, **set;
     int sets, threads;

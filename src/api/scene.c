@@ -152,6 +152,7 @@ void kage_scene_free(kage_scene *k)
     for (int i = 0; k->set && i < k->sets; i++)
         free(k->set[i]);
     free(k->set);
+    free(k->text);
     free(k->folder);
     free(k->model_reader);
     arrays_free(&k->arrays);

@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define MOST_SMOOTH 32 /* samples */
+
 /* The samples on their way from the file into the table. */
 typedef struct map_reading {
     const map_layout *layout; /* NULL: it is wrong; the file is read for its own errors */
@@ -120,6 +122,28 @@ static bool read_all(reader *r, const source *from, const char *layer, map_readi
     return e->count == 0 && image_read(from->path, layer, r->from->threads, &to, range, e);
 }
 
+/* The bits of a source's samples; 0: floats. */
+static int bits_of(const source *from)
+{
+    if (!from->array)
+        return image_png_bits(from->path);
+    const image_type type = from->array->image.type;
+    return type == IMAGE_U8 ? 8 : type == IMAGE_U16 ? 16 : 0;
+}
+
+/* Smooth the heights, by no more than one step of the samples each. False with an error. */
+static bool smooth(reader *r, node *at, const map_layout *l, int bits, bump *p)
+{
+    if (l->smooth <= 0)
+        return true;
+    if (bits == 0)
+        return yaml_error(r->y, yaml_get(at, "smooth"),
+                          "the samples are floats, which have no steps to be smoothed, "
+                          "expected a PNG");
+    const double step = fabs(l->scale) / (double)((1 << bits) - 1);
+    return bump_map_smooth(p, l->smooth, step, r->from->threads) || reader_made(r, NULL);
+}
+
 /* The table and its note from a source. NULL with an error. */
 static made_map *make_map(reader *r, node *at, node *file, const source *from, const char *layer, const map_layout *l)
 {
@@ -128,15 +152,17 @@ static made_map *make_map(reader *r, node *at, node *file, const source *from, c
     errors e = {0};
     const bool was_read = read_all(r, from, layer, &m, range, &e);
     const bool good = reader_usable(r, file, from->name, was_read, m.width, m.height, "samples", &e);
-    made_map *made = good && l && check_heights(r, at, l, (double)range[0], (double)range[1])
-                         ? reader_made(r, calloc(1, sizeof *made))
-                         : NULL;
+    const int bits = good ? bits_of(from) : 0;
+    made_map *made =
+        good && l && check_heights(r, at, l, (double)range[0], (double)range[1]) && smooth(r, at, l, bits, m.p)
+            ? reader_made(r, calloc(1, sizeof *made))
+            : NULL;
     if (!made) {
         bump_free(m.p);
         return NULL;
     }
     bump_map_end(m.p, r->from->threads);
-    *made = (made_map){m.p, {NULL, m.width, m.height, (double)range[0], (double)range[1]}};
+    *made = (made_map){m.p, {NULL, m.width, m.height, (double)range[0], (double)range[1], bits}};
     return made;
 }
 
@@ -145,8 +171,9 @@ static char *key_of(reader *r, const source *from, const char *layer, const map_
 {
     if (!*from->id || !l)
         return NULL;
-    return reader_key(r, "map %s %s %.17g %.17g %.17g %.17g %.17g %.17g %d %d", from->id, layer ? layer : "", l->scale,
-                      l->zero, l->size[0], l->size[1], l->offset[0], l->offset[1], (int)l->wrap, (int)l->corners);
+    return reader_key(r, "map %s %s %.17g %.17g %.17g %.17g %.17g %.17g %d %d %.17g", from->id, layer ? layer : "",
+                      l->scale, l->zero, l->size[0], l->size[1], l->offset[0], l->offset[1], (int)l->wrap,
+                      (int)l->corners, l->smooth);
 }
 
 /* The map's table, found or made. NULL with an error; l is NULL where it is wrong: the file is then read for its own
@@ -191,11 +218,12 @@ static bump *read_file(reader *r, node *at, const map_layout *l, map_note *note)
 static bump *read_map(reader *r, node *at, const double u[2], const double w[2], map_note *note, bump_spec *spec)
 {
     map_layout l = {.size = {1, 1}};
-    bool good = yaml_map(r->y, at, "a bump with a map", "map scale zero sign size repeat offset wrap samples");
+    bool good = yaml_map(r->y, at, "a bump with a map", "map scale zero sign smooth size repeat offset wrap samples");
     good = reader_need_all(r, at, "scale zero sign", "a bump with a map") && good;
     good = reader_number(r, at, "scale", 0, false, BIG, "scene units for one unit of the map, 0 or more", &l.scale) &&
            good;
     good = reader_number(r, at, "zero", -BIG, false, BIG, "the map's value whose height is 0", &l.zero) && good;
+    good = reader_number(r, at, "smooth", 0, false, MOST_SMOOTH, "a radius of 0 to 32 samples", &l.smooth) && good;
     const int up = reader_word(r, at, "sign", "up down", "up (higher values are higher) or down");
     good = reader_layout(r, at, u, w, &l) && up >= 0 && good;
     l.scale = up == 1 ? -l.scale : l.scale;

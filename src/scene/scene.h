@@ -34,6 +34,7 @@ typedef struct map_note {
     char *file;        /* as the scene names it */
     int width, height; /* in samples */
     double low, high;  /* of the samples, before scale and zero */
+    int bits;          /* of a sample, which has 2^bits values from 0 to 1; 0: it is a float */
 } map_note;
 
 /* A shape, for exports and transforms. */

@@ -72,6 +72,9 @@ static void follow(const char *text, const step *steps, int n, const char *by)
         for (int j = 0; j < o.set_count; j++)
             sets[all++] = o.sets[j];
         kage_scene *fresh = parse_with(text, DATA, &(kage_load_options){.sets = sets, .set_count = all});
+        kage_scene *written = parse_with(kage_scene_get_info(next)->text, DATA, NULL);
+        same_pictures(written, fresh, NULL);
+        kage_scene_free(written);
         if (k % 2)
             kage_scene_free(s);
         same_pictures(next, fresh, NULL);
@@ -253,6 +256,29 @@ static void changes_do_not_pile_up(void **state)
     kage_scene_free(s);
 }
 
+static void the_changed_text_is_written(void **state)
+{
+    (void)state;
+    const char *const sets[] = {"camera.from=[1, 3, -5]", "objects.ball.bump.scale=0.2", "render.aa=2"};
+    kage_scene *s = parse_with(WITH_MAP, DATA, NULL);
+    assert_string_equal(kage_scene_get_info(s)->text, WITH_MAP);
+    kage_scene *t = change(s, &(kage_load_options){.sets = sets, .set_count = 3}), *read = NULL;
+    assert_string_equal(kage_scene_get_info(s)->text, WITH_MAP);
+    assert_int_equal(kage_scene_write(t, DATA "/kage_test_written.yaml", NULL), KAGE_OK);
+    assert_int_equal(kage_scene_load(DATA "/kage_test_written.yaml", NULL, &read, NULL), KAGE_OK);
+    unlink(DATA "/kage_test_written.yaml");
+    assert_string_equal(kage_scene_get_info(read)->text, kage_scene_get_info(t)->text);
+    assert_non_null(strstr(kage_scene_get_info(read)->text, "\nrender: {aa: 2}\n"));
+    same_pictures(t, read, "exact");
+    kage_errors *e = NULL;
+    assert_int_equal(kage_scene_write(t, "/nowhere/x.yaml", &e), KAGE_NOT_WRITTEN);
+    assert_non_null(strstr(kage_errors_get(e, 0)->text, "/nowhere/x.yaml"));
+    kage_errors_free(e);
+    kage_scene_free(s);
+    kage_scene_free(t);
+    kage_scene_free(read);
+}
+
 /* A change costs little of what reading costs: the median of some of each, one after the other. */
 static int by_size(const void *a, const void *b)
 {
@@ -311,6 +337,7 @@ int main(void)
         cmocka_unit_test(wrong_changes_are_errors),
         cmocka_unit_test(changes_do_not_pile_up),
         cmocka_unit_test(a_change_is_quick),
+        cmocka_unit_test(the_changed_text_is_written),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
