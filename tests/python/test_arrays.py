@@ -147,3 +147,16 @@ def test_a_scene_changes_while_others_render_it() -> None:
     for worker in workers:
         worker.join()
     assert not wrong
+
+
+def test_the_text_has_the_changes(tmp_path: Path) -> None:
+    text = "# a scene\n" + CUBE.read_text()
+    ours = kage.load(text, folder=CUBE.parent)
+    ours.set({"objects.ground.bump.scale": 0.1, "render.shadow": "2+"})
+    assert ours.text.startswith("# a scene\n") and "2+" in ours.text
+    ours.save(tmp_path / "new.yaml")
+    again = kage.load((tmp_path / "new.yaml").read_text(), folder=CUBE.parent)
+    assert (tmp_path / "new.yaml").read_text() == ours.text
+    assert np.array_equal(again.render(size=SMALL).rgb, ours.render(size=SMALL).rgb)
+    with pytest.raises(kage.OutputError):
+        ours.save(tmp_path / "nowhere" / "new.yaml")
