@@ -295,7 +295,7 @@ $(PACKAGE)/_methods.abi3.so: $(BUILD)/python/_methods.c $(BUILD)/python/methods.
 
 # For machines that have none of the libraries; out/wheel has it.
 wheel: all
-	@CC='$(CC)' scripts/bootstrap python
+	@CC='$(CC)' scripts/bootstrap python package
 	@$(MAKE) --no-print-directory $(JOBS) python
 	scripts/venv python -m scripts.wheel --build $(BUILD)
 
@@ -303,7 +303,7 @@ wheel: all
 
 # The units in C, in float and in double; then the program and the scripts, in Python.
 test: all
-	@CC='$(CC)' scripts/bootstrap test python valgrind
+	@CC='$(CC)' scripts/bootstrap test python package valgrind
 	@$(MAKE) --no-print-directory $(JOBS) unit-tests REAL=float
 	@$(MAKE) --no-print-directory $(JOBS) unit-tests REAL=double
 	@$(MAKE) --no-print-directory program-tests
@@ -322,6 +322,7 @@ program-tests: programs python
 # What POV-Ray, valgrind or a Python package would tell is left out where they are missing and can't be installed.
 bench: all
 	@CC='$(CC)' scripts/bootstrap python povray valgrind || echo 'bench: going on without what is missing' >&2
+	@$(MAKE) --no-print-directory $(JOBS) python || echo 'bench: going on without the package, which is slower' >&2
 	@python=.venv/bin/python; scripts/venv || python=python3; \
 	    $$python -m bench --level $(BENCH) --kage $(BUILD)/kage || [ $$? -eq 3 ]
 

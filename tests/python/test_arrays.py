@@ -140,7 +140,7 @@ def test_a_scene_changes_while_others_render_it() -> None:
     workers = [threading.Thread(target=render) for _ in range(3)]
     for worker in workers:
         worker.start()
-    for k in range(30):
+    for k in range(12):
         ours.set("objects.ground.bump.scale", (0.05, 0.3)[k % 2])
         gc.collect()
     stop.set()
