@@ -96,7 +96,7 @@ C_FILES   = $(wildcard include/*.h src/*/*.[ch] examples/*.c tests/support/*.h t
 TIDY      = $(filter-out bench/limits/% $(if $(filter yes,$(VIEW)),,src/view/%),$(filter %.c,$(C_FILES)))
 
 .PHONY: all render bench speed readme reference accept counts test unit-tests program-tests programs sanitize format
-.PHONY: lint tidy same python install install-files uninstall clean help bootstrap FORCE
+.PHONY: lint tidy same python wheel install install-files uninstall clean help bootstrap FORCE
 all: bootstrap
 	@$(MAKE) --no-print-directory $(JOBS) programs
 
@@ -110,6 +110,7 @@ help:
 	@echo 'make speed      measure what kage demands of its speed, SPEED=quick|normal|full, into out/speed/index.html'
 	@echo 'make readme     the same, then update the tables of README and docs'
 	@echo 'make python     the Python package, to import from $(BUILD)/python'
+	@echo 'make wheel      its wheel, with all libraries in it, into out/wheel'
 	@echo 'make test       all tests'
 	@echo 'make accept     show regression pictures that have changed, and keep them if you confirm'
 	@echo 'make counts     count the instructions of eight renders again, and keep them for the test'
@@ -292,11 +293,17 @@ $(PACKAGE)/_methods.abi3.so: $(BUILD)/python/_methods.c $(BUILD)/python/methods.
 	@mkdir -p $(@D)
 	$(Q)$(PY_LINK) $(PY_CFLAGS) -o $@ $^ -lm
 
+# For machines that have none of the libraries; out/wheel has it.
+wheel: all
+	@CC='$(CC)' scripts/bootstrap python package
+	@$(MAKE) --no-print-directory $(JOBS) python
+	scripts/venv python -m scripts.wheel --build $(BUILD)
+
 # ---- tests ----
 
 # The units in C, in float and in double; then the program and the scripts, in Python.
 test: all
-	@CC='$(CC)' scripts/bootstrap test python valgrind
+	@CC='$(CC)' scripts/bootstrap test python package valgrind
 	@$(MAKE) --no-print-directory $(JOBS) unit-tests REAL=float
 	@$(MAKE) --no-print-directory $(JOBS) unit-tests REAL=double
 	@$(MAKE) --no-print-directory program-tests
@@ -315,6 +322,7 @@ program-tests: programs python
 # What POV-Ray, valgrind or a Python package would tell is left out where they are missing and can't be installed.
 bench: all
 	@CC='$(CC)' scripts/bootstrap python povray valgrind || echo 'bench: going on without what is missing' >&2
+	@$(MAKE) --no-print-directory $(JOBS) python || echo 'bench: going on without the package, which is slower' >&2
 	@python=.venv/bin/python; scripts/venv || python=python3; \
 	    $$python -m bench --level $(BENCH) --kage $(BUILD)/kage || [ $$? -eq 3 ]
 

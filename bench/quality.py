@@ -15,7 +15,7 @@ from pathlib import Path
 
 import numpy as np
 
-from bench import images, masks, programs
+from bench import images, masks, package, programs
 from bench.plan import Bench, Facts
 from bench.programs import TOP, MeasureError, Options, Size
 from bench.runner import Job, Stage
@@ -46,10 +46,13 @@ def command(bench: Bench, scene: Facts, options: Options, *outputs: Path) -> lis
 
 def render(bench: Bench, scene: Facts, size: Size, options: Options, layers: str, png: Path | None = None) -> Layers:
     """The layers of a render, which may also be kept as a PNG."""
+    options = (*options, *programs.size_options(size), "--layers", layers)
+    made = package.render(bench.kage, scene.file, options, png)
+    if made is not None:
+        return made
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "a.exr"
         outputs = [path] if png is None else [path, png]
-        options = (*options, *programs.size_options(size), "--layers", layers)
         programs.run(command(bench, scene, options, *outputs))
         return references.read_exr(path)
 

@@ -24,7 +24,7 @@ from pathlib import Path
 
 import numpy as np
 
-from bench import programs
+from bench import package, programs
 from bench.programs import KAGE, TOP, Size
 from reference import references
 
@@ -208,10 +208,13 @@ class Row:
 
 
 def render(kage: Path, scene: Scene, size: Size, method: str) -> Layers:
+    file, options = f"scenes/{scene.name}.yaml", ("--shadow", method, "--no-self-shadow", *programs.size_options(size))
+    made = package.render(kage, file, options)
+    if made is not None:
+        return made
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "a.exr"
-        programs.run([kage, "render", f"scenes/{scene.name}.yaml", "--shadow", method, "--no-self-shadow",
-                      *programs.size_options(size), "-o", path, "--quiet"])
+        programs.run([kage, "render", file, *options, "-o", path, "--quiet"])
         return references.read_exr(path)
 
 

@@ -78,9 +78,9 @@ def test_a_mesh(tmp_path: Path) -> None:
 @pytest.mark.parametrize(("ground", "words"), [
     ({"bump": bump(HEIGHTS.astype(np.int64))}, r"objects\.ground\.bump\.map: an array of int64, expected uint8"),
     ({"bump": bump(HEIGHTS[0])}, r"map: an array of shape \(24,\), expected height x width"),
-    ({"mesh": {"vertices": HEIGHTS, "triangles": [[0, 1, 2]]}}, r"mesh\.vertices: an array of float64 and shape \(16, 24"),
+    ({"mesh": {"vertices": HEIGHTS, "triangles": [[0, 1, 2]]}}, r"vertices: an array of float64 and shape \(16, 24"),
     ({"mesh": {"vertices": np.eye(3), "triangles": [[0, 1, 3]]}}, r"mesh\.triangles: vertices 0 to 3, but there are 3"),
-    ({"mesh": {"vertices": np.eye(3), "triangles": [[0, 1, 2]], "uvs": np.eye(2)}}, r"mesh\.uvs: 2 of them, expected one"),
+    ({"mesh": {"vertices": np.eye(3), "triangles": [[0, 1, 2]], "uvs": np.eye(2)}}, r"\.uvs: 2 of them, expected one"),
     ({"hidden": float("nan")}, "in a scene: Out of range float"),
     ({"hidden": object()}, "in a scene: object .* expected numbers, texts"),
 ])
@@ -140,10 +140,23 @@ def test_a_scene_changes_while_others_render_it() -> None:
     workers = [threading.Thread(target=render) for _ in range(3)]
     for worker in workers:
         worker.start()
-    for k in range(30):
+    for k in range(12):
         ours.set("objects.ground.bump.scale", (0.05, 0.3)[k % 2])
         gc.collect()
     stop.set()
     for worker in workers:
         worker.join()
     assert not wrong
+
+
+def test_the_text_has_the_changes(tmp_path: Path) -> None:
+    text = "# a scene\n" + CUBE.read_text()
+    ours = kage.load(text, folder=CUBE.parent)
+    ours.set({"objects.ground.bump.scale": 0.1, "render.shadow": "2+"})
+    assert ours.text.startswith("# a scene\n") and "2+" in ours.text
+    ours.save(tmp_path / "new.yaml")
+    again = kage.load((tmp_path / "new.yaml").read_text(), folder=CUBE.parent)
+    assert (tmp_path / "new.yaml").read_text() == ours.text
+    assert np.array_equal(again.render(size=SMALL).rgb, ours.render(size=SMALL).rgb)
+    with pytest.raises(kage.OutputError):
+        ours.save(tmp_path / "nowhere" / "new.yaml")
