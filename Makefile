@@ -100,7 +100,8 @@ TIDY      = $(filter-out bench/limits/% $(if $(filter yes,$(VIEW)),,src/view/%),
 all: bootstrap
 	@$(MAKE) --no-print-directory $(JOBS) programs
 
-programs: $(BUILD)/kage $(BUILD)/kage-import $(if $(filter yes,$(VIEW)),$(BUILD)/kage-view) $(BUILD)/libkage.a $(BUILD)/libkage.so
+programs: $(BUILD)/kage $(BUILD)/kage-import $(if $(filter yes,$(VIEW)),$(BUILD)/kage-view)
+programs: $(BUILD)/libkage.a $(BUILD)/libkage.so
 
 help:
 	@echo 'make            build the program, $(BUILD)/kage, and the library'
@@ -246,7 +247,7 @@ $(BUILD)/internal.a: $(LIBRARY:%=$(BUILD)/%.o)
 
 $(UNITS:%=$(BUILD)/%): $(BUILD)/%: $(BUILD)/%.o $(BUILD)/internal.a
 	@echo '  LD  $@'
-	$(Q)$(CC) $(LDFLAGS) -o $@ $^ -lcmocka $(LIBS)
+	$(Q)$(CC) $(LDFLAGS) -o $@ $(filter %.o,$^) $(filter %.a,$^) -lcmocka $(LIBS)
 
 $(filter $(BUILD)/unit/look/%,$(UNITS:%=$(BUILD)/%)): $(patsubst %,$(BUILD)/%.o,$(filter look/%,$(WINDOW)))
 

@@ -148,6 +148,14 @@ KAGE_API kage_status kage_scene_load(const char *path, const kage_load_options *
 KAGE_API kage_status kage_scene_parse(const char *text, size_t size, const char *name, const char *folder,
                                       const kage_load_options *options, kage_scene **scene, kage_errors **errors);
 
+/* A new scene: `scene` with options->sets after its own, as if it had been read with all of them. `scene` stays as it
+ * is, and either may be freed first. It is not read from files again, but for what the changes touch, and for files
+ * that have changed: maps, images, models and the hierarchies over surfaces are shared between the scenes. Of an image
+ * or a model that is given again under its name the new one counts. options: threads 0 and model_reader NULL mean those
+ * that `scene` was read with. */
+KAGE_API kage_status kage_scene_change(kage_scene *scene, const kage_load_options *options, kage_scene **changed,
+                                       kage_errors **errors);
+
 KAGE_API void kage_scene_free(kage_scene *scene); /* NULL: nothing */
 
 typedef struct kage_light_info {
@@ -188,6 +196,8 @@ typedef struct kage_object_info {
     int copies;                   /* how many copies of copy_of it is, from a list; 0: it is one object */
     const char *bump_of;          /* the object under whose key `bump` the bump is, often itself; NULL: no bump */
     double bump_scale;            /* the bump's `scale` */
+    int map_bits;                 /* of the map's samples, which have 2^map_bits values from 0 to 1; 0: floats */
+    double map_smooth;            /* the radius of its smoothing, in samples; 0: none */
 } kage_object_info;
 
 typedef struct kage_camera_info {
@@ -209,10 +219,18 @@ typedef struct kage_scene_info {
     const char *bump_shadow; /* render.bump_shadow */
     int shifted;             /* render.shade: shifted */
     kage_camera_info camera;
+    const char *text; /* the scene's YAML, with the changes in it that it was read with; NULL: out of memory */
 } kage_scene_info;
 
 /* What is in a scene. */
 KAGE_API const kage_scene_info *kage_scene_get_info(const kage_scene *scene);
+
+/* Write kage_scene_info.text. A change is written where the value stood that it replaces, or behind the last entry of
+ * its map; all other bytes, comments and layout, stay. A scene that is read from the file is the same one, if files
+ * that it names with relative names are found from there, and arrays are given again. The file appears whole or not at
+ * all.
+ */
+KAGE_API kage_status kage_scene_write(const kage_scene *scene, const char *path, kage_errors **errors);
 
 /* Whether the file at `path`, links followed, was read for the scene, so that no output should replace it. */
 KAGE_API int kage_scene_uses_file(const kage_scene *scene, const char *path);
@@ -417,13 +435,17 @@ typedef struct kage_bump_survey {
     int samples; /* of 40 000 over the picture; 0: no bump, or not visible, and the rest is 0 */
     double slope_median, slope_95, slope_max; /* tan of the angle between n and n'; slope_95: the 95th percentile */
     double fell_back[3];                      /* [1], [2]: by order 1 and 2, in per cent of the samples; [0] is 0 */
+    /* A step from one value of a map's samples to the next: as a height in scene units, and the median of the slope
+     * that it makes where two neighbours differ by it. 0: no map, or one of floats. */
+    double step, step_slope;
 } kage_bump_survey;
 
 typedef enum kage_warning_code {
     KAGE_WARN_FLAT_TRIANGLES, /* value: triangles of a model without an area, which are left out */
     KAGE_WARN_UNBOUNDED,      /* P has no bounds, so the guard has no slab and march:N falls back to order 0 */
     KAGE_WARN_STEEP,          /* value: slope_95, above bound: too steep for orders 0, 1 and 2 */
-    KAGE_WARN_FALLS_BACK      /* value: the larger of fell_back, above bound: the view is flat against the bumps */
+    KAGE_WARN_FALLS_BACK,     /* value: the larger of fell_back, above bound: the view is flat against the bumps */
+    KAGE_WARN_STEPS           /* value: step_slope, above bound: the steps of a map's few bits are seen */
 } kage_warning_code;
 
 typedef struct kage_warning {
@@ -444,10 +466,12 @@ KAGE_API void kage_survey_free(kage_survey *survey); /* NULL: nothing */
 /* ---- POV-Ray ---- */
 
 typedef struct kage_povray_options {
-    const char *command;   /* for the file's header: what wrote it. NULL: "libkage" */
-    int no_cast;           /* not 0: objects without a bump cast no shadows */
-    kage_choice displaced; /* as in kage_render_options */
-    void *reserved[8];
+    const char *command;     /* for the file's header: what wrote it. NULL: "libkage" */
+    int no_cast;             /* not 0: objects without a bump cast no shadows */
+    kage_choice displaced;   /* as in kage_render_options */
+    kage_progress *progress; /* NULL: none. A call that it cancels leaves no file */
+    void *user;              /* for progress */
+    void *reserved[6];
 } kage_povray_options;
 
 typedef struct kage_povray_report {

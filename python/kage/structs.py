@@ -282,16 +282,6 @@ class PovrayReport:
 
 
 @dataclass(frozen=True, eq=False)
-class ImportReport:
-    """kage_import_report of kage.h."""
-
-    #: as kage_scene_load would give it, with the changes; the report owns it
-    scene: Scene | None
-    notes: tuple[Char *, ...]
-    files: tuple[Char *, ...]
-
-
-@dataclass(frozen=True, eq=False)
 class Method:
     """kage_method of kage.h."""
 

@@ -39,13 +39,20 @@ enum { READINGS = 16 };
 struct kage_scene {
     scene *first;             /* as the caller asked for it */
     scene *reading[READINGS]; /* by reading_index; one is `first`; NULL: not read yet */
-    pthread_mutex_t lock;     /* of reading[] */
+    pthread_mutex_t lock;     /* of reading[] and info.text */
     kage_scene_info info;
+    char *text; /* with the changes, once it is asked for; NULL: not yet, or there are none */
     /* what a further reading needs; owned */
     char *folder, *model_reader, **set;
     int sets, threads;
+    bool from_file; /* first->path is a file's */
     arrays arrays;
+    shelf spare; /* of the scene that it is a change of: what its further readings had made */
 };
+
+/* Add a change after those of k, which has room for it. A change of the same place is replaced, so that changes one
+ * after another do not pile up. False: out of memory. */
+bool sets_put(kage_scene *k, const char *set);
 
 /* Check the caller's arrays. False: errors in *e. */
 bool arrays_are_good(const kage_load_options *o, errors *e);

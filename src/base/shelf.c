@@ -48,6 +48,8 @@ shelf_item *shelf_find(const shelf *s, const char *key)
     return at ? s->item[at - 1] : NULL;
 }
 
+bool shelf_has(const shelf *s, const shelf_item *x) { return shelf_find(s, x->key); }
+
 void *shelf_thing(const shelf_item *x) { return x->thing; }
 
 /* Room for one more, at most half of the slots being used. */

@@ -20,6 +20,9 @@ typedef struct shelf {
 /* The item with a key. NULL: there is none. */
 shelf_item *shelf_find(const shelf *s, const char *key);
 
+/* Whether an item's key is there. */
+bool shelf_has(const shelf *s, const shelf_item *x);
+
 /* What was put there. */
 void *shelf_thing(const shelf_item *x);
 

@@ -43,6 +43,9 @@ static int start(char **argv)
         return EXIT_INPUT;
     }
     argv[0] = path;
+    /* Its threads wait for each other many times a second. While they do, they should leave the processors to the
+     * window and the screen. */
+    setenv("OMP_WAIT_POLICY", "passive", 0);
     fflush(stdout);
     execv(path, argv);
     usage_error("%s can't be started: %s", path, strerror(errno));

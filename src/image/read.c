@@ -11,6 +11,7 @@ static bool read_any(FILE *file, const char *channel, int threads, image_stream 
 {
     static const unsigned char exr[4] = {0x76, 0x2f, 0x31, 0x01};
     static const unsigned char png[8] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
+    static const unsigned char jpeg[3] = {0xff, 0xd8, 0xff};
     unsigned char first[8] = {0};
     errno = 0;
     size_t n = fread(first, 1, sizeof first, file);
@@ -19,6 +20,9 @@ static bool read_any(FILE *file, const char *channel, int threads, image_stream 
     *is_exr = n >= sizeof exr && memcmp(first, exr, sizeof exr) == 0;
     if (*is_exr)
         return image_read_exr(file, channel, threads, to, why);
+    if (n >= sizeof jpeg && memcmp(first, jpeg, sizeof jpeg) == 0)
+        return image_refuse(why, "it is a JPEG; a PNG or an OpenEXR file is expected (kage import makes PNG files of a "
+                                 "model's JPEG files)");
     if (n < sizeof png || memcmp(first, png, sizeof png) != 0)
         return image_refuse(why,
                             n ? "its first bytes are those of neither a PNG nor an OpenEXR file" : "the file is empty");
@@ -36,6 +40,17 @@ static bool read_file(const char *path, const char *channel, int threads, image_
     bool ok = read_any(file, channel, threads, to, is_exr, why);
     fclose(file);
     return ok || errors_add(e, "%s", why);
+}
+
+int image_png_bits(const char *path)
+{
+    unsigned char head[25]; /* the signature, then the chunk IHDR: its size, its name, the image's size, the bits */
+    FILE *file = fopen(path, "rb");
+    const bool good = file && fread(head, 1, sizeof head, file) == sizeof head && memcmp(head + 1, "PNG", 3) == 0 &&
+                      memcmp(head + 12, "IHDR", 4) == 0;
+    if (file)
+        fclose(file);
+    return good && head[24] <= 16 ? head[24] : 0;
 }
 
 bool image_read(const char *path, const char *channel, int threads, const image_taker *to, float range[2], errors *e)

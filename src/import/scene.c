@@ -31,7 +31,7 @@ static void find_box(importer *k)
 static void name_objects(importer *k)
 {
     for (int i = 0; i < k->parts.n; i++) {
-        const bool alone = k->parts.n == 1 && k->s->mNumMeshes == 1 && k->s->mRootNode->mNumChildren == 0;
+        const bool alone = k->parts.n == 1 && strcmp(k->parts.part[i].name, PARTS_NAMELESS) == 0;
         text_scene_name(k->object[i], alone ? k->wish->stem : k->parts.part[i].name);
         text_unique(k->object[i], k->object, i);
     }

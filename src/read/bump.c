@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define MOST_SMOOTH 32 /* samples */
+
 /* The samples on their way from the file into the table. */
 typedef struct map_reading {
     const map_layout *layout; /* NULL: it is wrong; the file is read for its own errors */
@@ -85,10 +87,23 @@ static kept_samples *read_kept(reader *r, const source *from, const char *layer,
     return NULL;
 }
 
+static char *key_of_samples(reader *r, const source *from, const char *layer)
+{
+    return *from->id ? reader_key(r, "samples %s %s", from->id, layer ? layer : "") : NULL;
+}
+
+/* Samples that are kept are so for the next change, too, if this one does not need them. */
+static void pass_on(reader *r, const source *from, const char *layer)
+{
+    char *key = key_of_samples(r, from, layer);
+    reader_found(r, key);
+    free(key);
+}
+
 /* The samples of a file, which are kept once a scene is changed. NULL: they are not, or an error is in *e. */
 static const image_array *kept_of(reader *r, const source *from, const char *layer, errors *e)
 {
-    char *key = *from->id ? reader_key(r, "samples %s %s", from->id, layer ? layer : "") : NULL;
+    char *key = key_of_samples(r, from, layer);
     kept_samples *k = reader_found(r, key);
     if (!k && key && r->from->again && (k = read_kept(r, from, layer, e)) && !reader_keep(r, key, k, free))
         k = NULL;
@@ -107,6 +122,28 @@ static bool read_all(reader *r, const source *from, const char *layer, map_readi
     return e->count == 0 && image_read(from->path, layer, r->from->threads, &to, range, e);
 }
 
+/* The bits of a source's samples; 0: floats. */
+static int bits_of(const source *from)
+{
+    if (!from->array)
+        return image_png_bits(from->path);
+    const image_type type = from->array->image.type;
+    return type == IMAGE_U8 ? 8 : type == IMAGE_U16 ? 16 : 0;
+}
+
+/* Smooth the heights, by no more than one step of the samples each. False with an error. */
+static bool smooth(reader *r, node *at, const map_layout *l, int bits, bump *p)
+{
+    if (l->smooth <= 0)
+        return true;
+    if (bits == 0)
+        return yaml_error(r->y, yaml_get(at, "smooth"),
+                          "the samples are floats, which have no steps to be smoothed, "
+                          "expected a PNG");
+    const double step = fabs(l->scale) / (double)((1 << bits) - 1);
+    return bump_map_smooth(p, l->smooth, step, r->from->threads) || reader_made(r, NULL);
+}
+
 /* The table and its note from a source. NULL with an error. */
 static made_map *make_map(reader *r, node *at, node *file, const source *from, const char *layer, const map_layout *l)
 {
@@ -115,15 +152,17 @@ static made_map *make_map(reader *r, node *at, node *file, const source *from, c
     errors e = {0};
     const bool was_read = read_all(r, from, layer, &m, range, &e);
     const bool good = reader_usable(r, file, from->name, was_read, m.width, m.height, "samples", &e);
-    made_map *made = good && l && check_heights(r, at, l, (double)range[0], (double)range[1])
-                         ? reader_made(r, calloc(1, sizeof *made))
-                         : NULL;
+    const int bits = good ? bits_of(from) : 0;
+    made_map *made =
+        good && l && check_heights(r, at, l, (double)range[0], (double)range[1]) && smooth(r, at, l, bits, m.p)
+            ? reader_made(r, calloc(1, sizeof *made))
+            : NULL;
     if (!made) {
         bump_free(m.p);
         return NULL;
     }
     bump_map_end(m.p, r->from->threads);
-    *made = (made_map){m.p, {NULL, m.width, m.height, (double)range[0], (double)range[1]}};
+    *made = (made_map){m.p, {NULL, m.width, m.height, (double)range[0], (double)range[1], bits}};
     return made;
 }
 
@@ -132,8 +171,9 @@ static char *key_of(reader *r, const source *from, const char *layer, const map_
 {
     if (!*from->id || !l)
         return NULL;
-    return reader_key(r, "map %s %s %.17g %.17g %.17g %.17g %.17g %.17g %d %d", from->id, layer ? layer : "", l->scale,
-                      l->zero, l->size[0], l->size[1], l->offset[0], l->offset[1], (int)l->wrap, (int)l->corners);
+    return reader_key(r, "map %s %s %.17g %.17g %.17g %.17g %.17g %.17g %d %d %.17g", from->id, layer ? layer : "",
+                      l->scale, l->zero, l->size[0], l->size[1], l->offset[0], l->offset[1], (int)l->wrap,
+                      (int)l->corners, l->smooth);
 }
 
 /* The map's table, found or made. NULL with an error; l is NULL where it is wrong: the file is then read for its own
@@ -146,6 +186,8 @@ static bump *table_of(reader *r, node *at, node *file, const source *from, const
     const bool found = made;
     if (!found)
         made = make_map(r, at, file, from, layer, l);
+    else if (!from->array)
+        pass_on(r, from, layer);
     bump *p = made ? bump_share(made->p) : NULL;
     if (made) {
         *note = made->note;
@@ -176,11 +218,12 @@ static bump *read_file(reader *r, node *at, const map_layout *l, map_note *note)
 static bump *read_map(reader *r, node *at, const double u[2], const double w[2], map_note *note, bump_spec *spec)
 {
     map_layout l = {.size = {1, 1}};
-    bool good = yaml_map(r->y, at, "a bump with a map", "map scale zero sign size repeat offset wrap samples");
+    bool good = yaml_map(r->y, at, "a bump with a map", "map scale zero sign smooth size repeat offset wrap samples");
     good = reader_need_all(r, at, "scale zero sign", "a bump with a map") && good;
     good = reader_number(r, at, "scale", 0, false, BIG, "scene units for one unit of the map, 0 or more", &l.scale) &&
            good;
     good = reader_number(r, at, "zero", -BIG, false, BIG, "the map's value whose height is 0", &l.zero) && good;
+    good = reader_number(r, at, "smooth", 0, false, MOST_SMOOTH, "a radius of 0 to 32 samples", &l.smooth) && good;
     const int up = reader_word(r, at, "sign", "up down", "up (higher values are higher) or down");
     good = reader_layout(r, at, u, w, &l) && up >= 0 && good;
     l.scale = up == 1 ? -l.scale : l.scale;
@@ -202,8 +245,6 @@ static void widest_extent(const surface *f, double u[2], double w[2])
     }
 }
 
-static void free_bump(void *p) { bump_free(p); }
-
 static bump *read_function(reader *r, node *at, const surface *f, bump_spec *spec)
 {
     double scale = 1, u[2], w[2];
@@ -221,12 +262,11 @@ static bump *read_function(reader *r, node *at, const surface *f, bump_spec *spe
     widest_extent(f, u, w);
     char *key =
         text ? reader_key(r, "function %.17g %.17g %.17g %.17g %.17g %s", scale, u[0], u[1], w[0], w[1], text) : NULL;
-    bump *p = reader_found(r, key);
-    if (p) {
+    bump *p = reader_found_bump(r, key);
+    if (p)
         expr_free(e);
-        bump_share(p);
-    } else if ((p = reader_made(r, bump_function_new(e, scale, u, w))))
-        reader_keep(r, key, bump_share(p), free_bump);
+    else
+        p = reader_keep_bump(r, key, reader_made(r, bump_function_new(e, scale, u, w)));
     free(key);
     return p;
 }

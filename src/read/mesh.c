@@ -21,21 +21,11 @@ static bool is_large(const mesh_data *d)
     return size >= SMALL;
 }
 
-/* Which triangles, and how they are to be used. */
-typedef struct wanted {
-    node *file, *part; /* part: NULL for all of them */
-    const char *part_name;
-    source from;
-    mesh_normals normals;
-    double crease;
-} wanted;
-
-/* Read all of a model's file, or one part. Where a part is asked for, the whole is kept for the next object's. */
-static bool read_file(reader *r, const wanted *m, mesh_data *d, char why[MESH_WHY])
+/* All of a file, or one part. Where a part is asked for, the whole is kept for the next object's. */
+static bool read_file(reader *r, const char *path, const char *part, mesh_data *d, char why[MESH_WHY])
 {
     const scene_source *from = r->from;
-    const char *path = m->from.path;
-    if (!m->part)
+    if (!part)
         return mesh_file_read(path, from->model_reader, from->progress, &r->s->made_from, d, why);
     if (!r->model_path || strcmp(r->model_path, path) != 0) {
         free(r->model_path);
@@ -45,24 +35,35 @@ static bool read_file(reader *r, const wanted *m, mesh_data *d, char why[MESH_WH
             return false;
         r->model_path = reader_copy(r, path);
     }
-    return mesh_data_part(&r->model, m->part_name, d, why);
+    return mesh_data_part(&r->model, part, d, why);
 }
 
+/* What a mesh is made from. */
+typedef struct model {
+    node *file, *part;
+    source from;
+    const char *part_name; /* NULL: all of it */
+    mesh_normals normals;
+    double crease;
+} model;
+
 /* The triangles, checked. False with an error. */
-static bool read_triangles(reader *r, const wanted *m, mesh_data *d)
+static bool read_triangles(reader *r, const model *m, mesh_data *d)
 {
     char why[MESH_WHY];
-    const char *name = m->from.name;
-    bool good = m->from.array ? mesh_array_read(&m->from.array->mesh, d, why) : read_file(r, m, d, why);
+    if (m->from.array && m->part)
+        return yaml_error(r->y, m->part, "an array has no parts, expected none to be named");
+    bool good = m->from.array ? mesh_array_read(&m->from.array->mesh, d, why)
+                              : read_file(r, m->from.path, m->part_name, d, why);
     if (good)
         progress_show(r->from->progress, "checking", 1);
     good = good && mesh_clean(d, m->normals, m->crease, BIG, r->from->threads, why);
     free(d->part); /* of the file's triangles, some of which may have been left out */
     d->part = NULL;
     if (!good)
-        return yaml_error(r->y, m->part ? m->part : m->file, "'%s' can't be used: %s", name, why);
-    return is_large(d) ||
-           yaml_error(r->y, m->file, "'%s' can't be used: it is smaller than %g, expected some size", name, SMALL);
+        return yaml_error(r->y, m->part ? m->part : m->file, "'%s' can't be used: %s", m->from.name, why);
+    return is_large(d) || yaml_error(r->y, m->file, "'%s' can't be used: it is smaller than %g, expected some size",
+                                     m->from.name, SMALL);
 }
 
 /* A glTF may have its numbers in other files, which may have changed. */
@@ -72,13 +73,13 @@ static bool is_alone(const char *path)
     return !dot || strcasecmp(dot, ".gltf") != 0;
 }
 
-static surface *new_mesh(reader *r, const wanted *m)
+static surface *new_mesh(reader *r, const model *m)
 {
     mesh_data d = {0};
     char *key = NULL;
     if (*m->from.id && is_alone(m->from.path))
-        key = reader_key(r, "mesh %s %d %.17g %s part %s", m->from.id, m->normals, m->crease, m->from.name,
-                         m->part ? m->part_name : "");
+        key = reader_key(r, "mesh %s %d %.17g %s\n%s", m->from.id, (int)m->normals, m->crease, m->from.name,
+                         m->part_name ? m->part_name : "");
     surface *f = reader_found_surface(r, key);
     if (!f && read_triangles(r, m, &d))
         f = reader_keep_surface(r, key, reader_made(r, mesh_new(&d, r->from->threads, r->from->progress)));
@@ -87,28 +88,20 @@ static surface *new_mesh(reader *r, const wanted *m)
     return f;
 }
 
-/* False with an error. */
-static bool read_wanted(reader *r, node *at, wanted *m)
-{
-    if (!yaml_map(r->y, at, "mesh", "file part normals crease"))
-        return false;
-    m->file = yaml_need(r->y, at, "file", "mesh");
-    m->part = yaml_get(at, "part");
-    const int normals = reader_word(r, at, "normals", "file smooth flat", "file, smooth or flat");
-    m->normals = (mesh_normals)normals;
-    bool good = normals >= 0;
-    good &= reader_number(r, at, "crease", 0, false, 180, "an angle of 0 to 180 degrees", &m->crease);
-    good &= m->file && reader_source(r, m->file, true, "the file of a model", &m->from);
-    if (good && m->part && m->from.array)
-        return yaml_error(r->y, m->part, "an array has no parts, expected the file of a model");
-    m->part_name = m->part ? yaml_text(r->y, m->part, "the name of a part of the model") : NULL;
-    return good && (!m->part || m->part_name);
-}
-
 surface *reader_mesh(reader *r, node *at, shape_spec *spec)
 {
-    wanted m = {.crease = 40};
-    surface *f = read_wanted(r, at, &m) ? new_mesh(r, &m) : NULL;
+    model m = {.crease = 40};
+    if (!yaml_map(r->y, at, "mesh", "file part normals crease"))
+        return NULL;
+    m.file = yaml_need(r->y, at, "file", "mesh");
+    m.part = yaml_get(at, "part");
+    const int normals = reader_word(r, at, "normals", "file smooth flat", "file, smooth or flat");
+    bool good = m.file && reader_source(r, m.file, true, "the file of a model", &m.from);
+    good = reader_number(r, at, "crease", 0, false, 180, "an angle of 0 to 180 degrees", &m.crease) && good;
+    m.part_name = m.part ? yaml_text(r->y, m.part, "the name of a part of the model") : NULL;
+    m.normals = (mesh_normals)normals;
+    good = normals >= 0 && (!m.part || m.part_name) && good;
+    surface *f = good ? new_mesh(r, &m) : NULL;
     if (f)
         *spec = (shape_spec){.kind = SHAPE_MESH,
                              .file = reader_copy(r, m.from.name),

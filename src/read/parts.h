@@ -39,12 +39,22 @@ void *reader_found(reader *r, const char *key);
  * NULL as the key: only free the thing. False with an error. */
 bool reader_keep(reader *r, const char *key, void *thing, void (*free_thing)(void *thing));
 
-/* The same of a surface, which belongs to the caller, too. NULL: none is found. */
+/* The same of a surface or a bump, which belongs to the caller, too. NULL: none is found. */
 surface *reader_found_surface(reader *r, const char *key);
+bump *reader_found_bump(reader *r, const char *key);
 
-/* Keep a surface. Returns f, which belongs to the caller; NULL where f is, or with an error. NULL as the key: only
- * return it. */
+/* Keep a surface or a bump. Returns it, which belongs to the caller; NULL where it is, or with an error. NULL as the
+ * key: only return it. */
 surface *reader_keep_surface(reader *r, const char *key, surface *f);
+bump *reader_keep_bump(reader *r, const char *key, bump *p);
+
+/* ---- truth.c: surfaces that true displacement alone needs, and that take long to make ---- */
+
+/* The object's own mesh or patches mapped by m, as a mesh or patches. NULL: out of memory. */
+surface *reader_moved(reader *r, const object *o, const affine *m);
+
+/* The object's displaced surface. NULL: out of memory. */
+surface *reader_displaced(reader *r, const object *o);
 
 /* ---- layout.c: where a height map or an image lies in (u,w) ---- */
 

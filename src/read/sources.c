@@ -72,18 +72,14 @@ void *reader_found(reader *r, const char *key)
     shelf_item *x = key ? shelf_find(&r->s->shelf, key) : NULL;
     if (x || !key)
         return x ? shelf_thing(x) : NULL;
-    for (int k = 0; !x && k < r->from->others; k++)
-        x = shelf_find(&r->from->other[k]->shelf, key);
+    for (int k = 0; !x && k < r->from->shelves; k++)
+        x = shelf_find(r->from->shelf[k], key);
     if (!x)
         return NULL;
     return shelf_put_shared(&r->s->shelf, x) ? shelf_thing(x) : reader_made(r, NULL);
 }
 
 static void free_surface(void *f) { surface_free(f); }
-
-static surface *share(surface *f) { return f ? surface_share(f) : NULL; }
-
-surface *reader_found_surface(reader *r, const char *key) { return share(reader_found(r, key)); }
 
 bool reader_keep(reader *r, const char *key, void *thing, void (*free_thing)(void *thing))
 {
@@ -92,10 +88,32 @@ bool reader_keep(reader *r, const char *key, void *thing, void (*free_thing)(voi
     return key && (shelf_put(&r->s->shelf, key, thing, free_thing) || reader_made(r, NULL));
 }
 
+surface *reader_found_surface(reader *r, const char *key)
+{
+    surface *f = reader_found(r, key);
+    return f ? surface_share(f) : NULL;
+}
+
 surface *reader_keep_surface(reader *r, const char *key, surface *f)
 {
     if (!f || !key || reader_keep(r, key, surface_share(f), free_surface))
         return f;
     surface_free(f);
+    return NULL;
+}
+
+static void free_bump(void *p) { bump_free(p); }
+
+bump *reader_found_bump(reader *r, const char *key)
+{
+    bump *p = reader_found(r, key);
+    return p ? bump_share(p) : NULL;
+}
+
+bump *reader_keep_bump(reader *r, const char *key, bump *p)
+{
+    if (!p || !key || reader_keep(r, key, bump_share(p), free_bump))
+        return p;
+    bump_free(p);
     return NULL;
 }

@@ -34,6 +34,7 @@ typedef struct map_note {
     char *file;        /* as the scene names it */
     int width, height; /* in samples */
     double low, high;  /* of the samples, before scale and zero */
+    int bits;          /* of a sample, which has 2^bits values from 0 to 1; 0: it is a float */
 } map_note;
 
 /* A shape, for exports and transforms. */
@@ -164,9 +165,9 @@ typedef struct scene_source {
     const char *model_reader; /* the program kage-import; NULL: mesh/reader.c looks for it */
     const progress *progress; /* while large files are read; may be NULL */
     const arrays *arrays;     /* that the scene may name; NULL: none. They live as long as the scene */
-    int others;               /* scenes whose shelves may have what this one needs */
-    const struct scene *const *other;
-    bool again; /* others will follow this one: keep what they need */
+    int shelves;              /* that may have what the scene needs */
+    const shelf *const *shelf;
+    bool again; /* a scene that is changed: keep what further changes need */
 } scene_source;
 
 /* Read a scene. NULL: all errors are in *e, as `file:line:col: ...`, the line and a caret. */

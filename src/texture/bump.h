@@ -68,6 +68,9 @@ bump *bump_map_new(int width, int height, const map_layout *layout);
 void bump_map_put(bump *p, int x, int y, int n, const float *samples);
 void bump_map_end(bump *p, int threads);
 
+/* Before bump_map_end: smooth the heights, as heights_smooth. False: out of memory. */
+bool bump_map_smooth(bump *p, double radius, double most, int threads);
+
 /* P = scale f(u,w), with exact partials. Owns f, also on failure. Pmin to Pw_max hold for (u,w) in the given range
  * (infinite ends allowed). NULL: out of memory. */
 bump *bump_function_new(expr *f, double scale, const double u[2], const double w[2]);

@@ -203,6 +203,11 @@ void bump_map_put(bump *p, int x, int y, int n, const float *samples)
     heights_put(&((map *)p)->heights, x, y, n, samples);
 }
 
+bool bump_map_smooth(bump *p, double radius, double most, int threads)
+{
+    return heights_smooth(&((map *)p)->heights, radius, most, threads);
+}
+
 void bump_map_end(bump *p, int threads)
 {
     heights *h = &((map *)p)->heights;

@@ -74,7 +74,7 @@ static void report_text(const app *a, const char *what, const char *text)
 {
     if (!a->o.report)
         return;
-    printf("%s %.*s\n", what, (int)strcspn(text, "\n"), text);
+    printf("%s%s%.*s\n", what, *text ? " " : "", (int)strcspn(text, "\n"), text);
     fflush(stdout);
 }
 
@@ -127,6 +127,7 @@ static void tell(app *a, const char *text)
 {
     snprintf(a->shown.message, sizeof a->shown.message, "%s", text);
     a->told = SDL_GetTicks();
+    a->stale = true;
 }
 
 static void hear_news(app *a)
@@ -134,17 +135,21 @@ static void hear_news(app *a)
     shown *x = &a->shown;
     char *before = x->news.errors;
     const int saves = x->news.saves;
+    const readout under = x->news.under;
     worker_listen(a->worker, &x->news);
     const char *now = x->news.errors;
-    if (now && (!before || strcmp(before, now) != 0))
-        report_text(a, "errors", now);
-    else if (before && !now)
-        report_text(a, "good", "");
+    if (now ? !before || strcmp(before, now) != 0 : before != NULL) {
+        report_text(a, now ? "errors" : "good", now ? now : "");
+        a->stale = true;
+    }
     free(before);
     if (x->news.saves != saves) {
         tell(a, x->news.saved);
-        report_text(a, "", x->news.saved);
+        report_text(a, x->news.saved, "");
     }
+    if (strcmp(under.owner, x->news.under.owner) != 0)
+        report_text(a, "under", x->news.under.owner);
+    a->stale = a->stale || under.x != x->news.under.x || under.y != x->news.under.y;
 }
 
 /* Take the newest picture and texts. True: the picture is another one. */

@@ -31,6 +31,7 @@ bool window_open(window *w, const char *title, int *width, int *height)
 {
     const int letters = 14, least[] = {320, 200};
     *w = (window){0};
+    SDL_SetHint(SDL_HINT_FRAMEBUFFER_ACCELERATION, "0"); /* the pixels are made here; a copy is all that is needed */
     SDL_SetHint(SDL_HINT_VIDEO_X11_NET_WM_BYPASS_COMPOSITOR, "0");
     SDL_SetHint(SDL_HINT_MOUSE_FOCUS_CLICKTHROUGH, "1");
     if (SDL_Init(SDL_INIT_VIDEO) != 0 || !(w->to.font = font_open(letters)))

@@ -44,7 +44,7 @@ struct worker {
     kage_scene *changed; /* base with the changes of done.look; NULL: it has errors */
     int stage;           /* of the last picture of done.look; -1: its last one is shown */
     bool first;          /* the picture is the look's first */
-    Uint32 began;        /* when it was begun */
+    Uint32 began, ended; /* when that was begun and done */
     stage_cost cost;
     frame_films films;
     frame made;
@@ -232,6 +232,7 @@ static void draw_first(worker *w)
     w->stage = stage_first(&w->cost, (double)l->width * l->height);
     if (!draw(w, fixed))
         w->stage = -1;
+    w->ended = SDL_GetTicks();
 }
 
 /* A finer picture of the same look, or the other halves of a split one. */
@@ -266,7 +267,7 @@ static bool is_new(const worker *w)
 /* Milliseconds until a finer picture may be begun. */
 static Uint32 time_left(const worker *w)
 {
-    const Uint32 passed = SDL_GetTicks() - w->began;
+    const Uint32 passed = SDL_GetTicks() - w->ended;
     return passed < STILL ? STILL - passed : 0;
 }
 

@@ -15,7 +15,8 @@ from pathlib import Path
 
 from scripts import rooms
 
-PROGRAMS = ("cli", "look", "view", "import")  # rooms that the library has not: only these print, exit and install signal handlers
+#: Rooms that the library has not: only these print, exit and install signal handlers.
+PROGRAMS = ("cli", "look", "view", "import")
 
 #: Headers of other projects, and the only places that include each: beginnings of a path below src/.
 OUTSIDE: dict[str, str | tuple[str, ...]] = {

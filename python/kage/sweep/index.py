@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import jinja2
 
 from kage.sweep import records
+from kage.sweep.axes import short
 from kage.sweep.inputs import VERSION
 from kage.sweep.plan import Picture, Plan
 
@@ -62,7 +63,9 @@ def page(plan: Plan, rows: list[dict[str, Any]]) -> str:
     strips = [rows[k : k + width] for k in range(0, len(rows), width)]
     sheets = [strips[k : k + height] for k in range(0, len(strips), height)]
     template = Path(__file__).with_name("index.html.jinja").read_text(encoding="utf-8")
-    made = jinja2.Environment(autoescape=True, trim_blocks=True, lstrip_blocks=True).from_string(template)
-    return made.render(scene=plan.inputs.name, version=VERSION, columns=columns, lines=lines, sheets=sheets,
-                       others=plan.axes[:-2], shown=plan.output.kind == "png",
-                       done=sum(one["done"] for one in rows), count=len(rows))
+    made = jinja2.Environment(autoescape=True, trim_blocks=True, lstrip_blocks=True)
+    made.filters["short"] = short
+    return made.from_string(template).render(
+        scene=plan.inputs.name, version=VERSION, columns=columns, lines=lines, others=plan.axes[:-2], sheets=sheets,
+        shown=plan.output.kind == "png", done=sum(one["done"] for one in rows), count=len(rows),
+    )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterator
+from concurrent.futures import CancelledError
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -22,12 +23,17 @@ from kage.sweep.records import Record
 from kage.sweep.worker import Result, work
 from kage.text import bytes_of
 
+#: Above all levels of logging: at the end of a cluster on this machine, Dask calls what is as it should be critical.
+SILENT = 60
 #: Tasks that wait at the scheduler for each thread of a worker, and at least: so that millions of tasks need no memory
 #: there, and no worker ever waits.
 AHEAD, LEAST = 20, 200
 #: How many workers may die over a task before Dask gives it up (of a cluster that is started here; else 3 is usual),
 #: and how often that may be. Then it is likely the task that kills them.
 DEATHS, ROUNDS = 10, 3
+#: Seconds after which a result is asked for again. Where a worker dies in the middle of giving it, Dask may wait for
+#: ever.
+PATIENCE = 30
 
 Note = Callable[[Task, Result], object]
 
@@ -55,7 +61,8 @@ def cluster(scheduler: str | None = None, workers: int | None = None) -> Iterato
         return
     count = workers or len(os.sched_getaffinity(0))
     with dask.config.set({"distributed.scheduler.allowed-failures": DEATHS}), LocalCluster(
-        n_workers=count, threads_per_worker=1, processes=True, dashboard_address=None, silence_logs=50
+        n_workers=count, threads_per_worker=1, processes=True, dashboard_address=None, silence_logs=SILENT,
+        preload="kage.sweep.quiet",
     ) as local, Client(local, set_as_default=False) as client:
         yield client
 
@@ -155,11 +162,15 @@ class Sweep:
 
     def finish(self, future: Future[Any], task: Task) -> bool:
         """Take a task's result. True: it is to be done again."""
-        if future.status == "finished":
-            self.take(task, future.result())
-            return False
-        if future.status != "error":
+        if future.status == "cancelled":
             raise SweepError("the scheduler has been lost, or has cancelled the tasks", 1)
+        if future.status == "finished":
+            result = self.result(future, task)
+            if result:
+                self.take(task, result)
+            return result is None
+        if future.status != "error":  # its result has gone with a worker: Dask does it again
+            return True
         error = future.exception()
         if isinstance(error, KilledWorker):
             self.deaths[task.file] = self.deaths.get(task.file, 0) + 1
@@ -171,6 +182,17 @@ class Sweep:
             raise SweepError(f"a worker can't import the package: {error}", 1)
         self.take(task, Result(None, f"{task.file}: {error}", 1))
         return False
+
+    def result(self, future: Future[Any], task: Task) -> Result | None:
+        """A result, which the disk has, too, where the folder is shared. None: it has gone with its worker."""
+        record = None if self.plan.send else records.find(self.done.folder, task.file, task.identity)
+        if record:
+            return Result(record)
+        try:
+            found: Result = future.result(timeout=PATIENCE)
+        except (TimeoutError, CancelledError):
+            return None
+        return found
 
     def take(self, task: Task, result: Result) -> None:
         """A task is done or has failed. What fails for its inputs ends the sweep, as the others would fail, too."""
