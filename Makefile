@@ -92,7 +92,8 @@ SHOWN     = wall teapot shell
 GALLERY   = $(patsubst scenes/gallery/%.yaml,%,$(wildcard scenes/gallery/*.yaml))
 
 # What `make format` and `make lint` look at. The yardsticks in bench/limits are compiled by themselves.
-C_FILES   = $(wildcard include/*.h src/*/*.[ch] examples/*.c tests/support/*.h tests/unit/*/*.[ch] bench/limits/*.c)
+C_FILES   = $(wildcard include/*.h src/*/*.[ch] examples/*.c python/*.[ch] tests/support/*.h tests/unit/*/*.[ch] \
+                       bench/limits/*.c)
 TIDY      = $(filter-out bench/limits/% $(if $(filter yes,$(VIEW)),,src/view/%),$(filter %.c,$(C_FILES)))
 
 .PHONY: all render bench speed readme reference accept counts test unit-tests program-tests programs sanitize format
@@ -283,7 +284,7 @@ $(PACKAGE)/_kage.abi3.so: $(BUILD)/python/_kage.c python/progress.h $(BUILD)/lib
 	@mkdir -p $(@D)
 	$(Q)$(PY_LINK) $(PY_CFLAGS) -o $@ $< $(BUILD)/libkage.a $(LIBS)
 
-$(BUILD)/python/%.o: python/%.c python/methods.c python/methods.h include/bumpshadow.h $(BUILD)/flags
+$(BUILD)/python/%.o: python/%.c python/methods_loops.h python/methods.h include/bumpshadow.h $(BUILD)/flags
 	@echo '  CC  $@'
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(CFLAGS) -Ipython -c -o $@ $<

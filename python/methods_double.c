@@ -1,3 +1,3 @@
 /* The functions of bumpshadow.h in loops over arrays, in double. */
 #define BS_DOUBLE
-#include "methods.c"
+#include "methods_loops.h"

@@ -25,7 +25,7 @@ PACKAGE = TOP / "build" / "float" / "python"
 def run(book: Any, package: Path) -> None:
     """In place. The widgets' state is stored in the notebook, so that sliders move without a kernel."""
     os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, (str(package), os.environ.get("PYTHONPATH"))))
-    NotebookClient(book, timeout=300, kernel_name="python3", store_widget_state=True,
+    NotebookClient(book, timeout=300, kernel_name="python3", store_widget_state=True, coalesce_streams=True,
                    resources={"metadata": {"path": str(NOTEBOOK.parent)}}).execute()
 
 

@@ -13,6 +13,7 @@ docs/python.md is the guide, docs/scene.md describes scenes, docs/method.md the 
 
 from __future__ import annotations
 
+from kage import gbuffer, heights, methods
 from kage.errors import InputError, KageError, NoMemoryError, OptionError, OutputError
 from kage.picture import Picture
 from kage.scene import Scene, load
@@ -29,5 +30,8 @@ __all__ = [
     "Picture",
     "Scene",
     "__version__",
+    "gbuffer",
+    "heights",
     "load",
+    "methods",
 ]

@@ -7,13 +7,15 @@ and 1e-5 in float, relative to the size of a sum's terms.
 from __future__ import annotations
 
 import json
+import subprocess
+import sys
 from typing import Any
 
 import numpy as np
 import pytest
 
 from kage import methods
-from tests.conftest import TOP
+from tests.conftest import PROGRAM, TOP
 
 TOLERANCE = {np.float64: 1e-13, np.float32: 3e-5}
 BOTH = pytest.mark.parametrize("real", TOLERANCE)
@@ -206,7 +208,10 @@ FRONT = methods.View(-0.5, 1.0, 0.0)
 
 
 def test_the_call_of_the_issue() -> None:
-    assert methods.tau0([0, 2, 0], [0.3, -0.5, 0], 0.1) == -0.2
+    program = "import kage; print(kage.methods.tau0([0, 2, 0], [0.3, -0.5, 0], 0.1))"
+    done = subprocess.run([sys.executable, "-c", program], env={"PYTHONPATH": str(PROGRAM.parent / "python")},
+                          capture_output=True, text=True, timeout=120)
+    assert (done.stdout, done.stderr) == ("-0.2\n", "")
 
 
 def test_broadcasting() -> None:

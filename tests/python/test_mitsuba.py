@@ -13,6 +13,8 @@ import pytest
 from PIL import Image
 
 import kage
+from kage import gbuffer
+from kage.heights import HeightMap
 from tests.conftest import PROGRAM, TOP
 
 SIZE = (160, 120)
@@ -57,6 +59,33 @@ def test_the_shadow_is_kages(made: Any, method: str) -> None:
     assert same >= 0.999
     off = np.abs(made[method][0] - picture.rgb)[asked].max(-1)
     assert np.percentile(off, 99) < 0.005
+
+
+@pytest.mark.parametrize("tangents", ["its tangents", "differences"])
+def test_a_ball_with_a_mirrored_texture(example: Any, monkeypatch: pytest.MonkeyPatch, tangents: str) -> None:
+    """scenes/sphere.yaml: Mitsuba's uv go around the ball the other way, so Qu x Qw points inward."""
+    lamp = np.array([-5.4, 4.4, -4.9])
+    for name, value in (("EYE", [0.9, 1.0, -6.4]), ("AT", [-0.2, 0.32, 0]), ("FOV", 38), ("LAMP", lamp)):
+        monkeypatch.setattr(example, name, value)
+    pose = example.mi.ScalarTransform4f
+    box = {"type": "cube", "to_world": pose().translate([-1.175, 1.25, -1.7]).scale([0.325, 0.3, 0.25])}
+    up = pose([[1, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1]])
+    image = example.trace({"cube": box, "ground": {"type": "sphere", "radius": 1.5, "to_world": up}}, *SIZE)
+    samples = np.asarray(Image.open(example.MAP), np.float64)[:, ::-1] / 65535
+    heights = HeightMap(samples, (0.5, 1), scale=0.09, zero=0.417)
+    given = (image["Qu"], image["Qw"]) if tangents == "its tangents" else None
+    a = gbuffer.layers(example.EYE, image["Q"], image["uv"], normal=image["n"], tangents=given, there=image["ground"])
+    assert (a.sign[a.there] == -1).all()
+    for method in ("2+", "march:8"):
+        c = gbuffer.correct(a, heights, method)
+        picture = kage.load(TOP / "scenes" / "sphere.yaml").render(shadow=method, size=SIZE)
+        # the ball's own far side is not in Mitsuba's test
+        asked = image["ground"] & (np.array(picture["order"]) >= 0) & ((image["n"] * (lamp - image["Q"])).sum(-1) > 0)
+        lit = example.is_lit(box, c.origin, asked)
+        assert 500 < (asked & ~lit).sum() < 3000 < asked.sum()
+        assert (lit == (np.array(picture["visibility.lamp"]) > 0.5))[asked].mean() > 0.999
+        assert (c.order == picture["order"])[asked].mean() > 0.995
+        assert np.median(np.abs(c.normal - picture["N"])[asked]) < 1e-4
 
 
 def test_the_program_writes_the_three(example: Any, tmp_path: Path) -> None:
