@@ -6,6 +6,7 @@
 #   CLONES=no             without the AVX2 copies of the stages
 #   OPENMP=no             one thread a render, without OpenMP: for SANITIZE=thread, which does not see the barriers of
 #                         its library (CLONES=no, too: functions that choose their copy run before it is ready)
+#   VIEW=yes|no           kage view, the window; it needs SDL2, SDL2_ttf and fontconfig (yes where they are here)
 #   BUILD=DIR             where the objects and the program go
 #   PYTHON=PROGRAM        the Python for which the package is built (with cffi and numpy)
 #   V=1                   print the whole commands
@@ -66,12 +67,21 @@ override CFLAGS  += -Iinclude -Isrc $(STANDARD) $(OPTIMISE) $(VISIBILITY) $(THRE
                     $(SANITIZER) $(PKG_CFLAGS) -MMD -MP
 override LDFLAGS += $(THREADS) $(SANITIZER)
 LIBS       = $(PKG_LIBS) -lembree$(or $(EMBREE),3) -ldl -lm
+VIEW_PKGS   = sdl2 SDL2_ttf fontconfig
+ifndef VIEW
+VIEW       := $(shell pkg-config --exists $(VIEW_PKGS) && echo yes || echo no)
+else ifeq ($(filter yes no,$(VIEW)),)
+$(error VIEW=$(VIEW): expected yes or no)
+endif
+VIEW_CFLAGS := $(patsubst -I%,-isystem %,$(shell pkg-config --cflags $(VIEW_PKGS) 2>/dev/null))
+VIEW_LIBS   := $(shell pkg-config --libs $(VIEW_PKGS) 2>/dev/null)
 IMPORT_LIBS := $(shell pkg-config --libs assimp libpng libjpeg 2>/dev/null) -lm
 
 SOURCES   = $(patsubst src/%.c,%,$(wildcard src/*/*.c))
 PROGRAM   = $(filter cli/%,$(SOURCES))
 IMPORT    = $(filter import/%,$(SOURCES)) # kage-import, which alone links assimp and libjpeg
-LIBRARY   = $(filter-out cli/% import/%,$(SOURCES))
+WINDOW    = $(filter view/% look/%,$(SOURCES)) # kage-view, which alone links SDL2; look/ does without
+LIBRARY   = $(filter-out cli/% import/% view/% look/%,$(SOURCES))
 VERSION  := $(shell sed -n 's/.*define KAGE_VERSION "\(.*\)".*/\1/p' include/kage.h)
 SONAME    = libkage.so.$(firstword $(subst ., ,$(VERSION)))
 UNITS     = $(patsubst tests/%.c,%,$(wildcard tests/unit/*/test_*.c))
@@ -83,14 +93,15 @@ GALLERY   = $(patsubst scenes/gallery/%.yaml,%,$(wildcard scenes/gallery/*.yaml)
 
 # What `make format` and `make lint` look at. The yardsticks in bench/limits are compiled by themselves.
 C_FILES   = $(wildcard include/*.h src/*/*.[ch] examples/*.c tests/support/*.h tests/unit/*/*.[ch] bench/limits/*.c)
-TIDY      = $(filter-out bench/limits/%,$(filter %.c,$(C_FILES)))
+TIDY      = $(filter-out bench/limits/% $(if $(filter yes,$(VIEW)),,src/view/%),$(filter %.c,$(C_FILES)))
 
 .PHONY: all render bench speed readme reference accept counts test unit-tests program-tests programs sanitize format
 .PHONY: lint tidy same python install install-files uninstall clean help bootstrap FORCE
 all: bootstrap
 	@$(MAKE) --no-print-directory $(JOBS) programs
 
-programs: $(BUILD)/kage $(BUILD)/kage-import $(BUILD)/libkage.a $(BUILD)/libkage.so
+programs: $(BUILD)/kage $(BUILD)/kage-import $(if $(filter yes,$(VIEW)),$(BUILD)/kage-view)
+programs: $(BUILD)/libkage.a $(BUILD)/libkage.so
 
 help:
 	@echo 'make            build the program, $(BUILD)/kage, and the library'
@@ -182,6 +193,12 @@ $(BUILD)/kage-import: $(IMPORT:%=$(BUILD)/%.o)
 	@echo '  LD  $@'
 	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(IMPORT_LIBS)
 
+$(BUILD)/kage-view: $(WINDOW:%=$(BUILD)/%.o) $(BUILD)/libkage.a
+	@echo '  LD  $@'
+	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(VIEW_LIBS) $(LIBS)
+
+$(patsubst %,$(BUILD)/%.o,$(filter view/%,$(WINDOW))): private override CFLAGS += $(VIEW_CFLAGS)
+
 # ---- the library ----
 
 # One object, in which what is hidden is local: only kage_... can be seen by a program that it is linked to.
@@ -208,8 +225,8 @@ $(BUILD)/flags: FORCE
 	@mkdir -p $(BUILD)
 	@echo '$(CC) $(CFLAGS) $(LDFLAGS)' | cmp -s - $@ || echo '$(CC) $(CFLAGS) $(LDFLAGS)' > $@
 
-$(BUILD)/mesh/reader.o: private DEFINES += -DKAGE_LIBEXEC='"$(LIBEXEC)"'
-$(BUILD)/mesh/reader.o: $(BUILD)/libexec
+$(BUILD)/mesh/reader.o $(BUILD)/cli/view.o: private DEFINES += -DKAGE_LIBEXEC='"$(LIBEXEC)"'
+$(BUILD)/mesh/reader.o $(BUILD)/cli/view.o: $(BUILD)/libexec
 
 $(BUILD)/libexec: FORCE
 	@mkdir -p $(BUILD)
@@ -231,7 +248,9 @@ $(BUILD)/internal.a: $(LIBRARY:%=$(BUILD)/%.o)
 
 $(UNITS:%=$(BUILD)/%): $(BUILD)/%: $(BUILD)/%.o $(BUILD)/internal.a
 	@echo '  LD  $@'
-	$(Q)$(CC) $(LDFLAGS) -o $@ $^ -lcmocka $(LIBS)
+	$(Q)$(CC) $(LDFLAGS) -o $@ $(filter %.o,$^) $(filter %.a,$^) -lcmocka $(LIBS)
+
+$(filter $(BUILD)/unit/look/%,$(UNITS:%=$(BUILD)/%)): $(patsubst %,$(BUILD)/%.o,$(filter look/%,$(WINDOW)))
 
 # A test in which memory runs out: our own objects ask its functions.
 WRAPPED   = malloc calloc realloc posix_memalign strdup free fy_node_build_from_malloc_string
@@ -360,7 +379,7 @@ tidy: $(TIDY:%=tidy-%)
 
 $(TIDY:%=tidy-%): tidy-%: %
 	@clang-tidy --quiet $< -- \
-	    -Iinclude -Isrc -Itests -DKAGE_TESTS_DIR='"tests"' $(STANDARD) $(DEFINES) $(PKG_CFLAGS) 2>&1 | \
+	    -Iinclude -Isrc -Itests -DKAGE_TESTS_DIR='"tests"' $(STANDARD) $(DEFINES) $(PKG_CFLAGS) $(VIEW_CFLAGS) 2>&1 | \
 	    { grep -v ' warnings\{0,1\} .*generated\.$$' && exit 1 || exit 0; }
 
 # Does this tree make the same pictures as another commit? make same REV=main
@@ -377,6 +396,7 @@ install-files: $(BUILD)/kage.pc
 	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/include $(DESTDIR)$(LIBDIR)/pkgconfig $(DESTDIR)$(LIBEXEC)
 	install -m 755 $(BUILD)/kage $(DESTDIR)$(PREFIX)/bin/kage
 	install -m 755 $(BUILD)/kage-import $(DESTDIR)$(LIBEXEC)/kage-import
+	$(if $(filter yes,$(VIEW)),install -m 755 $(BUILD)/kage-view $(DESTDIR)$(LIBEXEC)/kage-view)
 	install -m 644 include/kage.h include/bumpshadow.h include/bumpshadow.glsl $(DESTDIR)$(PREFIX)/include
 	install -m 644 $(BUILD)/libkage.a $(DESTDIR)$(LIBDIR)/libkage.a
 	install -m 755 $(BUILD)/$(SONAME) $(DESTDIR)$(LIBDIR)/$(SONAME)
@@ -384,7 +404,7 @@ install-files: $(BUILD)/kage.pc
 	install -m 644 $(BUILD)/kage.pc $(DESTDIR)$(LIBDIR)/pkgconfig/kage.pc
 
 uninstall:
-	rm -f $(DESTDIR)$(PREFIX)/bin/kage $(DESTDIR)$(LIBEXEC)/kage-import \
+	rm -f $(DESTDIR)$(PREFIX)/bin/kage $(DESTDIR)$(LIBEXEC)/kage-import $(DESTDIR)$(LIBEXEC)/kage-view \
 	    $(DESTDIR)$(PREFIX)/include/kage.h \
 	    $(DESTDIR)$(PREFIX)/include/bumpshadow.h $(DESTDIR)$(PREFIX)/include/bumpshadow.glsl \
 	    $(DESTDIR)$(LIBDIR)/libkage.a $(DESTDIR)$(LIBDIR)/$(SONAME) $(DESTDIR)$(LIBDIR)/libkage.so \

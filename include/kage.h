@@ -95,6 +95,31 @@ typedef struct kage_scene kage_scene;
  * nonzero, the call ends soon with KAGE_CANCELLED. It may call the library. */
 typedef int kage_progress(void *user, const char *what, double share);
 
+/* Arrays in the caller's memory, in place of files: where a scene can name a file, "array:NAME" names one of them. They
+ * are copied during the call. A name has up to 59 letters, digits, _ and -. Pictures of the scene name the array, but
+ * do not hold it. */
+
+typedef enum kage_type { KAGE_U8, KAGE_U16, KAGE_F32, KAGE_F64 } kage_type;
+
+/* A height map or an image. Whole numbers mean what those of a PNG mean, floats what those of an EXR mean. A height map
+ * has 1 channel; an image has 1 (grey) or 3 (red, green, blue). One channel more is alpha: height maps ignore it, of
+ * images it must be 1. */
+typedef struct kage_image_array {
+    const char *name;
+    int width, height, channels;
+    kage_type type;
+    const void *samples; /* height rows from the top, of width pixels, of `channels` samples */
+} kage_image_array;
+
+/* A model. All means what it means in a PLY or OBJ file: coordinates are right-handed, corners go round
+ * counterclockwise seen from outside, and v goes up. */
+typedef struct kage_mesh_array {
+    const char *name;
+    int vertex_count, triangle_count;
+    const double *positions, *normals, *uvs; /* 3, 3 and 2 numbers a vertex; normals, uvs: NULL: none */
+    const uint32_t *triangles;               /* 3 vertices each */
+} kage_mesh_array;
+
 typedef struct kage_load_options {
     const char *const *sets; /* set_count changes of the scene, PATH=VALUE as for `kage render --set` */
     int set_count;
@@ -108,7 +133,10 @@ typedef struct kage_load_options {
      * a model is an error of the scene; other scenes do not need it. It has limited time (3 s and 1 s a MiB) and memory
      * (512 MiB and 96 times the file); a model that crashes it is an error of the scene, too. */
     const char *model_reader;
-    void *reserved[8];
+    const kage_image_array *images;
+    const kage_mesh_array *meshes;
+    int image_count, mesh_count;
+    void *reserved[5];
 } kage_load_options;
 
 /* Read the scene in the file at `path`. options: NULL for the defaults. The list has all errors that were found. */
@@ -119,6 +147,14 @@ KAGE_API kage_status kage_scene_load(const char *path, const kage_load_options *
  * folder: where relative names of files begin, NULL for the current folder. */
 KAGE_API kage_status kage_scene_parse(const char *text, size_t size, const char *name, const char *folder,
                                       const kage_load_options *options, kage_scene **scene, kage_errors **errors);
+
+/* A new scene: `scene` with options->sets after its own, as if it had been read with all of them. `scene` stays as it
+ * is, and either may be freed first. It is not read from files again, but for what the changes touch, and for files
+ * that have changed: maps, images, models and the hierarchies over surfaces are shared between the scenes. Of an image
+ * or a model that is given again under its name the new one counts. options: threads 0 and model_reader NULL mean those
+ * that `scene` was read with. */
+KAGE_API kage_status kage_scene_change(kage_scene *scene, const kage_load_options *options, kage_scene **changed,
+                                       kage_errors **errors);
 
 KAGE_API void kage_scene_free(kage_scene *scene); /* NULL: nothing */
 
@@ -160,6 +196,8 @@ typedef struct kage_object_info {
     int copies;                   /* how many copies of copy_of it is, from a list; 0: it is one object */
     const char *bump_of;          /* the object under whose key `bump` the bump is, often itself; NULL: no bump */
     double bump_scale;            /* the bump's `scale` */
+    int map_bits;                 /* of the map's samples, which have 2^map_bits values from 0 to 1; 0: floats */
+    double map_smooth;            /* the radius of its smoothing, in samples; 0: none */
 } kage_object_info;
 
 typedef struct kage_camera_info {
@@ -181,10 +219,18 @@ typedef struct kage_scene_info {
     const char *bump_shadow; /* render.bump_shadow */
     int shifted;             /* render.shade: shifted */
     kage_camera_info camera;
+    const char *text; /* the scene's YAML, with the changes in it that it was read with; NULL: out of memory */
 } kage_scene_info;
 
 /* What is in a scene. */
 KAGE_API const kage_scene_info *kage_scene_get_info(const kage_scene *scene);
+
+/* Write kage_scene_info.text. A change is written where the value stood that it replaces, or behind the last entry of
+ * its map; all other bytes, comments and layout, stay. A scene that is read from the file is the same one, if files
+ * that it names with relative names are found from there, and arrays are given again. The file appears whole or not at
+ * all.
+ */
+KAGE_API kage_status kage_scene_write(const kage_scene *scene, const char *path, kage_errors **errors);
 
 /* Whether the file at `path`, links followed, was read for the scene, so that no output should replace it. */
 KAGE_API int kage_scene_uses_file(const kage_scene *scene, const char *path);
@@ -389,13 +435,17 @@ typedef struct kage_bump_survey {
     int samples; /* of 40 000 over the picture; 0: no bump, or not visible, and the rest is 0 */
     double slope_median, slope_95, slope_max; /* tan of the angle between n and n'; slope_95: the 95th percentile */
     double fell_back[3];                      /* [1], [2]: by order 1 and 2, in per cent of the samples; [0] is 0 */
+    /* A step from one value of a map's samples to the next: as a height in scene units, and the median of the slope
+     * that it makes where two neighbours differ by it. 0: no map, or one of floats. */
+    double step, step_slope;
 } kage_bump_survey;
 
 typedef enum kage_warning_code {
     KAGE_WARN_FLAT_TRIANGLES, /* value: triangles of a model without an area, which are left out */
     KAGE_WARN_UNBOUNDED,      /* P has no bounds, so the guard has no slab and march:N falls back to order 0 */
     KAGE_WARN_STEEP,          /* value: slope_95, above bound: too steep for orders 0, 1 and 2 */
-    KAGE_WARN_FALLS_BACK      /* value: the larger of fell_back, above bound: the view is flat against the bumps */
+    KAGE_WARN_FALLS_BACK,     /* value: the larger of fell_back, above bound: the view is flat against the bumps */
+    KAGE_WARN_STEPS           /* value: step_slope, above bound: the steps of a map's few bits are seen */
 } kage_warning_code;
 
 typedef struct kage_warning {
@@ -416,10 +466,12 @@ KAGE_API void kage_survey_free(kage_survey *survey); /* NULL: nothing */
 /* ---- POV-Ray ---- */
 
 typedef struct kage_povray_options {
-    const char *command;   /* for the file's header: what wrote it. NULL: "libkage" */
-    int no_cast;           /* not 0: objects without a bump cast no shadows */
-    kage_choice displaced; /* as in kage_render_options */
-    void *reserved[8];
+    const char *command;     /* for the file's header: what wrote it. NULL: "libkage" */
+    int no_cast;             /* not 0: objects without a bump cast no shadows */
+    kage_choice displaced;   /* as in kage_render_options */
+    kage_progress *progress; /* NULL: none. A call that it cancels leaves no file */
+    void *user;              /* for progress */
+    void *reserved[6];
 } kage_povray_options;
 
 typedef struct kage_povray_report {

@@ -21,9 +21,11 @@ METHODS = HERE / "methods.h"
 
 #: What progress.h adds to the library.
 PROGRESS = """
-typedef struct kage_py_call { void *handle; ...; } kage_py_call;
+typedef struct kage_py_call { ...; } kage_py_call;
+void kage_py_begin(kage_py_call *call);
 int kage_py_progress(void *user, const char *what, double share);
-extern "Python" int kage_py_listen(void *handle, const char *what, double share);
+double kage_py_look(kage_py_call *call, char what[24]);
+void kage_py_stop(kage_py_call *call);
 """
 
 

@@ -20,7 +20,7 @@ from build_ext import HEADER, HERE, declarations
 MADE = HERE / "kage" / "structs.py"
 
 #: Structs that the caller fills in, or that errors.py and picture.py turn into something else.
-OTHERS = re.compile(r"kage_(\w+_options|\w+_array|error|metadata)")
+OTHERS = re.compile(r"kage_(\w+_options|\w+_array|error|metadata|import_report)")
 
 #: An int that is yes or no; kage.h says so in words only.
 FLAGS = {"fades", "transformed", "mirrors", "transparent", "bounded", "guard", "displaced", "self_shadow", "shifted",
@@ -71,10 +71,8 @@ def python_type(name: str, kind: Any, comment: str, counted: bool) -> str:
         return class_name(kind.cname)
     if kind.kind == "enum" or kind.item.cname == "char":
         return "str | None" if "None" in comment else "str"
-    item = kind.item
-    if item.kind == "primitive":
-        return "tuple[float, ...]"
-    return f"tuple[{class_name(item.cname)}, ...]" if counted else f"{class_name(item.cname)} | None"
+    item = {"double": "float", "char *": "str"}.get(kind.item.cname) or class_name(kind.item.cname)
+    return f"tuple[{item}, ...]" if counted or item == "float" else f"{item} | None"
 
 
 def lines_of(struct: str, title: str, body: str, fields: dict[str, Any]) -> Iterator[str]:

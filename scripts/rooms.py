@@ -25,6 +25,8 @@ BEGIN, END = "<!-- rooms -->", "<!-- /rooms -->"
 #: Each room's rank and purpose.
 ROOMS = {
     "cli": (13, "the program `kage`: commands, options, progress"),
+    "view": (14, "the program `kage-view`: the window, its thread that renders, text in it"),
+    "look": (13, "what the window shows and how it is changed, without a window: state, keys, stages, false colours"),
     "import": (13, "the program that reads model files, apart as they may crash their reader"),
     "api": (12, "the library's interface, `include/kage.h`"),
     "read": (11, "YAML to a scene"),

@@ -16,9 +16,10 @@ from __future__ import annotations
 from kage.errors import InputError, KageError, NoMemoryError, OptionError, OutputError
 from kage.picture import Picture
 from kage.scene import Scene, load
-from kage.version import PRECISION, __version__
+from kage.version import METHODS, PRECISION, __version__
 
 __all__ = [
+    "METHODS",
     "PRECISION",
     "InputError",
     "KageError",

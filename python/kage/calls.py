@@ -1,16 +1,16 @@
-"""Calls of the library that last: their progress, Ctrl-C, and what they fail with.
+"""Calls of the library: their progress, Ctrl-C, and what they fail with.
 
-cffi lets go of Python's lock (the GIL) for the time of each call, so that other threads go on. progress.h in C calls
-`kage_py_listen` for a new step and then 20 times a second, which takes the lock for a moment. In the main thread that
-is where Python sees Ctrl-C: KeyboardInterrupt is raised inside, ends the call, and is raised again from it.
+cffi lets go of Python's lock (the GIL) for the time of each call, so that other threads go on. A call that is made in
+the main thread, or whose progress is wanted, is made by a worker (workers.py).
 """
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Callable
-from types import TracebackType
 from typing import Any
 
+from kage import workers
 from kage._kage import ffi, lib
 from kage.errors import raise_errors
 
@@ -19,36 +19,49 @@ Listener = Callable[[str, float], object]
 
 
 class Call:
-    """One call of the library that may last."""
+    """One call of the library."""
 
     def __init__(self, listener: Listener | None = None) -> None:
         self.listener = listener
-        self.raised: BaseException | None = None
+        self.told: tuple[str, float] = ("", 0.0)
         self.errors = ffi.new("kage_errors **")
-        self.handle = ffi.new_handle(self)
         #: For an options struct.
-        self.user = ffi.new("kage_py_call *", {"handle": self.handle})
+        self.user = ffi.new("kage_py_call *")
+        lib.kage_py_begin(self.user)
         self.progress = ffi.addressof(lib, "kage_py_progress")
 
+    def run(self, function: Callable[[], int], *, files: bool = False) -> None:
+        """Make the call: `function` does, and returns its kage_status. Ctrl-C and what the listener raises end it.
+
+        files: it writes some, so that a program which ends should wait until none is left unfinished.
+        """
+        self.make(function, files=files)
+
+    def make(self, function: Callable[[], int], made: Any = None, free: Any = None, *, files: bool = False) -> Any:
+        """The same of a call that makes something, which it stores in *made and `free` frees."""
+        def body() -> tuple[int, Any]:
+            status = function()
+            return status, ffi.gc(made[0], free) if made is not None and made[0] else None
+
+        if self.listener is None and threading.current_thread() is not threading.main_thread():
+            status, owned = body()  # Ctrl-C is for the main thread
+        else:
+            status, owned = workers.run(body, self.look, lambda: lib.kage_py_stop(self.user), files)
+        self.check(status)
+        return owned
+
+    def look(self) -> None:
+        """Tell the listener, if there is something new."""
+        if self.listener is None:
+            return
+        what = ffi.new("char[24]")
+        share = lib.kage_py_look(self.user, what)
+        now = (ffi.string(what).decode(), share)
+        if now[0] and now != self.told:
+            self.told = now
+            self.listener(*now)
+
     def check(self, status: int) -> None:
-        """Raise what has ended the call, if anything."""
-        if self.raised is not None:
-            raised, self.raised = self.raised, None
-            raise raised
+        """Raise what the library says is wrong."""
         if status != lib.KAGE_OK:
             raise_errors(status, self.errors)
-
-
-def _note(_kind: type[BaseException], raised: BaseException, traceback: TracebackType | None) -> None:
-    """What was raised while listening waits for the end of the call."""
-    if traceback is not None:
-        call = ffi.from_handle(traceback.tb_frame.f_locals["handle"])
-        call.raised = raised
-
-
-@ffi.def_extern(error=1, onerror=_note)  # type: ignore[untyped-decorator]
-def kage_py_listen(handle: Any, what: Any, share: float) -> int:
-    call = ffi.from_handle(handle)
-    if call.listener is not None:
-        call.listener(ffi.string(what).decode(), share)
-    return 0

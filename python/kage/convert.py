@@ -45,6 +45,8 @@ def elements(name: str, kind: str, struct: Any, value: Any, counts: Mapping[str,
     item = kind.removeprefix("tuple[").split(",")[0]
     if item == "float":
         return tuple(value[0:count])
+    if item == "str":
+        return tuple(text_of(value[index]) for index in range(count))
     return tuple(converted(getattr(structs, item), value[index], counts) for index in range(count))
 
 

@@ -58,6 +58,20 @@ class Picture:
         return converted(Stats, lib.kage_film_get_stats(self._film))
 
     @property
+    def metadata(self) -> dict[str, str]:
+        """What files of the picture hold: the scene's text, its changes, the options. They make it again."""
+        pairs = (lib.kage_film_metadata(self._film, index) for index in range(lib.kage_film_metadata_count(self._film)))
+        return {text_of(pair.name) or "": text_of(pair.value) or "" for pair in pairs}
+
+    @property
+    def srgb(self) -> NDArray[np.uint8]:
+        """Height x width x 3 bytes for a screen, sRGB: the very values of an 8-bit PNG."""
+        rgba = np.empty((self.height, self.width, 4), np.uint8)
+        call = Call()
+        call.check(lib.kage_film_srgb(self._film, ffi.from_buffer("uint8_t[]", rgba), 0, 0))
+        return rgba[:, :, :3]
+
+    @property
     def rgb(self) -> NDArray[np.float32]:
         """Height x width x 3, linear light."""
         return self._stacked(["R", "G", "B"])
@@ -68,8 +82,8 @@ class Picture:
             return np.asarray(Plane(self._film, name, (self.height, self.width)))
         members = [plane for plane in self.planes if plane.startswith(f"{name}.")]
         if not members:
-            layers = "" if len(self.planes) > 3 else " (rendered with layers=False)"
-            raise KeyError(f"no plane {name!r}; there are {', '.join(self.planes)}{layers}")
+            few = "" if len(self.planes) > 3 else ": rendered with layers=False"
+            raise KeyError(f"no plane {name!r}; there are {' '.join(self.planes)}{few}")
         return self._stacked(members)
 
     def __iter__(self) -> Iterator[str]:
@@ -93,7 +107,7 @@ class Picture:
     def save(self, path: str | os.PathLike[str], **options: Unpack[WriteOptions]) -> None:
         """Write a file: where `path` ends in .png, R, G and B in sRGB; in .exr, planes as 32-bit floats, linear.
 
-        The file appears whole or not at all, and contains the scene's text and all options.
+        The file appears whole or not at all, and holds `metadata`.
         bits: of a PNG, 8 or 16. layers: of an EXR, the planes ("color", "N", "tau", ...; default: all).
         """
         check_names("save", options, WriteOptions)
@@ -102,7 +116,7 @@ class Picture:
 
     def _write(self, path: str | os.PathLike[str], options: WriteOptions, call: Call) -> None:
         made = write_struct(options, call)
-        call.check(lib.kage_film_write(self._film, bytes_of(path), made.c, call.errors))
+        call.run(lambda: lib.kage_film_write(self._film, bytes_of(path), made.c, call.errors), files=True)
 
     def _repr_png_(self) -> bytes:
         """For notebooks."""

@@ -33,7 +33,7 @@ class Struct:
 
 
 def render_struct(options: Mapping[str, Any], call: Call) -> Struct:
-    """RenderOptions as kage_render_options."""
+    """The options of rendering as kage_render_options."""
     made = Struct("kage_render_options", call, options.get("threads"))
     relief = bool(options.get("relief"))
     shadow, shade, bump_shadow = (options.get(name) for name in ("shadow", "shade", "bump_shadow"))
@@ -64,21 +64,24 @@ def render_struct(options: Mapping[str, Any], call: Call) -> Struct:
 
 
 def write_struct(options: Mapping[str, Any], call: Call | None = None) -> Struct:
-    """WriteOptions as kage_write_options."""
+    """The options of writing as kage_write_options."""
     made = Struct("kage_write_options", call, options.get("threads"))
     layers = options.get("layers")
-    made.text("layers", layers if layers is None or isinstance(layers, str) else ",".join(layers))
+    if not isinstance(layers, bool | None):
+        made.text("layers", layers if isinstance(layers, str) else ",".join(layers))
     if options.get("bits") is not None:
         made.c.bits = whole("bits", options["bits"], 8, 16)
+    if options.get("band") is not None:
+        made.c.band = whole("band", options["band"], 16, lib.KAGE_MAX_SIDE)
+    made.c.resume, made.c.keep = bool(options.get("resume")), bool(options.get("keep"))
     return made
 
 
-def check_names(function: str, given: Iterable[str], *known: type) -> None:
+def check_names(function: str, given: Iterable[str], options: type) -> None:
     """A name that no option has is a TypeError, as for any function."""
-    names = {name for kind in known for name in kind.__annotations__}
     for name in given:
-        if name not in names:
-            raise TypeError(f"{function}() has no option {name!r}; it has {', '.join(sorted(names))}")
+        if name not in options.__annotations__:
+            raise TypeError(f"{function}() has no option {name!r}; it has {', '.join(sorted(options.__annotations__))}")
 
 
 def choice(value: bool | None) -> int:

@@ -10,7 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from kage._kage import ffi, lib
+from kage._kage import lib
+from kage.arrays import Arrays
+from kage.errors import OptionError
 from kage.text import bytes_of
 
 #: A path, a text of YAML, or a dict with the keys of docs/scene.md.
@@ -20,13 +22,14 @@ Source = str | os.PathLike[str] | Mapping[str, Any]
 class Text:
     """A scene's text, or its file."""
 
-    def __init__(self, source: Source, folder: str | os.PathLike[str] | None, name: str | None = None) -> None:
+    def __init__(self, source: Source, folder: str | os.PathLike[str] | None, name: str | None,
+                 arrays: Arrays) -> None:
         self.path: str | os.PathLike[str] | None = None
         self.text = ""
         self.name = name or "scene"
         self.folder = folder
         if isinstance(source, Mapping):
-            self.text = json.dumps(source, default=plain, indent=1, allow_nan=False)
+            self.text = json_of(arrays.named(source), indent=1)
         elif isinstance(source, str) and ("\n" in source or source.lstrip().startswith("{")):
             self.text = source
         else:
@@ -42,13 +45,21 @@ class Text:
         return int(lib.kage_scene_parse(text, len(text), name, folder, options, scene, errors))
 
 
-def changes_of(sets: Mapping[str, Any]) -> list[bytes]:
+def changes_of(sets: Mapping[str, Any], arrays: Arrays) -> list[bytes]:
     """PATH=VALUE of each change. A str stands as in the scene file, so "2+" is a method and "[1, 2]" a list."""
-    return [f"{path}={value_of(value)}".encode() for path, value in sets.items()]
+    return [f"{path}={value_of(arrays.named(value, path))}".encode() for path, value in sets.items()]
 
 
 def value_of(value: Any) -> str:
-    return value if isinstance(value, str) else json.dumps(value, default=plain, allow_nan=False)
+    return value if isinstance(value, str) else json_of(value)
+
+
+def json_of(value: Any, indent: int | None = None) -> str:
+    """JSON is YAML, too."""
+    try:
+        return json.dumps(value, default=plain, indent=indent, allow_nan=False)
+    except (TypeError, ValueError) as wrong:
+        raise OptionError(f"in a scene: {wrong}") from None
 
 
 def plain(value: Any) -> Any:
@@ -57,4 +68,4 @@ def plain(value: Any) -> Any:
         return value.tolist()
     if isinstance(value, os.PathLike):
         return os.fspath(value)
-    raise TypeError(f"{type(value).__name__} {value!r} in a scene: expected numbers, texts, lists and dicts")
+    raise TypeError(f"{type(value).__name__} {value!r}, expected numbers, texts, lists, dicts and numpy arrays")

@@ -39,12 +39,26 @@ enum { READINGS = 16 };
 struct kage_scene {
     scene *first;             /* as the caller asked for it */
     scene *reading[READINGS]; /* by reading_index; one is `first`; NULL: not read yet */
-    pthread_mutex_t lock;     /* of reading[] */
+    pthread_mutex_t lock;     /* of reading[] and info.text */
     kage_scene_info info;
+    char *text; /* with the changes, once it is asked for; NULL: not yet, or there are none */
     /* what a further reading needs; owned */
     char *folder, *model_reader, **set;
     int sets, threads;
+    bool from_file; /* first->path is a file's */
+    arrays arrays;
+    shelf spare; /* of the scene that it is a change of: what its further readings had made */
 };
+
+/* Add a change after those of k, which has room for it. A change of the same place is replaced, so that changes one
+ * after another do not pile up. False: out of memory. */
+bool sets_put(kage_scene *k, const char *set);
+
+/* Check the caller's arrays. False: errors in *e. */
+bool arrays_are_good(const kage_load_options *o, errors *e);
+
+/* Copy them. False: out of memory. */
+bool arrays_take(arrays *to, const kage_load_options *o);
 
 /* What decides which reading of a scene a render needs. */
 typedef struct reading {
@@ -59,6 +73,9 @@ const scene *scene_reading(kage_scene *k, reading r, errors *e);
 /* Fill in, and free, k->info. False: out of memory. */
 bool scene_note(kage_scene *k);
 void scene_forget(kage_scene *k);
+
+/* The text `Software` in a picture begins with this; the version follows. */
+#define SOFTWARE "kage"
 
 enum { PICTURE_TEXTS = 7, PICTURE_CROP_SIZE = 64 };
 

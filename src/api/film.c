@@ -4,6 +4,7 @@
 #include "base/threads.h"
 #include "image/srgb.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -32,6 +33,29 @@ const float *kage_film_plane(const kage_film *f, const char *name)
 }
 
 const kage_stats *kage_film_get_stats(const kage_film *f) { return &f->stats; }
+
+/* ---- what a picture's file says of it ---- */
+
+void picture_crop(window w, char text[PICTURE_CROP_SIZE])
+{
+    snprintf(text, PICTURE_CROP_SIZE, "%d,%d,%d,%d", w.x0, w.y0, w.x1, w.y1);
+}
+
+/* What the picture is made from, except for maps, so that it can be rendered again. No clock, path or number of
+ * threads: the same picture has the same bytes. */
+void picture_texts(const kage_film *f, const char *crop, image_text to[PICTURE_TEXTS])
+{
+    const image_text text[PICTURE_TEXTS] = {
+        {PICTURE_SOFTWARE, SOFTWARE " " KAGE_VERSION " " REAL_NAME},
+        {"kage:file", f->file},
+        {"kage:scene", f->source},
+        {"kage:set", f->sets},
+        {PICTURE_CROP, crop},
+        {"kage:shadow", f->method},
+        {"kage:guard", f->guard ? "yes" : "no"},
+    };
+    memcpy(to, text, sizeof text);
+}
 
 int kage_film_metadata_count(const kage_film *f)
 {

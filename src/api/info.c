@@ -1,5 +1,8 @@
-/* What can be asked for: the version, the methods, and what is in a scene (kage_scene_get_info). */
+/* What can be asked for: the version, the methods, and what is in a scene, also as its text. */
 #include "api/api.h"
+
+#include "base/file_writer.h"
+#include "yaml/yaml.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -36,6 +39,8 @@ static void note_bump(const object *o, kage_object_info *x)
     x->map_size[1] = o->map.height;
     x->map_range[0] = o->map.low;
     x->map_range[1] = o->map.high;
+    x->map_bits = o->map.bits;
+    x->map_smooth = o->map.file ? o->bump_spec.layout.smooth : 0;
     x->height[0] = (double)o->bump->Pmin;
     x->height[1] = (double)o->bump->Pmax;
     x->bump_of = o->bump_of ? o->bump_of : o->name;
@@ -104,6 +109,7 @@ bool scene_note(kage_scene *k)
         bump_shadow_name(s->bump_shadow, own);
     k->info = (kage_scene_info){
         .path = s->path,
+        .text = k->sets ? NULL : s->source,
         .width = s->width,
         .height = s->height,
         .aa = s->aa,
@@ -130,7 +136,39 @@ void scene_forget(kage_scene *k)
     free((void *)k->info.objects);
 }
 
-const kage_scene_info *kage_scene_get_info(const kage_scene *k) { return &k->info; }
+/* Made when it is asked for. */
+static void note_text(kage_scene *k)
+{
+    if (__atomic_load_n(&k->info.text, __ATOMIC_ACQUIRE))
+        return;
+    pthread_mutex_lock(&k->lock);
+    if (!k->info.text) {
+        k->text = yaml_edited(k->first->source, k->sets, (const char *const *)k->set);
+        __atomic_store_n(&k->info.text, k->text, __ATOMIC_RELEASE);
+    }
+    pthread_mutex_unlock(&k->lock);
+}
+
+const kage_scene_info *kage_scene_get_info(const kage_scene *k)
+{
+    note_text((kage_scene *)k);
+    return &k->info;
+}
+
+kage_status kage_scene_write(const kage_scene *k, const char *path, kage_errors **to)
+{
+    const char *text = kage_scene_get_info(k)->text;
+    errors e = {0};
+    file_writer f;
+    if (!text)
+        return error_give(KAGE_NO_MEMORY, to, "out of memory");
+    bool good = file_writer_open(&f, path, &e);
+    if (good) {
+        file_writer_write(&f, text, strlen(text), 0);
+        good = file_writer_close(&f, NULL, &e);
+    }
+    return errors_give(&e, good ? KAGE_OK : KAGE_NOT_WRITTEN, NULL, to);
+}
 
 const char *kage_version(void) { return KAGE_VERSION; }
 

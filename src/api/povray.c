@@ -12,15 +12,18 @@ kage_status kage_scene_write_povray(kage_scene *k, const char *path, const kage_
     pov_report r = {0};
     kage_status status = KAGE_BAD_INPUT;
     c_locale l = c_locale_begin();
+    watch w = {.call = o.progress, .user = o.user, .locale = &l};
+    const progress show = watch_progress(&w);
     const scene *s = scene_reading(k, (reading){displaced, k->first->shadow, k->first->bump_shadow}, &e);
     bool good = s && pov_possible(s, &e);
     if (good) {
-        const pov_options how = {o.command ? o.command : "libkage", o.no_cast != 0};
+        const pov_options how = {
+            .command = o.command ? o.command : "libkage", .no_cast = o.no_cast != 0, .progress = &show};
         status = KAGE_NOT_WRITTEN;
         good = pov_write(s, &how, path, &r, &e);
     }
     c_locale_end(&l);
     if (report)
         *report = (kage_povray_report){.coarse = good ? r.coarse : NULL, .height = r.height, .pixels = r.pixels};
-    return errors_give(&e, good ? KAGE_OK : status, NULL, to);
+    return errors_give(&e, good ? KAGE_OK : status, &w, to);
 }

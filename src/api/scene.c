@@ -1,4 +1,4 @@
-/* Scenes: reading them, and reading them again for another kind of surface. */
+/* Scenes: reading them, and reading them again with changes, or for another kind of surface. */
 #include "api/api.h"
 
 #include <stdlib.h>
@@ -17,46 +17,103 @@ static char *copy(const char *text, bool *good)
     return c;
 }
 
-/* Copy what a further reading needs. False: out of memory. */
-static bool keep(kage_scene *k, const char *folder, const kage_load_options *o)
+/* Copy what a further reading needs: of the scene that this is a change of, and of the options. False: out of memory.
+ */
+static bool keep(kage_scene *k, const kage_scene *before, const char *folder, const kage_load_options *o)
 {
+    const char *reader = o->model_reader ? o->model_reader : before ? before->model_reader : NULL;
     bool good = true;
     k->folder = copy(folder, &good);
-    k->model_reader = copy(o->model_reader, &good);
-    k->threads = o->threads;
-    k->set = calloc((size_t)o->set_count + 1, sizeof *k->set);
-    for (; k->set && k->sets < o->set_count && good; k->sets++)
-        k->set[k->sets] = copy(o->sets[k->sets], &good);
-    return good && k->set;
+    k->model_reader = copy(reader, &good);
+    k->threads = o->threads ? o->threads : before ? before->threads : 0;
+    k->set = calloc((size_t)o->set_count + (size_t)(before ? before->sets : 0) + 1, sizeof *k->set);
+    for (; k->set && before && k->sets < before->sets && good; k->sets++)
+        k->set[k->sets] = copy(before->set[k->sets], &good);
+    for (int j = 0; k->set && j < o->set_count && good; j++)
+        good = before ? sets_put(k, o->sets[j]) : (k->set[k->sets++] = copy(o->sets[j], &good), good);
+    return good && k->set && (!before || arrays_add_all(&k->arrays, &before->arrays)) && arrays_take(&k->arrays, o);
 }
 
-static kage_status load(scene_source *from, const kage_load_options *given, kage_scene **out, kage_errors **to)
+static kage_scene *new_scene(void)
+{
+    kage_scene *k = calloc(1, sizeof *k);
+    if (!k || pthread_mutex_init(&k->lock, NULL) == 0)
+        return k;
+    free(k);
+    return NULL;
+}
+
+/* What may be on shelves: of a scene's readings, which live as long as it does, and what it has to spare. Returns how
+ * many. */
+enum { SHELVES = READINGS + 1 };
+static int shelves_of(kage_scene *k, const shelf *all[SHELVES])
+{
+    int n = 0;
+    for (int i = 0; i < READINGS; i++) {
+        const scene *s = __atomic_load_n(&k->reading[i], __ATOMIC_ACQUIRE);
+        if (s)
+            all[n++] = &s->shelf;
+    }
+    all[n++] = &k->spare;
+    return n;
+}
+
+/* Keep what readings other than the first have made, as the changed scene may need it once it is read for them. */
+static bool keep_spare(kage_scene *k, const kage_scene *before, const shelf *const *all, int n)
+{
+    bool good = true;
+    for (int i = 0; i + 1 < n; i++)
+        for (int j = 0; all[i] != &before->first->shelf && j < all[i]->count; j++)
+            if (good && !shelf_has(&before->first->shelf, all[i]->item[j]) && !shelf_has(&k->spare, all[i]->item[j]))
+                good = shelf_put_shared(&k->spare, all[i]->item[j]);
+    return good;
+}
+
+static bool good_options(const kage_load_options *o, errors *e)
+{
+    if (o->threads < 0 || o->threads > KAGE_MAX_THREADS || o->set_count < 0)
+        return errors_add(e, "%d threads and %d changes, expected 0 to %d and 0 or more", o->threads, o->set_count,
+                          KAGE_MAX_THREADS);
+    return arrays_are_good(o, e);
+}
+
+/* Read from->text or the file. before: the scene that this is a change of, or NULL. False: errors in *e. */
+static bool read_first(kage_scene *k, kage_scene *before, scene_source *from, const kage_load_options *o, errors *e)
+{
+    const shelf *all[SHELVES];
+    from->shelves = before ? shelves_of(before, all) : 0;
+    if (!keep(k, before, from->folder, o) || (before && !keep_spare(k, before, all, from->shelves)))
+        return errors_add(e, "out of memory");
+    from->shelf = all;
+    from->again = before;
+    from->sets = k->sets;
+    from->set = (const char *const *)k->set;
+    from->threads = k->threads;
+    from->model_reader = k->model_reader;
+    from->arrays = &k->arrays;
+    scene *s = scene_read(from, e);
+    if (!s)
+        return false;
+    k->first = s;
+    k->reading[reading_index((reading){s->displaced, s->shadow, s->bump_shadow})] = s;
+    k->from_file = before ? before->from_file : !from->text;
+    return !before || !k->from_file || files_add_path(&s->made_from, s->path) || errors_add(e, "out of memory");
+}
+
+static kage_status load(kage_scene *before, scene_source *from, const kage_load_options *given, kage_scene **out,
+                        kage_errors **to)
 {
     const kage_load_options o = given ? *given : (kage_load_options){0};
-    *out = NULL;
-    if (o.threads < 0 || o.threads > KAGE_MAX_THREADS || o.set_count < 0)
-        return error_give(KAGE_BAD_OPTION, to, "%d threads and %d changes, expected 0 to %d and 0 or more", o.threads,
-                          o.set_count, KAGE_MAX_THREADS);
     errors e = {0};
+    *out = NULL;
+    if (!good_options(&o, &e))
+        return errors_give(&e, KAGE_BAD_OPTION, NULL, to);
     c_locale l = c_locale_begin();
     watch w = {o.progress, o.user, &l, false};
     const progress p = watch_progress(&w);
-    kage_scene *k = calloc(1, sizeof *k);
-    if (k && pthread_mutex_init(&k->lock, NULL) != 0) {
-        free(k);
-        k = NULL;
-    }
-    from->sets = o.set_count;
-    from->set = o.sets;
-    from->threads = o.threads;
-    from->model_reader = o.model_reader;
     from->progress = &p;
-    scene *s = k && keep(k, from->folder, &o) ? scene_read(from, &e) : NULL;
-    if (s) {
-        k->first = s;
-        k->reading[reading_index((reading){s->displaced, s->shadow, s->bump_shadow})] = s;
-    }
-    const bool good = s && !w.cancelled && scene_note(k);
+    kage_scene *k = new_scene();
+    const bool good = k && read_first(k, before, from, &o, &e) && !w.cancelled && scene_note(k);
     c_locale_end(&l);
     if (good)
         *out = k;
@@ -65,17 +122,24 @@ static kage_status load(scene_source *from, const kage_load_options *given, kage
     return errors_give(&e, good ? KAGE_OK : KAGE_BAD_INPUT, &w, to);
 }
 
+kage_status kage_scene_change(kage_scene *k, const kage_load_options *options, kage_scene **out, kage_errors **to)
+{
+    const scene *s = k->first;
+    scene_source from = {.path = s->path, .text = s->source, .size = strlen(s->source), .folder = k->folder};
+    return load(k, &from, options, out, to);
+}
+
 kage_status kage_scene_load(const char *path, const kage_load_options *options, kage_scene **out, kage_errors **to)
 {
     scene_source from = {.path = path};
-    return load(&from, options, out, to);
+    return load(NULL, &from, options, out, to);
 }
 
 kage_status kage_scene_parse(const char *text, size_t size, const char *name, const char *folder,
                              const kage_load_options *options, kage_scene **out, kage_errors **to)
 {
     scene_source from = {.path = name ? name : "scene", .text = text, .size = size, .folder = folder ? folder : ""};
-    return load(&from, options, out, to);
+    return load(NULL, &from, options, out, to);
 }
 
 void kage_scene_free(kage_scene *k)
@@ -88,14 +152,17 @@ void kage_scene_free(kage_scene *k)
     for (int i = 0; k->set && i < k->sets; i++)
         free(k->set[i]);
     free(k->set);
+    free(k->text);
     free(k->folder);
     free(k->model_reader);
+    arrays_free(&k->arrays);
+    shelf_free(&k->spare);
     pthread_mutex_destroy(&k->lock);
     free(k);
 }
 
 /* Read the scene's text again, with more changes. */
-static scene *read_again(const kage_scene *k, reading r, errors *e)
+static scene *read_again(kage_scene *k, reading r, errors *e)
 {
     enum { MORE = 3 };
     char shadow[METHOD_NAME_SIZE + sizeof "render.shadow="] = "render.shadow=";
@@ -111,6 +178,7 @@ static scene *read_again(const kage_scene *k, reading r, errors *e)
     for (int i = 0; i < k->sets; i++)
         set[i] = k->set[i];
     memcpy(set + k->sets, more, sizeof more);
+    const shelf *all[SHELVES];
     const scene_source from = {
         .path = k->first->path,
         .text = k->first->source,
@@ -120,19 +188,25 @@ static scene *read_again(const kage_scene *k, reading r, errors *e)
         .set = set,
         .threads = k->threads,
         .model_reader = k->model_reader,
+        .arrays = &k->arrays,
+        .shelves = shelves_of(k, all),
+        .shelf = all,
     };
     scene *s = scene_read(&from, e);
     free(set);
     return s;
 }
 
+/* Who finds it need not wait for others, who may be reading for long. */
 const scene *scene_reading(kage_scene *k, reading r, errors *e)
 {
-    scene **at = &k->reading[reading_index(r)];
+    scene **at = &k->reading[reading_index(r)], *s = __atomic_load_n(at, __ATOMIC_ACQUIRE);
+    if (s)
+        return s;
     pthread_mutex_lock(&k->lock);
-    if (!*at)
-        *at = read_again(k, r, e);
-    const scene *s = *at;
+    s = __atomic_load_n(at, __ATOMIC_ACQUIRE);
+    if (!s && (s = read_again(k, r, e)))
+        __atomic_store_n(at, s, __ATOMIC_RELEASE);
     pthread_mutex_unlock(&k->lock);
     return s;
 }

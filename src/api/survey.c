@@ -8,7 +8,7 @@
 
 #include <stdlib.h>
 
-enum { SAMPLES = 200, MOST_WARNINGS = 4 }; /* SAMPLES x SAMPLES rays over the picture; warnings of one object */
+enum { SAMPLES = 200, MOST_WARNINGS = 5 }; /* SAMPLES x SAMPLES rays over the picture; warnings of one object */
 
 /* Above this slope (95th percentile) orders 0, 1 and 2 get more than about 1 % of a cast shadow's pixels wrong
  * (docs/method.md, "How far the orders go"). */
@@ -17,9 +17,14 @@ enum { SAMPLES = 200, MOST_WARNINGS = 4 }; /* SAMPLES x SAMPLES rays over the pi
 /* Warn where more samples than this fall back, in per cent. */
 #define FALL_BACK_BOUND 1.0
 
+/* Warn of steps whose slope is more than this share of the map's own, in the median, and more than this slope, which
+ * changes a shade by some 1/255. */
+#define STEP_SHARE 0.25
+#define STEP_SLOPE 0.004
+
 /* What the rays have found on one object. */
 typedef struct seen {
-    float *slope;
+    float *slope, *cell; /* of each sample: the bump's slope, and the shorter side of a map's cell in scene units */
     int n, room;
     long back[3]; /* samples where the orders 1 and 2 fell back */
 } seen;
@@ -37,16 +42,34 @@ static float slope(const hit_group *g, int i)
     return (float)(real_sqrt(bs_dot(c, c)) / bs_dot(n, np));
 }
 
-/* False: out of memory. */
-static bool note_slope(seen *o, float x)
+/* The shorter side of the cell of the object's map that sample i is in, in scene units. 0: no map. */
+static float cell(const object *o, const hit_group *g, int i)
 {
-    if (o->n == o->room) {
-        float *more = realloc(o->slope, sizeof *more * (size_t)(o->room = o->room ? 2 * o->room : 64));
-        if (!more)
+    const map_layout *l = &o->bump_spec.layout;
+    const bs_vec3 u = lane_get(&g->q.Qu, i), w = lane_get(&g->q.Qw, i);
+    const double along = sqrt((double)bs_dot(u, u)) * l->size[0] / (o->map.width - l->corners),
+                 down = sqrt((double)bs_dot(w, w)) * l->size[1] / (o->map.height - l->corners);
+    return o->map.file ? (float)fmin(fabs(along), fabs(down)) : 0;
+}
+
+static bool make_room(float **list, int room)
+{
+    float *more = realloc(*list, sizeof *more * (size_t)room);
+    *list = more ? more : *list;
+    return more;
+}
+
+/* False: out of memory. */
+static bool note_sample(seen *s, const object *o, const hit_group *g, int i)
+{
+    if (s->n == s->room) {
+        const int room = s->room ? 2 * s->room : 64;
+        if (!make_room(&s->slope, room) || !make_room(&s->cell, room))
             return false;
-        o->slope = more;
+        s->room = room;
     }
-    o->slope[o->n++] = x;
+    s->slope[s->n] = slope(g, i);
+    s->cell[s->n++] = cell(o, g, i);
     return true;
 }
 
@@ -69,7 +92,7 @@ static bool look(const scene *s, int order, workspace *v, seen *all)
             trace_group(&k, id, v);
             for (int i = 0; i < g->n; i++) {
                 o->back[order] += g->order[i] != order;
-                if (order == 2 && !note_slope(o, slope(g, i)))
+                if (order == 2 && !note_sample(o, &s->object[id], g, i))
                     return false;
             }
         }
@@ -77,11 +100,23 @@ static bool look(const scene *s, int order, workspace *v, seen *all)
     return true;
 }
 
-static kage_bump_survey summary(seen *x)
+/* The step of a map, and its slope over two cells, as the differences are taken. */
+static void find_step(const object *o, seen *x, kage_bump_survey *b)
+{
+    if (!o->map.file || o->map.bits == 0)
+        return;
+    qsort(x->cell, (size_t)x->n, sizeof *x->cell, ascending);
+    const double side = (double)x->cell[x->n / 2];
+    b->step = fabs(o->bump_spec.layout.scale) / (double)((1 << o->map.bits) - 1);
+    b->step_slope = side > 0 ? b->step / (2 * side) : 0;
+}
+
+static kage_bump_survey summary(const object *o, seen *x)
 {
     kage_bump_survey b = {.samples = x->n};
     if (!x->n)
         return b;
+    find_step(o, x, &b);
     qsort(x->slope, (size_t)x->n, sizeof *x->slope, ascending);
     b.slope_median = (double)x->slope[x->n / 2];
     b.slope_95 = (double)x->slope[(int)(0.95 * x->n)];
@@ -107,6 +142,9 @@ static void warn_of(const kage_object_info *o, const kage_bump_survey *b, int id
         warn(w, n, KAGE_WARN_STEEP, id, b->slope_95, SLOPE_BOUND);
     if (back > FALL_BACK_BOUND)
         warn(w, n, KAGE_WARN_FALLS_BACK, id, back, FALL_BACK_BOUND);
+    const double least = fmax(STEP_SLOPE, STEP_SHARE * b->slope_median);
+    if (b->step_slope > least && o->map_smooth <= 0)
+        warn(w, n, KAGE_WARN_STEPS, id, b->step_slope, least);
 }
 
 /* The survey and what it points to, in one piece of memory: the survey, one bump survey an object, the warnings. */
@@ -121,7 +159,7 @@ static kage_survey *report(const kage_scene *k, seen *all)
     kage_warning *w = (kage_warning *)(void *)(b + objects + 1);
     *v = (kage_survey){.objects = b, .warnings = w};
     for (int i = 0; i < k->info.object_count; i++) {
-        b[i] = summary(&all[i]);
+        b[i] = summary(&k->first->object[i], &all[i]);
         warn_of(&k->info.objects[i], &b[i], i, w, &v->warning_count);
     }
     return v;
@@ -137,8 +175,10 @@ kage_status kage_scene_survey(kage_scene *k, kage_survey **out, kage_errors **to
         *to = NULL;
     if (v && all && look(s, 1, v, all) && look(s, 2, v, all))
         *out = report(k, all);
-    for (int i = 0; all && i < s->objects; i++)
+    for (int i = 0; all && i < s->objects; i++) {
         free(all[i].slope);
+        free(all[i].cell);
+    }
     free(all);
     workspace_free(v);
     return *out ? KAGE_OK : error_give(KAGE_NO_MEMORY, to, "out of memory");

@@ -7,32 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The text `Software` in a picture begins with this; the version follows. */
-#define SOFTWARE "kage"
-
-/* ---- what a picture's file says of it ---- */
-
-void picture_crop(window w, char text[PICTURE_CROP_SIZE])
-{
-    snprintf(text, PICTURE_CROP_SIZE, "%d,%d,%d,%d", w.x0, w.y0, w.x1, w.y1);
-}
-
-/* What the picture is made from, except for maps, so that it can be rendered again. No clock, path or number of
- * threads: the same picture has the same bytes. */
-void picture_texts(const kage_film *f, const char *crop, image_text to[PICTURE_TEXTS])
-{
-    const image_text text[PICTURE_TEXTS] = {
-        {PICTURE_SOFTWARE, SOFTWARE " " KAGE_VERSION " " REAL_NAME},
-        {"kage:file", f->file},
-        {"kage:scene", f->source},
-        {"kage:set", f->sets},
-        {PICTURE_CROP, crop},
-        {"kage:shadow", f->method},
-        {"kage:guard", f->guard ? "yes" : "no"},
-    };
-    memcpy(to, text, sizeof text);
-}
-
 /* ---- the options ---- */
 
 /* The word after this one in a list with commas, or NULL. */

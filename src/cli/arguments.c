@@ -149,6 +149,13 @@ static bool read_threads(arguments *a, const char *name, const char *v)
     return true;
 }
 
+static bool read_frames(arguments *a, const char *name, const char *v)
+{
+    if (!whole_numbers(v, 0, 1, &a->frames) || a->frames < 1)
+        return usage_error("%s %s: expected a number from 1 to 1000000", name, v);
+    return true;
+}
+
 static bool read_layers(arguments *a, const char *name, const char *v)
 {
     (void)name;
@@ -213,32 +220,33 @@ typedef struct option {
 } option;
 
 enum {
-    ALL = COMMAND_RENDER | COMMAND_CHECK | COMMAND_PIXEL | COMMAND_POV,
+    ALL = COMMAND_RENDER | COMMAND_CHECK | COMMAND_PIXEL | COMMAND_POV | COMMAND_VIEW,
     PICTURES = COMMAND_RENDER | COMMAND_POV,
-    MAKERS = COMMAND_RENDER | COMMAND_IMPORT
+    MAKERS = COMMAND_RENDER | COMMAND_IMPORT,
+    LOOKS = COMMAND_RENDER | COMMAND_VIEW
 };
 
 static const option options[] = {
     {"-o", PICTURES | COMMAND_IMPORT, read_output, {NULL}, 0},
-    {"--shadow", COMMAND_RENDER, read_shadow, {NULL}, 0},
-    {"--shade", COMMAND_RENDER, read_shade, {NULL}, 0},
-    {"--bump-shadow", COMMAND_RENDER, read_bump_shadow, {NULL}, 0},
+    {"--shadow", LOOKS, read_shadow, {NULL}, 0},
+    {"--shade", LOOKS, read_shade, {NULL}, 0},
+    {"--bump-shadow", LOOKS, read_bump_shadow, {NULL}, 0},
     {"--relief",
-     COMMAND_RENDER,
+     LOOKS,
      NULL,
      {"render.shadow=" KAGE_RELIEF_METHOD, "render.shade=shifted", "render.bump_shadow=" KAGE_RELIEF_BUMP_SHADOW},
      0},
-    {"--surface", PICTURES, read_surface, {NULL}, 0},
+    {"--surface", PICTURES | COMMAND_VIEW, read_surface, {NULL}, 0},
     {"--size", ALL, read_size, {NULL}, 0},
-    {"--aa", COMMAND_RENDER, read_aa, {NULL}, 0},
-    {"--aa-threshold", COMMAND_RENDER, read_threshold, {NULL}, 0},
+    {"--aa", LOOKS, read_aa, {NULL}, 0},
+    {"--aa-threshold", LOOKS, read_threshold, {NULL}, 0},
     {"--crop", COMMAND_RENDER, read_crop, {NULL}, 0},
     {"--set", ALL, read_set, {NULL}, 0},
-    {"--threads", MAKERS, read_threads, {NULL}, 0},
+    {"--threads", MAKERS | LOOKS, read_threads, {NULL}, 0},
     {"--bits", COMMAND_RENDER, read_bits, {NULL}, 0},
     {"--layers", COMMAND_RENDER, read_layers, {NULL}, 0},
-    {"--no-guard", COMMAND_RENDER, NULL, {"render.guard=false"}, 0},
-    {"--no-self-shadow", PICTURES, NULL, {"render.self_shadow=false"}, 0},
+    {"--no-guard", LOOKS, NULL, {"render.guard=false"}, 0},
+    {"--no-self-shadow", PICTURES | COMMAND_VIEW, NULL, {"render.self_shadow=false"}, 0},
     {"--no-cast", COMMAND_POV, NULL, {NULL}, offsetof(arguments, no_cast)},
     {"--overwrite", MAKERS, NULL, {NULL}, offsetof(arguments, overwrite)},
     {"--resume", COMMAND_RENDER, NULL, {NULL}, offsetof(arguments, resume)},
@@ -247,6 +255,8 @@ static const option options[] = {
     {"--camera", COMMAND_IMPORT, read_camera, {NULL}, 0},
     {"--up", COMMAND_IMPORT, read_up, {NULL}, 0},
     {"--brightness", COMMAND_IMPORT, read_brightness, {NULL}, 0},
+    {"--frames", COMMAND_VIEW, read_frames, {NULL}, 0},
+    {"--report", COMMAND_VIEW, NULL, {NULL}, offsetof(arguments, report)},
     {"--quiet", MAKERS, NULL, {NULL}, offsetof(arguments, quiet)},
 };
 

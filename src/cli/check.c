@@ -13,6 +13,16 @@ static const kage_warning *find_warning(const kage_survey *v, int object, kage_w
     return NULL;
 }
 
+static void print_steps(const kage_object_info *o, const kage_survey *v, int id)
+{
+    const kage_warning *w = find_warning(v, id, KAGE_WARN_STEPS);
+    if (w)
+        printf("    warning: the map has %d bits: where it rises slowly its steps of %.3g are seen as stairs, slopes of "
+               "%.3f\n"
+               "             beside its own of %.3f; use a map of 16 bits, or bump.smooth: 2\n",
+               o->map_bits, v->objects[id].step, w->value, v->objects[id].slope_median);
+}
+
 static void print_bump(const kage_object_info *o, const kage_survey *v, int id)
 {
     const kage_bump_survey *b = &v->objects[id];
@@ -20,6 +30,9 @@ static void print_bump(const kage_object_info *o, const kage_survey *v, int id)
     if (o->map)
         printf("    map       %s: %d x %d samples from %.7g to %.7g\n", o->map, o->map_size[0], o->map_size[1],
                o->map_range[0], o->map_range[1]);
+    if (o->map && b->step > 0)
+        printf("    step      %d bits: %.4g scene units from one value to the next, as a slope %.4f; %s\n", o->map_bits,
+               b->step, b->step_slope, o->map_smooth > 0 ? "smoothed" : "not smoothed");
     printf("    P         from %.6g to %.6g scene units%s\n", o->height[0], o->height[1], o->map ? "" : " (bounds)");
     if (find_warning(v, id, KAGE_WARN_UNBOUNDED))
         printf("    warning: P has no bounds here, so the guard has no slab and march:N falls back to order 0; "
@@ -36,6 +49,7 @@ static void print_bump(const kage_object_info *o, const kage_survey *v, int id)
         printf("    warning: slopes above %.2f are too steep for orders 0, 1 and 2: expect 1 %% and more of a\n"
                "             shadow's pixels wrong; use march:4\n",
                w->bound);
+    print_steps(o, v, id);
     if ((w = find_warning(v, id, KAGE_WARN_FALLS_BACK))) {
         const bool first = b->fell_back[1] > w->bound, second = b->fell_back[2] > w->bound;
         printf("    warning: %s back often: the view is flat against the bumps; use order 0 or march:4\n",

@@ -18,7 +18,14 @@ enum { EXIT_OUTPUT = 1, EXIT_INPUT = 2, MAX_OUTPUTS = 16, MAX_SETS = 256, MAX_BU
 #endif
 
 /* The commands that take a scene or a model, as bits. */
-enum { COMMAND_RENDER = 1, COMMAND_CHECK = 2, COMMAND_PIXEL = 4, COMMAND_POV = 8, COMMAND_IMPORT = 16 };
+enum {
+    COMMAND_RENDER = 1,
+    COMMAND_CHECK = 2,
+    COMMAND_PIXEL = 4,
+    COMMAND_POV = 8,
+    COMMAND_IMPORT = 16,
+    COMMAND_VIEW = 32
+};
 
 /* The parsed command line. Zero: not given. */
 typedef struct arguments {
@@ -37,8 +44,9 @@ typedef struct arguments {
     int bumps;
     const char *camera; /* of a model */
     double brightness;
+    int frames; /* of view, to measure */
     bool z_up;
-    bool stats, quiet, no_cast, overwrite, resume;
+    bool stats, quiet, no_cast, overwrite, resume, report;
 } arguments;
 
 /* Parse a command's arguments. False: the mistake is on stderr. Call arguments_free in either case. */
@@ -50,6 +58,8 @@ int command_check(const arguments *a);
 int command_pixel(const arguments *a);
 int command_pov(const arguments *a);
 int command_import(const arguments *a);
+int command_view(const arguments *a); /* returns only where the window's program can't be started */
+int command_view_help(void);
 
 /* ---- common.c ---- */
 

@@ -17,6 +17,34 @@ static void print_report(const arguments *a, const kage_import_report *r)
            s->light_count, s->light_count == 1 ? "" : "s");
 }
 
+/* Maps whose few bits are seen. */
+static void print_steps(const kage_scene *scene, const kage_survey *v)
+{
+    const kage_object_info *o = kage_scene_get_info(scene)->objects;
+    for (int k = 0; k < v->warning_count; k++) {
+        const kage_warning *w = &v->warnings[k];
+        if (w->code == KAGE_WARN_STEPS)
+            fprintf(
+                stderr,
+                "kage: object %s: the map %s has %d bits: its steps of %.3g scene units are seen as stairs, slopes of "
+                "%.3f beside its own of %.3f; use a map of 16 bits, or smooth=2\n",
+                o[w->object].name, o[w->object].map, o[w->object].map_bits, v->objects[w->object].step, w->value,
+                v->objects[w->object].slope_median);
+    }
+}
+
+/* Whether the bumps are any good where the camera sees them. */
+static int look_at_bumps(kage_scene *scene)
+{
+    kage_survey *v;
+    kage_errors *e;
+    if (kage_scene_survey(scene, &v, &e) != KAGE_OK)
+        return print_errors(e, EXIT_OUTPUT);
+    print_steps(scene, v);
+    kage_survey_free(v);
+    return 0;
+}
+
 int command_import(const arguments *a)
 {
     kage_import_report *r;
@@ -41,6 +69,7 @@ int command_import(const arguments *a)
     if (status != KAGE_OK)
         return print_errors(e, status == KAGE_NOT_WRITTEN ? EXIT_OUTPUT : EXIT_INPUT);
     print_report(a, r);
+    const int bumps = a->bumps ? look_at_bumps(r->scene) : 0;
     kage_import_report_free(r);
-    return 0;
+    return bumps;
 }

@@ -11,6 +11,7 @@ static const char help[] =
     "  kage check SCENE [options]       list what is in a scene, and how steep its bumps are\n"
     "  kage pixel SCENE X,Y [options]   all intermediate values of one pixel, for each method\n"
     "  kage pov SCENE -o FILE [options] write the scene for POV-Ray 3.7\n"
+    "  kage view SCENE [options]        look at a scene in a window, and change it; see kage view --help\n"
     "  kage import MODEL -o FILE [options]  write a scene for a model: glTF, OBJ, COLLADA and others\n"
     "  kage methods                     list the methods\n"
     "  kage --help, kage --version\n"
@@ -41,6 +42,8 @@ static const char help[] =
     "  --threads N          number of threads (as many as there are processors)\n"
     "  --stats              time and count each stage\n"
     "  --quiet              no progress bar, no closing line\n"
+    "\n"
+    "Options of view: those of render that change the scene, and --threads.\n"
     "\n"
     "Options of pov:\n"
     "  -o FILE              output file, a name that ends in .pov\n"
@@ -84,17 +87,17 @@ int main(int argc, char **argv)
         const char *name;
         int command;
         int (*run)(const arguments *a);
-    } commands[] = {{"render", COMMAND_RENDER, command_render},
-                    {"check", COMMAND_CHECK, command_check},
-                    {"pixel", COMMAND_PIXEL, command_pixel},
-                    {"pov", COMMAND_POV, command_pov},
-                    {"import", COMMAND_IMPORT, command_import}};
+    } commands[] = {{"render", COMMAND_RENDER, command_render}, {"check", COMMAND_CHECK, command_check},
+                    {"pixel", COMMAND_PIXEL, command_pixel},    {"pov", COMMAND_POV, command_pov},
+                    {"import", COMMAND_IMPORT, command_import}, {"view", COMMAND_VIEW, command_view}};
     if (argc < 2) {
         fputs(help, stderr);
         return EXIT_INPUT;
     }
     for (int k = 1; k < argc; k++)
         if (strcmp(argv[k], "--help") == 0 || strcmp(argv[k], "-h") == 0) {
+            if (strcmp(argv[1], "view") == 0)
+                return command_view_help();
             fputs(help, stdout);
             return finish(0);
         }
@@ -111,6 +114,7 @@ int main(int argc, char **argv)
             arguments_free(&a);
             return finish(status);
         }
-    usage_error("no command '%s', expected render, check, pixel, pov, import or methods; see kage --help", argv[1]);
+    usage_error("no command '%s', expected render, check, pixel, pov, import, view or methods; see kage --help",
+                argv[1]);
     return EXIT_INPUT;
 }

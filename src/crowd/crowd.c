@@ -130,7 +130,7 @@ affine crowd_map(const crowd *f, int32_t k)
 
 static void choose_methods(crowd *f, bool keeps_angles)
 {
-    f->base = (surface){&f->methods, crowd_free};
+    f->base = (surface){.ops = &f->methods, .free = crowd_free};
     f->methods = *f->from->ops;
     f->methods.kind = "copies";
     f->methods.hit = crowd_hit;

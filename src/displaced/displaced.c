@@ -97,7 +97,7 @@ surface *displaced_new(const surface *f, bump *P)
     displaced *d = bump_prepare(P) ? calloc(1, sizeof *d) : NULL;
     if (!d)
         return NULL;
-    d->base = (surface){&displaced_ops, displaced_free};
+    d->base = (surface){.ops = &displaced_ops, .free = displaced_free};
     d->form = form_of(f);
     d->smooth = f;
     d->P = P;

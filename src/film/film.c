@@ -21,65 +21,60 @@ static char *plane_name(const scene *s, int k)
     return name;
 }
 
-/* Aligned to cache lines, in which tiles are written. */
-static float *new_plane(size_t bytes)
-{
-    void *p;
-    return posix_memalign(&p, 64, bytes) == 0 ? p : NULL;
-}
+/* From the start of a plane to that of the next, in values: whole cache lines, in which tiles are written. */
+static size_t plane_step(size_t pixels) { return (pixels + 15) / 16 * 16; }
 
-/* The new memory, of the planes from `first` on, is touched here, so that rendering does not wait for page faults, nor
- * for its threads to start. */
-static void clear(film *f, int first, size_t pixels, int threads)
+/* New memory is touched here, so that rendering does not wait for page faults, nor for its threads to start. */
+static void clear(float *memory, size_t values, int threads)
 {
     enum { PART = 1 << 18 }; /* values; so few are not worth a thread */
-    const long parts = (long)((pixels + PART - 1) / PART), all = parts * f->planes;
+    const long parts = (long)((values + PART - 1) / PART);
     (void)threads; /* without OpenMP */
 #pragma omp parallel for num_threads(threads) schedule(static) if (parts > 1)
-    for (long k = parts * first; k < all; k++) {
-        const size_t from = (size_t)(k % parts) * PART, rest = pixels - from;
-        memset(f->plane[k / parts] + from, 0, (rest < PART ? rest : PART) * sizeof **f->plane);
+    for (long k = 0; k < parts; k++) {
+        const size_t from = (size_t)k * PART, rest = values - from;
+        memset(memory + from, 0, (rest < PART ? rest : PART) * sizeof *memory);
     }
 }
 
-/* Take planes from a film that has the room, but no more than a few times of it. Returns how many. */
-static int take_planes(film *f, film *spare, size_t pixels)
+/* Memory for so many values: that of a film that has enough, but not far more (layers may come and go), or new. False:
+ * out of memory. */
+static bool take_memory(film *f, film *spare, size_t values, int threads)
 {
-    enum { WASTE = 4 };
-    int k = 0;
-    if (!spare || spare->room < pixels || spare->room / WASTE > pixels)
-        return 0;
-    for (; k < f->planes && k < spare->planes; k++) {
-        f->plane[k] = spare->plane[k];
-        spare->plane[k] = NULL;
+    enum { WASTE = 24 };
+    void *p;
+    if (spare && spare->room >= values && spare->room / WASTE <= values) {
+        f->memory = spare->memory;
+        f->room = spare->room;
+        spare->memory = NULL;
+        return true;
     }
-    f->room = spare->room;
-    return k;
+    if (posix_memalign(&p, 64, values * sizeof *f->memory) != 0)
+        return false;
+    f->memory = p;
+    f->room = values;
+    clear(f->memory, values, threads_of(threads));
+    return true;
 }
 
 film *film_new(const scene *s, window part, bool layers, int threads, film *spare, errors *e)
 {
     film *f = calloc(1, sizeof *f);
-    size_t pixels = (size_t)(part.x1 - part.x0) * (size_t)(part.y1 - part.y0);
+    const size_t pixels = (size_t)(part.x1 - part.x0) * (size_t)(part.y1 - part.y0), step = plane_step(pixels);
     if (f) {
         f->part = part;
         f->planes = layers ? FILM_LIGHTS + s->lights : FILM_PICTURE;
         f->plane = calloc((size_t)f->planes, sizeof *f->plane);
         f->name = calloc((size_t)f->planes, sizeof *f->name);
     }
-    bool good = f && f->plane && f->name;
-    if (good)
-        f->room = pixels;
-    const int taken = good ? take_planes(f, spare, pixels) : 0;
+    bool good = f && f->plane && f->name && take_memory(f, spare, step * (size_t)f->planes, threads);
     for (int k = 0; good && k < f->planes; k++) {
-        f->plane[k] = k < taken ? f->plane[k] : new_plane(f->room * sizeof **f->plane);
+        f->plane[k] = f->memory + step * (size_t)k;
         f->name[k] = plane_name(s, k);
-        good = f->plane[k] && f->name[k];
+        good = f->name[k];
     }
-    if (good) {
-        clear(f, taken, pixels, threads_of(threads));
+    if (good)
         return f;
-    }
     film_free(f);
     errors_add(e, "out of memory for a picture of %d x %d pixels", part.x1 - part.x0, part.y1 - part.y0);
     return NULL;
@@ -104,12 +99,9 @@ void film_free(film *f)
 {
     if (!f)
         return;
-    for (int k = 0; k < f->planes; k++) {
-        if (f->plane)
-            free(f->plane[k]);
-        if (f->name)
-            free(f->name[k]);
-    }
+    for (int k = 0; f->name && k < f->planes; k++)
+        free(f->name[k]);
+    free(f->memory);
     free(f->plane);
     free(f->name);
     free(f);

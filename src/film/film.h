@@ -25,7 +25,8 @@ typedef struct window {
 typedef struct film {
     window part;   /* the part of the picture that is on the film */
     int planes;    /* FILM_PICTURE, or FILM_LIGHTS + lights */
-    size_t room;   /* pixels that each plane has memory for */
+    float *memory; /* of all planes, one after another at equal distances */
+    size_t room;   /* of the memory, in values */
     float **plane; /* each (y1 - y0) x (x1 - x0), row by row from the top */
     char **name;   /* of each plane: its channel in an OpenEXR file */
 } film;
@@ -38,7 +39,7 @@ static inline size_t film_index(const film *f, int x, int y)
 }
 
 /* A film whose memory several threads have touched (0: all processors); its values are for a render to set. spare, or
- * NULL: a film whose planes it takes where they are large enough. NULL: out of memory, with a message. */
+ * NULL: a film whose memory it takes where that is large enough. NULL: out of memory, with a message. */
 film *film_new(const scene *s, window part, bool layers, int threads, film *spare, errors *e);
 
 /* Move the film down to the rows y0 to y1 of the picture, at most as many as it was made for. */

@@ -1,12 +1,21 @@
 /* What several kinds of surfaces share: freeing, ranges of (u,w), the formula of shapes that turn about an axis. */
+#include "base/shared.h"
 #include "geometry/closed_form.h"
 #include "math/kmath.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 
+surface *surface_share(surface *f)
+{
+    shared_add(&f->others);
+    return f;
+}
+
 void surface_free(surface *f)
 {
+    if (f && !shared_drop(&f->others))
+        return;
     if (f && f->free)
         f->free(f);
     else

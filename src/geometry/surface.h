@@ -89,6 +89,7 @@ typedef struct surface_ops {
 struct surface {
     const surface_ops *ops;
     void (*free)(surface *f); /* NULL: it owns nothing but itself */
+    int others;               /* its other owners: base/shared.h */
 };
 
 /* The constructors return NULL for the arguments stated at each, or out of memory. */
@@ -125,6 +126,9 @@ surface *torus_new(vec3 centre, vec3 axis, double major, double minor);
  * outward. Where the map does not keep angles, images of round surfaces cannot be displaced. NULL where the map reduces
  * volumes to 0. */
 surface *surface_transformed(const surface *from, const affine *m);
+
+/* One owner more, who frees it, too. Returns f. */
+surface *surface_share(surface *f);
 
 /* NULL is allowed. */
 void surface_free(surface *f);

@@ -256,8 +256,10 @@ static bool flat_image(plane *to, const surface *f, int part, const affine *m, d
 static surface *plane_image(const surface *f, const affine *m, double mirror, double sum)
 {
     plane *p = malloc(sizeof *p);
-    if (p)
+    if (p) {
         *p = *(const plane *)f;
+        p->base.others = 0;
+    }
     if (p && flat_image(p, f, 0, m, mirror, sum))
         return &p->base;
     free(p);

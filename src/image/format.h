@@ -5,6 +5,7 @@
 #include <stdint.h>
 #include <stdio.h>
 
+#include "image/array.h"
 #include "image/image.h"
 
 /* Room for a reason in one sentence. */
@@ -38,9 +39,15 @@ bool image_begin(image_stream *s, int64_t width, int64_t height, char *why);
  * reason: a value is NaN or infinite. */
 bool image_pass(const image_stream *s, int x, int y, int n, const float *v, float range[2], char *why);
 
+/* Whole numbers as samples, 0..1. */
+static inline float image_of_u8(int x) { return (float)x / 255.0f; }
+static inline float image_of_u16(int x) { return (float)x / 65535.0f; }
+
 /* The readers behind image_read. */
 bool image_read_png(FILE *file, int threads, image_stream *to,
                     char *why); /* file: after the 8 bytes of the signature */
 bool image_read_exr(FILE *file, const char *channel, int threads, image_stream *to, char *why); /* at any position */
+
+bool image_read_array(const image_array *a, const char *channel, image_stream *to, char *why);
 
 #endif

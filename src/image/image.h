@@ -36,12 +36,16 @@ typedef struct image_taker {
  * most). range: the least sample and the most.
  *
  * PNG: grey, 8 or 16 bit (also 1, 2, 4 bit; grey with alpha, the alpha ignored), as sample / (2^bits - 1),
- * so 0..1, without any gamma; `channel` must be NULL. Colour and palette images are refused.
+ * so 0..1, without any gamma; `channel` must be NULL. Colour and palette images must be grey: red, green and blue the
+ * same in every pixel.
  * OpenEXR: half, float or uint, scanlines or tiles, one part. The channel named `channel`; if that is NULL, the only
  * channel, or Y. Values are not changed; NaN and infinities are refused.
  * The format is recognised by the file's first bytes, not by its name.
  * False, with one message in *e that does not name the file. */
 bool image_read(const char *path, const char *channel, int threads, const image_taker *to, float range[2], errors *e);
+
+/* The bits of a PNG's samples, or the indices of its palette: 1 to 16. 0: the file is no PNG. */
+int image_png_bits(const char *path);
 
 /* The encoding of colours; IMAGE_BY_KIND: sRGB in PNG, linear in OpenEXR. */
 typedef enum image_encoding { IMAGE_BY_KIND, IMAGE_SRGB, IMAGE_LINEAR } image_encoding;

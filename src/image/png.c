@@ -1,5 +1,6 @@
 /* Reads and writes PNG files with libpng. */
 #include <errno.h>
+#include <math.h>
 #include <png.h>
 #include <pthread.h>
 #include <setjmp.h>
@@ -21,6 +22,12 @@ typedef struct png_relay {
     int first[2], rows[2]; /* that wait in each half; 0: it is free */
 } png_relay;
 
+/* What a file in colour has that should be a grey one. */
+typedef struct png_colours {
+    int64_t pixels, unequal, units; /* unequal: red, green and blue differ; units: as 2 c - 1 they are a unit vector */
+    double sum[3];                  /* of each, 0..1 */
+} png_colours;
+
 /* libpng's error handler must not return, so it calls longjmp. What is needed after the jump is in this struct, outside
  * the frame of setjmp's function, where the jump cannot change it. */
 typedef struct png_job {
@@ -31,7 +38,10 @@ typedef struct png_job {
     png_bytep packed; /* while reading: rows as the file has them, and one row of samples */
     float *row;
     size_t row_bytes;
-    int bytes; /* of a sample */
+    int bytes;   /* of a sample */
+    int samples; /* of a row */
+    bool colour; /* the file has red, green and blue, and a grey is wanted */
+    png_colours found;
     image_stream *to;
     png_relay relay;
 } png_job;
@@ -58,14 +68,39 @@ static void read_bytes(png_structp png, png_bytep data, size_t size)
 STAGE static void png_to_float8(int n, const unsigned char *restrict from, float *restrict to)
 {
     for (int i = 0; i < n; i++)
-        to[i] = (float)from[i] / 255.0f;
+        to[i] = image_of_u8(from[i]);
 }
 
 /* Big-endian. */
 STAGE static void png_to_float16(int n, const unsigned char *restrict from, float *restrict to)
 {
     for (int i = 0; i < n; i++)
-        to[i] = (float)(from[2 * i] << 8 | from[2 * i + 1]) / 65535.0f;
+        to[i] = image_of_u16(from[2 * i] << 8 | from[2 * i + 1]);
+}
+
+/* n pixels of red, green and blue: note them, and keep one of the three, in place. */
+static void take_grey(int n, float *v, png_colours *c)
+{
+    for (int i = 0; i < n; i++) {
+        const float *p = v + 3 * i;
+        double square = 0;
+        for (int k = 0; k < 3; k++) {
+            c->sum[k] += (double)p[k];
+            square += (2 * (double)p[k] - 1) * (2 * (double)p[k] - 1);
+        }
+        c->unequal += p[0] != p[1] || p[1] != p[2];
+        c->units += square > 0.85 && square < 1.15;
+        v[i] = p[0];
+    }
+    c->pixels += n;
+}
+
+/* A normal map in tangent space: unit vectors that point up, in blue, on the whole. */
+static bool is_normal_map(const png_colours *c)
+{
+    const double n = (double)c->pixels;
+    return (double)c->units > 0.9 * n && fabs(c->sum[0] / n - 0.5) < 0.15 && fabs(c->sum[1] / n - 0.5) < 0.15 &&
+           c->sum[2] / n > 0.7;
 }
 
 /* Pass on n rows, from row y on. (The samples are finite, so none is refused.) */
@@ -73,8 +108,9 @@ static void pass_rows(png_job *job, int y, int n, const unsigned char *packed)
 {
     image_stream *to = job->to;
     for (int k = 0; k < n; k++) {
-        (job->bytes == 2 ? png_to_float16 : png_to_float8)(to->width * to->values, packed + (size_t)k * job->row_bytes,
-                                                           job->row);
+        (job->bytes == 2 ? png_to_float16 : png_to_float8)(job->samples, packed + (size_t)k * job->row_bytes, job->row);
+        if (job->colour)
+            take_grey(to->width, job->row, &job->found);
         image_pass(to, 0, y + k, to->width, job->row, to->range, job->why);
     }
 }
@@ -156,7 +192,7 @@ static bool read_rows(png_job *job, int passes, int threads)
     const int height = job->to->height;
     const bool relayed = passes == 1 && height > 2 * RELAYED && threads_of(threads) > 1;
     job->packed = malloc(job->row_bytes * (size_t)(relayed ? 2 * RELAYED : passes > 1 ? height : 1));
-    job->row = malloc((size_t)job->to->width * (size_t)job->to->values * sizeof *job->row);
+    job->row = malloc((size_t)job->samples * sizeof *job->row);
     if (!job->packed || !job->row)
         return image_refuse(job->why, "there is not enough memory for the image");
     if (relayed && relay_begin(job)) {
@@ -204,6 +240,16 @@ static bool read_header(png_job *job, FILE *file, bool texts)
     return true;
 }
 
+/* A grey of 8 or 16 bits; of a file in colour all three, so that it is seen whether they are one grey. */
+static void expand_to_grey(png_job *job, int type)
+{
+    job->colour = (type & PNG_COLOR_MASK_COLOR) != 0;
+    if (type == PNG_COLOR_TYPE_PALETTE)
+        png_set_palette_to_rgb(job->png);
+    png_set_expand_gray_1_2_4_to_8(job->png); /* x 255, 85, 17: sample / maximum stays what it was */
+    png_set_strip_alpha(job->png);
+}
+
 static bool decode(png_job *job, FILE *file, int threads)
 {
     if (setjmp(job->jump))
@@ -211,23 +257,18 @@ static bool decode(png_job *job, FILE *file, int threads)
     if (!read_header(job, file, false))
         return false;
     image_stream *to = job->to;
-    const bool color = to->values > 1;
-    int colour = png_get_color_type(job->png, job->info);
-    if (!color && colour != PNG_COLOR_TYPE_GRAY && colour != PNG_COLOR_TYPE_GRAY_ALPHA)
-        return image_refuse(job->why, "the PNG %s; a grey one is expected, of 8 or 16 bits",
-                            colour == PNG_COLOR_TYPE_PALETTE ? "has a palette" : "is in colour");
+    const int type = png_get_color_type(job->png, job->info);
     if (!image_begin(to, png_get_image_width(job->png, job->info), png_get_image_height(job->png, job->info), job->why))
         return false;
     job->bytes = png_get_bit_depth(job->png, job->info) == 16 ? 2 : 1;
-    if (color)
-        expand_to_color(job, colour);
-    else {
-        png_set_expand_gray_1_2_4_to_8(job->png); /* x 255, 85, 17: sample / maximum stays what it was */
-        png_set_strip_alpha(job->png);
-    }
+    if (to->values > 1)
+        expand_to_color(job, type);
+    else
+        expand_to_grey(job, type);
     const int passes = png_set_interlace_handling(job->png);
     png_read_update_info(job->png, job->info);
-    job->row_bytes = (size_t)to->width * (size_t)to->values * (size_t)job->bytes;
+    job->samples = to->width * (job->colour ? 3 : to->values);
+    job->row_bytes = (size_t)job->samples * (size_t)job->bytes;
     if (png_get_rowbytes(job->png, job->info) != job->row_bytes)
         return image_refuse(job->why, "libpng: unexpected size of a row");
     if (!read_rows(job, passes, threads))
@@ -241,6 +282,11 @@ bool image_read_png(FILE *file, int threads, image_stream *to, char *why)
     png_job job = {.why = why, .to = to};
     bool ok = decode(&job, file, threads);
     relay_end(&job.relay);
+    if (ok && job.found.unequal)
+        ok = is_normal_map(&job.found)
+                 ? image_refuse(why, "the PNG is a normal map, which has slopes but no heights; a grey height map is "
+                                     "expected, and docs/models.md tells how to make one")
+                 : image_refuse(why, "the PNG is in colour; a grey one is expected, of 8 or 16 bits");
     png_destroy_read_struct(&job.png, &job.info, NULL);
     free(job.packed);
     free(job.row);

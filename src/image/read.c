@@ -11,6 +11,7 @@ static bool read_any(FILE *file, const char *channel, int threads, image_stream 
 {
     static const unsigned char exr[4] = {0x76, 0x2f, 0x31, 0x01};
     static const unsigned char png[8] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
+    static const unsigned char jpeg[3] = {0xff, 0xd8, 0xff};
     unsigned char first[8] = {0};
     errno = 0;
     size_t n = fread(first, 1, sizeof first, file);
@@ -19,6 +20,9 @@ static bool read_any(FILE *file, const char *channel, int threads, image_stream 
     *is_exr = n >= sizeof exr && memcmp(first, exr, sizeof exr) == 0;
     if (*is_exr)
         return image_read_exr(file, channel, threads, to, why);
+    if (n >= sizeof jpeg && memcmp(first, jpeg, sizeof jpeg) == 0)
+        return image_refuse(why, "it is a JPEG; a PNG or an OpenEXR file is expected (kage import makes PNG files of a "
+                                 "model's JPEG files)");
     if (n < sizeof png || memcmp(first, png, sizeof png) != 0)
         return image_refuse(why,
                             n ? "its first bytes are those of neither a PNG nor an OpenEXR file" : "the file is empty");
@@ -38,11 +42,37 @@ static bool read_file(const char *path, const char *channel, int threads, image_
     return ok || errors_add(e, "%s", why);
 }
 
+int image_png_bits(const char *path)
+{
+    unsigned char head[25]; /* the signature, then the chunk IHDR: its size, its name, the image's size, the bits */
+    FILE *file = fopen(path, "rb");
+    const bool good = file && fread(head, 1, sizeof head, file) == sizeof head && memcmp(head + 1, "PNG", 3) == 0 &&
+                      memcmp(head + 12, "IHDR", 4) == 0;
+    if (file)
+        fclose(file);
+    return good && head[24] <= 16 ? head[24] : 0;
+}
+
 bool image_read(const char *path, const char *channel, int threads, const image_taker *to, float range[2], errors *e)
 {
     bool is_exr;
     image_stream s = {.to = to, .values = 1};
     const bool ok = read_file(path, channel, threads, &s, &is_exr, e);
+    range[0] = s.range[0];
+    range[1] = s.range[1];
+    return ok;
+}
+
+static bool read_memory(const image_array *a, const char *channel, image_stream *to, errors *e)
+{
+    char why[IMAGE_WHY] = "";
+    return image_read_array(a, channel, to, why) || errors_add(e, "%s", why);
+}
+
+bool image_array_read(const image_array *a, const char *channel, const image_taker *to, float range[2], errors *e)
+{
+    image_stream s = {.to = to, .values = 1};
+    const bool ok = read_memory(a, channel, &s, e);
     range[0] = s.range[0];
     range[1] = s.range[1];
     return ok;
@@ -84,16 +114,35 @@ static bool all_opaque(const image *m, errors *e)
     return true;
 }
 
+/* wrong: why samples can't be in sRGB, which are linear in any case. */
+static bool finish_color(image_encoding encoding, bool linear, const char *wrong, image *out, errors *e)
+{
+    if (!all_opaque(out, e))
+        return false;
+    if (linear && encoding == IMAGE_SRGB)
+        return errors_add(e, "%s", wrong);
+    return linear || encoding == IMAGE_LINEAR || srgb_decode((size_t)out->width * (size_t)out->height, out->v) ||
+           errors_add(e, "there is not enough memory for the image");
+}
+
 bool image_read_color(const char *path, image_encoding encoding, int threads, image *out, bool *is_exr, errors *e)
 {
     const image_taker to = {out, begin_pixels, take_pixels};
     image_stream s = {.to = &to, .values = 4};
     *out = (image){0};
-    bool ok = read_file(path, NULL, threads, &s, is_exr, e) && all_opaque(out, e);
-    if (ok && *is_exr && encoding == IMAGE_SRGB)
-        ok = errors_add(e, "an OpenEXR file is linear; srgb is for PNG");
-    if (ok && !*is_exr && encoding != IMAGE_LINEAR)
-        ok = srgb_decode((size_t)out->width * (size_t)out->height, out->v) ||
-             errors_add(e, "there is not enough memory for the image");
-    return keep_if(ok, out);
+    return keep_if(read_file(path, NULL, threads, &s, is_exr, e) &&
+                       finish_color(encoding, *is_exr, "an OpenEXR file is linear; srgb is for PNG", out, e),
+                   out);
+}
+
+bool image_array_read_color(const image_array *a, image_encoding encoding, image *out, bool *is_float, errors *e)
+{
+    const image_taker to = {out, begin_pixels, take_pixels};
+    image_stream s = {.to = &to, .values = 4};
+    *out = (image){0};
+    *is_float = a->type >= IMAGE_F32;
+    return keep_if(
+        read_memory(a, NULL, &s, e) &&
+            finish_color(encoding, *is_float, "an array of floats is linear; srgb is for whole numbers", out, e),
+        out);
 }

@@ -59,7 +59,7 @@ static void name_part(const struct aiScene *s, model_parts *p, const char *node,
     if (several && m < s->mNumMaterials)
         aiGetMaterialString(s->mMaterials[m], AI_MATKEY_NAME, &material);
     char whole[2 * MESH_PART_NAME + 2];
-    snprintf(whole, sizeof whole, "%.127s%s%.127s", *node ? node : "part", several ? "/" : "", material.data);
+    snprintf(whole, sizeof whole, "%.127s%s%.127s", *node ? node : PARTS_NAMELESS, several ? "/" : "", material.data);
     whole[MESH_PART_NAME - 1] = 0;
     strcpy(name, whole);
     clean(name);

@@ -8,6 +8,8 @@
 
 #include "mesh/mesh_data.h"
 
+#define PARTS_NAMELESS "part" /* the name of a part whose node has none */
+
 typedef struct model_part {
     char name[MESH_PART_NAME];
     uint32_t hash; /* of the name */

@@ -36,6 +36,8 @@ typedef struct importer {
     text out;
 } importer;
 
+/* ---- place.c ---- */
+
 /* From the model's coordinates, right-handed with y or z up, to the scene's. */
 void scene_turn(const importer *k, const double v[3], double to[3]);
 

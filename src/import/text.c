@@ -43,7 +43,8 @@ void text_vector(text *t, const double v[3])
     text_add(t, "]");
 }
 
-/* Words that YAML might take for something else than a string begin with no letter, or are among these. */
+/* Words that YAML might take for something else than a string begin with no letter, or are among these. A path may
+ * begin with ../ */
 static bool is_plain(const char *s)
 {
     static const char *const others[] = {"true", "false", "null", "yes", "no", "on", "off", "nan", "inf"};
@@ -51,7 +52,8 @@ static bool is_plain(const char *s)
         if (strcmp(s, others[k]) == 0)
             return false;
     const char first = (char)(*s | 0x20);
-    return first >= 'a' && first <= 'z' &&
+    const bool above = strncmp(s, "../", 3) == 0;
+    return (above || (first >= 'a' && first <= 'z')) &&
            strspn(s, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./") == strlen(s);
 }
 

@@ -6,6 +6,8 @@
  */
 #include "import/scene.h"
 
+#include <assimp/version.h>
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -52,20 +54,50 @@ static void add_image(importer *k, double aspect)
     text_add(&k->out, "image: {size: [%d, %d], background: [0.05, 0.05, 0.05]}\n", width, height);
 }
 
+static double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+/* How far a camera must be from the middle of the box to see all of it, with some air around it. */
+static double distance_to_box(const importer *k, const double middle[3], const double dir[3], double fov)
+{
+    const double across = 0.9 * tan(fov / 2 / DEGREES), down = 0.75 * across;
+    const double flat = hypot(dir[0], dir[2]), x[3] = {dir[2] / flat, 0, -dir[0] / flat};
+    const double y[3] = {-dir[1] * dir[0] / flat, flat, -dir[1] * dir[2] / flat};
+    double most = 0;
+    for (int corner = 0; corner < 8; corner++) {
+        double c[3];
+        for (int a = 0; a < 3; a++)
+            c[a] = (corner >> a & 1 ? k->hi[a] : k->lo[a]) - middle[a];
+        most = fmax(most, fmax(fabs(dot(c, x)) / across, fabs(dot(c, y)) / down) - dot(c, dir));
+    }
+    return most;
+}
+
 /* A view of the whole box, from the front, a little from the right and from above. */
 static void camera_of_box(importer *k)
 {
-    static const double fov = 40, toward[3] = {-0.42, -0.38, 0.83}, ahead[3] = {0, 0, 1};
+    static const double fov = 40, toward[3] = {-0.42, -0.42, 0.8}, ahead[3] = {0, 0, 1};
     double at[3], dir[3] = {toward[0], toward[1], toward[2]}, from[3];
-    const double size = scene_middle(k, at);
+    scene_middle(k, at);
     make_unit(dir, ahead);
-    along(at, -0.5 * size / sin(0.375 * fov / DEGREES), dir, from); /* 3/4 of fov: the picture is less high than wide */
+    along(at, -distance_to_box(k, at, dir, fov), dir, from);
     scene_note(k, 0, "the model has no camera: the scene's sees all of it");
     text_add(&k->out, "camera: {");
     add_place(k, "from", from, ", ");
     add_place(k, "at", at, ", ");
     text_add(&k->out, "fov: %g}\n", fov);
     add_image(k, 0);
+}
+
+/* The horizontal angle of view, in radians. assimp has all of it, not half of it as its documentation says. Before 5.3
+ * it multiplied glTF's vertical one by the aspect. Without an aspect it is the vertical one, and the picture is 4 : 3.
+ */
+static double angle_of(const importer *k, const struct aiCamera *c)
+{
+    const double given = (double)c->mHorizontalFOV, aspect = (double)c->mAspect;
+    if (aspect <= 0)
+        return 2 * atan(tan(given / 2) * 4 / 3);
+    const bool product = k->gltf && (aiGetVersionMajor() < 5 || (aiGetVersionMajor() == 5 && aiGetVersionMinor() < 3));
+    return product ? 2 * atan(tan(given / aspect / 2) * aspect) : given;
 }
 
 /* The distance from a camera to the point that it looks at: level with the middle of the model, in front of it. */
@@ -83,7 +115,8 @@ static void write_camera(importer *k, const struct aiCamera *c)
     static const double ahead[3] = {0, 0, 1}, above[3] = {0, 1, 0};
     const struct aiMatrix4x4 m = parts_matrix(k->s, c->mName.data);
     double from[3], dir[3], up[3], at[3];
-    scene_place(k, &m, &c->mPosition, 1, from);
+    /* glTF's stands in its node's origin; assimp has the node's place here once more */
+    scene_place(k, &m, k->gltf ? &(struct aiVector3D){0, 0, 0} : &c->mPosition, 1, from);
     scene_place(k, &m, &c->mLookAt, 0, dir);
     scene_place(k, &m, &c->mUp, 0, up);
     make_unit(dir, ahead);
@@ -95,10 +128,7 @@ static void write_camera(importer *k, const struct aiCamera *c)
     add_place(k, "  at", at, "\n");
     if (fabs(dir[1]) > 0.999 || fabs(up[0] * dir[2] - up[2] * dir[0]) > 1e-4 || up[1] < 0) /* it rolls */
         add_place(k, "  up", up, "\n");
-    double fov = (double)c->mHorizontalFOV;
-    const double aspect = (double)c->mAspect, width = 2 * (double)c->mOrthographicWidth;
-    if (aspect <= 0) /* then it is the vertical angle, and the picture is 4 : 3 */
-        fov = 2 * atan(tan(fov / 2) * 4 / 3);
+    const double fov = angle_of(k, c), aspect = (double)c->mAspect, width = 2 * (double)c->mOrthographicWidth;
     if (width > 0)
         text_add(&k->out, "  width: %.7g\n", width);
     else

@@ -59,6 +59,16 @@ static inline void mesh_set(float to[3], vec3 v)
     to[2] = (float)v.z;
 }
 
+/* A model in memory, which means what a file means: right-handed, v upward. normals, uvs: NULL: none. */
+typedef struct mesh_array {
+    int vertices, triangles;
+    const double *positions, *normals, *uvs; /* 3, 3 and 2 numbers a vertex */
+    const uint32_t *corners;                 /* 3 a triangle */
+} mesh_array;
+
+/* Its triangles. False, with the reason in one line. (array.c) */
+bool mesh_array_read(const mesh_array *a, mesh_data *out, char why[MESH_WHY]);
+
 /* Free the arrays and empty *d. */
 void mesh_data_free(mesh_data *d);
 

@@ -102,10 +102,15 @@ static void put_note(pov_text *t, const tessellation *x, int k)
                   pov_number(fmin(x->fine.tilt, 1), 2).text, pov_number(x->fine.tolerance, 2).text);
 }
 
-bool pov_mesh(pov_text *t, const scene *s, const object *o, pov_report *report)
+bool pov_mesh(pov_text *t, const scene *s, const pov_options *how, const object *o, pov_report *report)
 {
     const int parts = o->shape->ops->parts;
-    tessellation x = {.s = s, .o = o, .memory = true, .unbounded = o->shape_spec.form == &form_plane};
+    tessellation x = {.s = s,
+                      .o = o,
+                      .progress = how->progress,
+                      .share = how->share,
+                      .memory = true,
+                      .unbounded = o->shape_spec.form == &form_plane};
     x.v.f = o->shape;
     x.v.P = o->bump;
     x.points = o->map.file && !s->sends && s->aa == 1;

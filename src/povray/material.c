@@ -35,6 +35,11 @@ bool pov_possible(const scene *s, errors *e)
                 "%s: object %s: POV-Ray's images repeat and do nothing else, expected 'wrap: repeat' in material %s%s",
                 s->path, o->name, m->name,
                 m->layout.wrap == MAP_CLAMP ? ", or 'interpolation: nearest' on an image as large as the surface" : "");
+        if (m->pattern == PATTERN_IMAGE && strncmp(m->file, ARRAY_PREFIX, strlen(ARRAY_PREFIX)) == 0)
+            good = errors_add(e,
+                              "%s: object %s: the image of material %s is %s, in memory alone, expected a file, "
+                              "which POV-Ray can read",
+                              s->path, o->name, m->name, m->file);
     }
     return good;
 }

@@ -37,7 +37,7 @@ double pov_isosurface_gradient(const object *o, int part);
 void pov_isosurface(pov_text *t, const scene *s, const object *o, const char *name);
 
 /* The displaced object as one mesh; *report gets the worst coarse one. False: out of memory. */
-bool pov_mesh(pov_text *t, const scene *s, const object *o, pov_report *report);
+bool pov_mesh(pov_text *t, const scene *s, const pov_options *how, const object *o, pov_report *report);
 
 /* An object that pov_is_patch, smooth or displaced, as one mesh. False: out of memory. */
 bool pov_patch(pov_text *t, const scene *s, const object *o);

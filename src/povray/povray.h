@@ -5,8 +5,10 @@
 #include "scene/scene.h"
 
 typedef struct pov_options {
-    const char *command; /* that made the file, for its first lines */
-    bool no_cast;        /* objects without a bump cast no shadows */
+    const char *command;      /* that made the file, for its first lines */
+    bool no_cast;             /* objects without a bump cast no shadows */
+    const progress *progress; /* NULL: none */
+    double share;             /* of the work that is done when an object begins; pov_write sets it */
 } pov_options;
 
 /* The least accurate mesh of a file that was written. */

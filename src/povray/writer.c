@@ -76,7 +76,7 @@ static void put_object_end(pov_text *t, const scene *s, const pov_options *how, 
     pov_print(t, "}\n\n");
 }
 
-static bool put_displaced(pov_text *t, const scene *s, int k, pov_report *report)
+static bool put_displaced(pov_text *t, const scene *s, const pov_options *how, int k, pov_report *report)
 {
     const object *o = &s->object[k];
     pov_identifier P = pov_identify("P", o->name, k);
@@ -87,7 +87,7 @@ static bool put_displaced(pov_text *t, const scene *s, int k, pov_report *report
         pov_isosurface(t, s, o, P.text);
         return true;
     }
-    return pov_mesh(t, s, o, report);
+    return pov_mesh(t, s, how, o, report);
 }
 
 /* One object, or the declared original of copies. False: out of memory. */
@@ -106,7 +106,7 @@ static bool put_object(pov_text *t, const scene *s, const pov_options *how, int 
     else if (o->shape_spec.kind == SHAPE_MESH)
         good = pov_triangle_mesh(t, s, o);
     else if (s->displaced && o->bump)
-        good = put_displaced(t, s, k, report);
+        good = put_displaced(t, s, how, k, report);
     else
         pov_smooth(t, s, o);
     put_object_end(t, s, how, o);
@@ -115,20 +115,25 @@ static bool put_object(pov_text *t, const scene *s, const pov_options *how, int 
     return good;
 }
 
-bool pov_write(const scene *s, const pov_options *how, const char *path, pov_report *report, errors *e)
+bool pov_write(const scene *s, const pov_options *given, const char *path, pov_report *report, errors *e)
 {
+    pov_options how = *given;
     pov_text t;
-    bool good = true;
+    bool good = true, stopped = false;
     *report = (pov_report){0};
     if (!pov_begin(&t, path, e))
         return false;
-    put_head(&t, s, how);
+    put_head(&t, s, &how);
     put_camera(&t, s);
     for (int k = 0; k < s->lights; k++)
         put_light(&t, &s->light[k]);
     pov_print(&t, "\n");
     pov_materials(&t, s);
-    for (int k = 0; good && k < s->objects; k++)
-        good = put_object(&t, s, how, k, report);
-    return pov_end(&t, good ? NULL : "out of memory", e);
+    for (int k = 0; good && !stopped && k <= s->objects; k++) {
+        how.share = (double)k / (s->objects + 1);
+        stopped = !progress_show(how.progress, "writing", how.share);
+        if (!stopped && k < s->objects)
+            good = put_object(&t, s, &how, k, report);
+    }
+    return pov_end(&t, stopped ? "stopped" : good ? NULL : "out of memory", e);
 }

@@ -1,6 +1,8 @@
 /* Where height maps and images lie in (u,w), and textures that are mirrored on part of a mesh. */
 #include "read/parts.h"
 
+#include <stdlib.h>
+
 #include "texture/mirrored_uv.h"
 
 /* The map's size in (u,w): given, or the surface's extent divided by `repeat`. */
@@ -71,7 +73,16 @@ static bool has_mirrored(const object *o, double *lo, double *hi)
 bump *reader_mirror_bump(reader *r, const object *o, bump *p)
 {
     double lo, hi;
-    return p && has_mirrored(o, &lo, &hi) ? reader_made(r, bump_mirrored_uv(p, lo, hi)) : p;
+    if (!p || !has_mirrored(o, &lo, &hi))
+        return p;
+    char *key = reader_key(r, "mirrored %p %.17g %.17g", (const void *)p, lo, hi);
+    bump *made = reader_found_bump(r, key);
+    if (made)
+        bump_free(p);
+    else
+        made = reader_keep_bump(r, key, reader_made(r, bump_mirrored_uv(p, lo, hi)));
+    free(key);
+    return made;
 }
 
 color_texture *reader_mirror_color(reader *r, const object *o, color_texture *c)

@@ -17,20 +17,59 @@ static void read_checker(reader *r, node *at, material *m)
     reader_pair(r, at, "offset", -BIG, "where a field begins [in u, in w]", m->layout.offset);
 }
 
-static void read_pixels(reader *r, node *file, image_encoding encoding, material *m)
+/* What other scenes may use. */
+typedef struct made_image {
+    texels *texels;
+    bool linear; /* in any case, as an EXR is */
+} made_image;
+
+static void free_made(void *thing)
 {
-    const char *name = yaml_text(r->y, file, "the file of an image");
-    char *path = name ? reader_beside(r, name) : NULL;
+    texels_free(((made_image *)thing)->texels);
+    free(thing);
+}
+
+/* NULL with an error. */
+static made_image *make_image(reader *r, node *file, const source *from, image_encoding encoding, const map_layout *l)
+{
     image pixels = {0};
     errors e = {0};
-    if (!path)
-        return;
-    const bool was_read = image_read_color(path, encoding, r->from->threads, &pixels, &m->exr, &e);
-    if (reader_usable(r, file, name, was_read, pixels.width, pixels.height, "pixels", &e))
-        m->texels = reader_made(r, texels_new(&pixels, &m->layout));
-    m->file = reader_copy(r, name);
+    bool linear = false;
+    const bool was_read = from->array ? image_array_read_color(&from->array->image, encoding, &pixels, &linear, &e)
+                                      : image_read_color(from->path, encoding, r->from->threads, &pixels, &linear, &e);
+    texels *t = NULL;
+    if (reader_usable(r, file, from->name, was_read, pixels.width, pixels.height, "pixels", &e))
+        t = reader_made(r, texels_new(&pixels, l));
     free(pixels.v);
-    free(path);
+    made_image *made = t ? reader_made(r, malloc(sizeof *made)) : NULL;
+    if (made)
+        *made = (made_image){t, linear};
+    else
+        texels_free(t);
+    return made;
+}
+
+static void read_pixels(reader *r, node *file, image_encoding encoding, material *m)
+{
+    source from;
+    if (!reader_source(r, file, false, "the file of an image", &from))
+        return;
+    char *key = !*from.id ? NULL
+                          : reader_key(r, "image %s %d %d %d", from.id, (int)encoding, (int)m->layout.wrap,
+                                       (int)m->layout.corners);
+    made_image *made = reader_found(r, key);
+    const bool found = made;
+    if (!found)
+        made = make_image(r, file, &from, encoding, &m->layout);
+    m->file = reader_copy(r, from.name);
+    if (made) {
+        m->texels = texels_share(made->texels);
+        m->exr = made->linear;
+    }
+    if (made && !found)
+        reader_keep(r, key, made, free_made);
+    free(key);
+    source_free(&from);
 }
 
 /* Checks the layout once, on a bounded surface. lay_image() checks the size for each object. */

@@ -5,6 +5,7 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 static bool is_large(const mesh_data *d)
 {
@@ -20,8 +21,8 @@ static bool is_large(const mesh_data *d)
     return size >= SMALL;
 }
 
-/* Read all of a model, or one part. Where a part is asked for, the whole is kept for the next object's. */
-static bool read_triangles(reader *r, const char *path, const char *part, mesh_data *d, char why[MESH_WHY])
+/* All of a file, or one part. Where a part is asked for, the whole is kept for the next object's. */
+static bool read_file(reader *r, const char *path, const char *part, mesh_data *d, char why[MESH_WHY])
 {
     const scene_source *from = r->from;
     if (!part)
@@ -37,47 +38,75 @@ static bool read_triangles(reader *r, const char *path, const char *part, mesh_d
     return mesh_data_part(&r->model, part, d, why);
 }
 
-/* False: with an error. */
-static bool read_model(reader *r, node *at, mesh_normals normals, double crease, mesh_data *d)
+/* What a mesh is made from. */
+typedef struct model {
+    node *file, *part;
+    source from;
+    const char *part_name; /* NULL: all of it */
+    mesh_normals normals;
+    double crease;
+} model;
+
+/* The triangles, checked. False with an error. */
+static bool read_triangles(reader *r, const model *m, mesh_data *d)
 {
     char why[MESH_WHY];
-    node *file = yaml_get(at, "file"), *part = yaml_get(at, "part");
-    const char *name = yaml_text(r->y, file, "the file of a model");
-    const char *part_name = part ? yaml_text(r->y, part, "the name of a part of the model") : NULL;
-    char *path = name && (!part || part_name) ? reader_beside(r, name) : NULL;
-    bool good = path && read_triangles(r, path, part_name, d, why);
+    if (m->from.array && m->part)
+        return yaml_error(r->y, m->part, "an array has no parts, expected none to be named");
+    bool good = m->from.array ? mesh_array_read(&m->from.array->mesh, d, why)
+                              : read_file(r, m->from.path, m->part_name, d, why);
     if (good)
         progress_show(r->from->progress, "checking", 1);
-    good = good && mesh_clean(d, normals, crease, BIG, r->from->threads, why);
-    if (path && !good)
-        yaml_error(r->y, part ? part : file, "'%s' can't be used: %s", name, why);
-    else if (path && !is_large(d))
-        good = yaml_error(r->y, file, "'%s' can't be used: it is smaller than %g, expected some size", name, SMALL);
-    free(path);
+    good = good && mesh_clean(d, m->normals, m->crease, BIG, r->from->threads, why);
     free(d->part); /* of the file's triangles, some of which may have been left out */
     d->part = NULL;
     if (!good)
-        mesh_data_free(d);
-    return good;
+        return yaml_error(r->y, m->part ? m->part : m->file, "'%s' can't be used: %s", m->from.name, why);
+    return is_large(d) || yaml_error(r->y, m->file, "'%s' can't be used: it is smaller than %g, expected some size",
+                                     m->from.name, SMALL);
+}
+
+/* A glTF may have its numbers in other files, which may have changed. */
+static bool is_alone(const char *path)
+{
+    const char *dot = path ? strrchr(path, '.') : NULL;
+    return !dot || strcasecmp(dot, ".gltf") != 0;
+}
+
+static surface *new_mesh(reader *r, const model *m)
+{
+    mesh_data d = {0};
+    char *key = NULL;
+    if (*m->from.id && is_alone(m->from.path))
+        key = reader_key(r, "mesh %s %d %.17g %s\n%s", m->from.id, (int)m->normals, m->crease, m->from.name,
+                         m->part_name ? m->part_name : "");
+    surface *f = reader_found_surface(r, key);
+    if (!f && read_triangles(r, m, &d))
+        f = reader_keep_surface(r, key, reader_made(r, mesh_new(&d, r->from->threads, r->from->progress)));
+    mesh_data_free(&d);
+    free(key);
+    return f;
 }
 
 surface *reader_mesh(reader *r, node *at, shape_spec *spec)
 {
-    mesh_data d = {0};
-    double crease = 40;
+    model m = {.crease = 40};
     if (!yaml_map(r->y, at, "mesh", "file part normals crease"))
         return NULL;
-    node *file = yaml_need(r->y, at, "file", "mesh");
+    m.file = yaml_need(r->y, at, "file", "mesh");
+    m.part = yaml_get(at, "part");
     const int normals = reader_word(r, at, "normals", "file smooth flat", "file, smooth or flat");
-    if (!reader_number(r, at, "crease", 0, false, 180, "an angle of 0 to 180 degrees", &crease) || normals < 0 ||
-        !file || !read_model(r, at, (mesh_normals)normals, crease, &d))
-        return NULL;
-    surface *f = reader_made(r, mesh_new(&d, r->from->threads, r->from->progress));
-    if (!f)
-        return NULL;
-    *spec = (shape_spec){.kind = SHAPE_MESH,
-                         .file = reader_copy(r, yaml_text(r->y, file, "the file of a model")),
-                         .triangles = ((mesh *)f)->d.n,
-                         .found = ((mesh *)f)->d.notes};
+    bool good = m.file && reader_source(r, m.file, true, "the file of a model", &m.from);
+    good = reader_number(r, at, "crease", 0, false, 180, "an angle of 0 to 180 degrees", &m.crease) && good;
+    m.part_name = m.part ? yaml_text(r->y, m.part, "the name of a part of the model") : NULL;
+    m.normals = (mesh_normals)normals;
+    good = normals >= 0 && (!m.part || m.part_name) && good;
+    surface *f = good ? new_mesh(r, &m) : NULL;
+    if (f)
+        *spec = (shape_spec){.kind = SHAPE_MESH,
+                             .file = reader_copy(r, m.from.name),
+                             .triangles = ((mesh *)f)->d.n,
+                             .found = ((mesh *)f)->d.notes};
+    source_free(&m.from);
     return f;
 }

@@ -42,8 +42,9 @@ static bool read_range(reader *r, node *at, const char *key, double x[2])
     return good;
 }
 
-/* The patch as a surface, which owns the patch. NULL with an error: `what` if the patch has no bounds or no size. */
-static surface *search(reader *r, node *at, patch *q, const char *what)
+/* The patch as a surface, which owns the patch and is kept under the key. NULL with an error: `what` if the patch has
+ * no bounds or no size. */
+static surface *search(reader *r, node *at, patch *q, const char *what, const char *key)
 {
     if (q)
         q->threads = r->from->threads;
@@ -53,7 +54,32 @@ static surface *search(reader *r, node *at, patch *q, const char *what)
         yaml_error(r->y, at, "%s", what);
     else if (!f)
         errors_add(r->e, "out of memory");
-    return f;
+    return reader_keep_surface(r, key, f);
+}
+
+static char *key_of_functions(reader *r, node *at, const double u[2], const double w[2])
+{
+    const char *x = yaml_text(r->y, yaml_get(at, "x"), "x"), *y = yaml_text(r->y, yaml_get(at, "y"), "y"),
+               *z = yaml_text(r->y, yaml_get(at, "z"), "z");
+    return x && y && z
+               ? reader_key(r, "parametric %.17g %.17g %.17g %.17g\n%s\n%s\n%s", u[0], u[1], w[0], w[1], x, y, z)
+               : NULL;
+}
+
+/* All bits of the control points. */
+static char *key_of_points(reader *r, int patches, const vec3 *point)
+{
+    enum { DIGITS = 16, COORDINATES = 48 };
+    const size_t n = (size_t)patches * COORDINATES;
+    const double *x = &point->x;
+    char *key = reader_made(r, malloc(sizeof "patches" + n * DIGITS));
+    char *at = key ? key + sprintf(key, "patches") : NULL;
+    for (size_t k = 0; key && k < n; k++) {
+        unsigned long long bits;
+        memcpy(&bits, x + k, sizeof bits);
+        at += sprintf(at, "%016llx", bits);
+    }
+    return key;
 }
 
 surface *reader_parametric(reader *r, node *at, shape_spec *spec)
@@ -77,9 +103,17 @@ surface *reader_parametric(reader *r, node *at, shape_spec *spec)
             expr_free(e[k]);
         return NULL;
     }
-    return search(
-        r, at, patch_function_new("parametric", e, u, w),
-        "a surface without bounds, or all in one place, expected functions that are bounded over the range of u and w");
+    char *key = key_of_functions(r, at, u, w);
+    surface *f = reader_found_surface(r, key);
+    for (int k = 0; f && k < 3; k++)
+        expr_free(e[k]);
+    if (!f)
+        f = search(r, at, patch_function_new("parametric", e, u, w),
+                   "a surface without bounds, or all in one place, expected functions that are bounded over the range "
+                   "of u and w",
+                   key);
+    free(key);
+    return f;
 }
 
 /* ---- patches ---- */
@@ -150,7 +184,11 @@ surface *reader_patches(reader *r, node *at, shape_spec *spec)
     vec3 *point = file ? read_file(r, file, &n) : read_points(r, yaml_get(at, "points"), &n);
     if (!point)
         return NULL;
-    patch *q = patch_bezier_new(n, point);
+    char *key = key_of_points(r, n, point);
+    surface *f = reader_found_surface(r, key);
+    if (!f)
+        f = search(r, at, patch_bezier_new(n, point), "patches that are all in one place, expected some extent", key);
     free(point);
-    return search(r, at, q, "patches that are all in one place, expected some extent");
+    free(key);
+    return f;
 }

@@ -15,6 +15,47 @@ void reader_materials(reader *r);
 /* The objects; after the materials, which they use. */
 void reader_objects(reader *r);
 
+/* ---- sources.c: files and arrays that the scene names, and what other scenes have made from them ---- */
+
+/* One of them: what the scene says; of a file its path, of an array what it is. */
+typedef struct source {
+    const char *name; /* of the yaml */
+    char *path;       /* NULL: an array */
+    const scene_array *array;
+    char id[128]; /* another one where the file has changed; "": not known */
+} source;
+
+/* The source that a node names. what: "the file of a model". False with an error. */
+bool reader_source(reader *r, node *file, bool is_mesh, const char *what, source *to);
+void source_free(source *s);
+
+/* A key for the functions below, as by printf; free() it. NULL: out of memory, with an error. */
+char *reader_key(reader *r, const char *fmt, ...) KAGE_PRINTF(2, 3);
+
+/* What this scene or another has under a key. The scene then has it, too. NULL: there is none. */
+void *reader_found(reader *r, const char *key);
+
+/* Put a thing on the scene's shelf under a key that reader_found has not found; it is the shelf's, also on failure.
+ * NULL as the key: only free the thing. False with an error. */
+bool reader_keep(reader *r, const char *key, void *thing, void (*free_thing)(void *thing));
+
+/* The same of a surface or a bump, which belongs to the caller, too. NULL: none is found. */
+surface *reader_found_surface(reader *r, const char *key);
+bump *reader_found_bump(reader *r, const char *key);
+
+/* Keep a surface or a bump. Returns it, which belongs to the caller; NULL where it is, or with an error. NULL as the
+ * key: only return it. */
+surface *reader_keep_surface(reader *r, const char *key, surface *f);
+bump *reader_keep_bump(reader *r, const char *key, bump *p);
+
+/* ---- truth.c: surfaces that true displacement alone needs, and that take long to make ---- */
+
+/* The object's own mesh or patches mapped by m, as a mesh or patches. NULL: out of memory. */
+surface *reader_moved(reader *r, const object *o, const affine *m);
+
+/* The object's displaced surface. NULL: out of memory. */
+surface *reader_displaced(reader *r, const object *o);
+
 /* ---- layout.c: where a height map or an image lies in (u,w) ---- */
 
 /* The keys size or repeat, offset, wrap and samples, on a surface with the extent u and w. Those that are absent leave

@@ -67,13 +67,11 @@ static surface *image_of_closed(object *o, const shape_values *values, const aff
 }
 
 /* The object's own shape mapped by m; of a closed form, the one with `values`. NULL: out of memory. */
-static surface *image_of(object *o, const shape_values *values, const affine *m, bool truth, int threads)
+static surface *image_of(reader *r, object *o, const shape_values *values, const affine *m, bool truth)
 {
     if (o->shape_spec.kind == SHAPE_CLOSED)
-        return image_of_closed(o, values, m, truth, threads);
-    if (!truth)
-        return surface_transformed(o->own, m);
-    return o->shape_spec.kind == SHAPE_MESH ? mesh_moved(o->own, m, threads) : patch_surface_affine(o->own, m);
+        return image_of_closed(o, values, m, truth, r->from->threads);
+    return truth ? reader_moved(r, o, m) : surface_transformed(o->own, m);
 }
 
 static double square(const affine *m) { return vec3_dot(m->x, m->x) + vec3_dot(m->y, m->y) + vec3_dot(m->z, m->z); }
@@ -97,7 +95,7 @@ bool reader_place(reader *r, node *at, object *o)
         return yaml_error(r->y, at, "one direction is scaled more than %g times as much as another, expected less",
                           STRETCH);
     whole = affine_then(&whole, m);
-    if (!(o->shape = reader_made(r, image_of(o, &values, &whole, truth, r->from->threads))))
+    if (!(o->shape = reader_made(r, image_of(r, o, &values, &whole, truth))))
         return false;
     if (!(is_mesh ? is_mesh_sized(o->own, m, &wrong) : is_sized(o->shape, &wrong)))
         return yaml_error(r->y, at, "an edge or a radius of %.4g scene units after the transform, expected 1e-6 to 1e6",

@@ -157,7 +157,7 @@ bool reader_second(reader *r, node *key, const char *name)
     return yaml_error(r->y, key, "a second '%s', expected each name once", name);
 }
 
-node *reader_named(reader *r, const char *key, int most, size_t size, void *array, int *count)
+node *reader_named(reader *r, const char *key, int most, size_t size, void *items_at, int *count)
 {
     node *at = yaml_need(r->y, yaml_root(r->y), key, "the scene");
     if (!at || !yaml_map(r->y, at, key, NULL))
@@ -170,7 +170,7 @@ node *reader_named(reader *r, const char *key, int most, size_t size, void *arra
     void *items = reader_made(r, calloc((size_t)(n ? n : 1), size));
     if (!items)
         return NULL;
-    memcpy(array, &items, sizeof items);
+    memcpy(items_at, &items, sizeof items);
     *count = n;
     return at;
 }

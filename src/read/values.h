@@ -5,7 +5,7 @@
 #ifndef KAGE_READ_VALUES_H
 #define KAGE_READ_VALUES_H
 
-#include "image/image.h"
+#include "image/array.h"
 #include "mesh/mesh_data.h"
 #include "scene/scene.h"
 #include "yaml/yaml.h"

@@ -41,6 +41,7 @@ void scene_free(scene *s)
     free(s->material);
     free(s->object);
     files_free(&s->made_from);
+    shelf_free(&s->shelf);
     free(s->path);
     free(s->source);
     free(s);

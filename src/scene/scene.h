@@ -6,12 +6,14 @@
 #include "base/errors.h"
 #include "base/files.h"
 #include "base/progress.h"
+#include "base/shelf.h"
 #include "crowd/crowd.h"
 #include "geometry/closed_form.h"
 #include "geometry/surface.h"
 #include "mesh/mesh_data.h"
 #include "method/bump_shadow.h"
 #include "method/method.h"
+#include "scene/arrays.h"
 #include "scene/camera.h"
 #include "scene/light.h"
 #include "scene/material.h"
@@ -32,6 +34,7 @@ typedef struct map_note {
     char *file;        /* as the scene names it */
     int width, height; /* in samples */
     double low, high;  /* of the samples, before scale and zero */
+    int bits;          /* of a sample, which has 2^bits values from 0 to 1; 0: it is a float */
 } map_note;
 
 /* A shape, for exports and transforms. */
@@ -96,6 +99,7 @@ typedef struct scene {
     char *path;      /* of the file, or the name of a text in memory */
     char *source;    /* the text of the scene, before --set changes */
     files made_from; /* all files that were read */
+    shelf shelf;     /* what other scenes may use, too */
     int width, height;
     vec3 background;
     camera camera;
@@ -160,6 +164,10 @@ typedef struct scene_source {
     int threads;              /* 0: all processors */
     const char *model_reader; /* the program kage-import; NULL: mesh/reader.c looks for it */
     const progress *progress; /* while large files are read; may be NULL */
+    const arrays *arrays;     /* that the scene may name; NULL: none. They live as long as the scene */
+    int shelves;              /* that may have what the scene needs */
+    const shelf *const *shelf;
+    bool again; /* a scene that is changed: keep what further changes need */
 } scene_source;
 
 /* Read a scene. NULL: all errors are in *e, as `file:line:col: ...`, the line and a caret. */

@@ -129,6 +129,11 @@ static void add_grid(tessellation *x, int64_t i, int64_t j, int64_t size, const 
 static void add_cell(tessellation *x, int64_t i, int64_t j, int64_t size, bool joined)
 {
     lines l = {0};
+    if (x->cells++ % 1024 == 0 && !progress_show(x->progress, "writing", x->share)) {
+        x->memory = false;
+        x->full = true;
+        return;
+    }
     if (!joined && x->fine.met) {
         const corners c = block_corners(x, i, j, 1);
         lines_met(x, &c, &l);

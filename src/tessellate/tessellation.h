@@ -6,6 +6,7 @@
 #define KAGE_TESSELLATE_TESSELLATION_H
 
 #include "tessellate/vertices.h"
+#include "base/progress.h"
 #include "scene/scene.h"
 
 /* With so many triangles the file has 250 MB, and POV-Ray needs 1 GB and half a minute to read it. */
@@ -39,7 +40,10 @@ typedef struct tessellation {
     int32_t (*face)[3];
     long faces, room, before; /* before: faces of earlier parts */
     bool counting, measuring; /* only count the faces; only measure their error */
-    bool full, memory;        /* full: too many faces; memory: false if it ran out */
+    bool full, memory;        /* full: too many faces; memory: false if it ran out, or is to stop */
+    const progress *progress; /* asked now and then whether to stop; NULL: none */
+    double share;             /* of the whole work, that it is told */
+    long cells;               /* until now */
 } tessellation;
 
 /* ---- block.c: size x size cells from cell (i, j) on ---- */

@@ -53,6 +53,9 @@ struct bump {
      * up to rounding. Infinite where none are known, as for maps. */
     real Puu_max, Puw_max, Pww_max;
 
+    int others; /* its other owners: base/shared.h */
+    int ready;  /* bump_prepare: 0 not yet, 1 one thread is at it, 2 done */
+
     pyramid *pyramid; /* what `range` looks up; NULL before bump_prepare, when it gives the bounds above */
 };
 
@@ -65,13 +68,19 @@ bump *bump_map_new(int width, int height, const map_layout *layout);
 void bump_map_put(bump *p, int x, int y, int n, const float *samples);
 void bump_map_end(bump *p, int threads);
 
+/* Before bump_map_end: smooth the heights, as heights_smooth. False: out of memory. */
+bool bump_map_smooth(bump *p, double radius, double most, int threads);
+
 /* P = scale f(u,w), with exact partials. Owns f, also on failure. Pmin to Pw_max hold for (u,w) in the given range
  * (infinite ends allowed). NULL: out of memory. */
 bump *bump_function_new(expr *f, double scale, const double u[2], const double w[2]);
 
-/* Make ready for `range` and set the second partials' bounds, before threads use p. Again: no effect. False: out of
- * memory. */
+/* Make ready for `range` and set the second partials' bounds. Again: no effect. Several threads may do so, also while
+ * others use all else of p. False: out of memory. */
 bool bump_prepare(bump *p);
+
+/* One owner more, who frees it, too. Returns p. */
+bump *bump_share(bump *p);
 
 void bump_free(bump *p);
 

@@ -9,8 +9,10 @@
  */
 #include "texture/bump.h"
 
+#include <sched.h>
 #include <stdlib.h>
 
+#include "base/shared.h"
 #include "texture/heights.h"
 
 #define ROUNDING 1e-12    /* relative, more than the rounding of a coordinate in cells */
@@ -201,6 +203,11 @@ void bump_map_put(bump *p, int x, int y, int n, const float *samples)
     heights_put(&((map *)p)->heights, x, y, n, samples);
 }
 
+bool bump_map_smooth(bump *p, double radius, double most, int threads)
+{
+    return heights_smooth(&((map *)p)->heights, radius, most, threads);
+}
+
 void bump_map_end(bump *p, int threads)
 {
     heights *h = &((map *)p)->heights;
@@ -212,7 +219,18 @@ void bump_map_end(bump *p, int threads)
     p->Pw_max = bump_slope(b.dw, (double)h->grid.kw);
 }
 
-bool bump_prepare(bump *p) { return p->pyramid || p->ops->prepare(p); }
+bool bump_prepare(bump *p)
+{
+    enum { NOT_YET, BEGUN, READY };
+    for (int is; (is = __atomic_load_n(&p->ready, __ATOMIC_ACQUIRE)) != READY; sched_yield())
+        if (is == NOT_YET &&
+            __atomic_compare_exchange_n(&p->ready, &is, BEGUN, false, __ATOMIC_ACQUIRE, __ATOMIC_RELAXED)) {
+            const bool good = p->ops->prepare(p);
+            __atomic_store_n(&p->ready, good ? READY : NOT_YET, __ATOMIC_RELEASE);
+            return good;
+        }
+    return true;
+}
 
 void bump_range(const bump *p, int n, const real *u0, const real *u1, const real *w0, const real *w1, bump_ranges *out)
 {
@@ -230,8 +248,14 @@ void bump_range(const bump *p, int n, const real *u0, const real *u1, const real
     }
 }
 
+bump *bump_share(bump *p)
+{
+    shared_add(&p->others);
+    return p;
+}
+
 void bump_free(bump *p)
 {
-    if (p)
+    if (p && shared_drop(&p->others))
         p->ops->free(p);
 }

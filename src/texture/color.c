@@ -3,6 +3,8 @@
 
 #include <stdlib.h>
 
+#include "base/shared.h"
+
 /* ---- checker ---- */
 
 typedef struct checker {
@@ -44,6 +46,7 @@ color_texture *color_checker_new(const vec3 color[2], const double size[2], cons
 /* ---- image ---- */
 
 struct texels {
+    int others; /* base/shared.h */
     int width, height;
     real v[]; /* as table.h has it */
 };
@@ -57,6 +60,7 @@ texels *texels_new(const image *m, const map_layout *l)
     texels *t = malloc(sizeof *t + columns * rows * TABLE_VALUES * sizeof *t->v);
     if (!t)
         return NULL;
+    t->others = 0;
     t->width = m->width;
     t->height = m->height;
     for (size_t j = 0; j < rows; j++)
@@ -69,7 +73,17 @@ texels *texels_new(const image *m, const map_layout *l)
     return t;
 }
 
-void texels_free(texels *t) { free(t); }
+texels *texels_share(texels *t)
+{
+    shared_add(&t->others);
+    return t;
+}
+
+void texels_free(texels *t)
+{
+    if (t && shared_drop(&t->others))
+        free(t);
+}
 
 typedef struct image_texture {
     color_texture base;

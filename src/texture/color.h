@@ -28,6 +28,7 @@ typedef struct texels texels;
 /* From an image of four values a pixel, which is copied, and the layout's wrap. NULL: out of memory, fewer than 2 x 2
  * pixels, or more than 2^29. */
 texels *texels_new(const image *m, const map_layout *l);
+texels *texels_share(texels *t); /* one owner more */
 void texels_free(texels *t);
 
 /* Two alternating colours in fields of size[0] x size[1] in (u,w), with a corner at `offset`. NULL: out of memory. */

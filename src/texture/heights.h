@@ -36,6 +36,11 @@ bool heights_new(heights *h, int width, int height, const map_layout *l);
 /* Put n samples of row y in, from column x on. Several threads may do so. */
 void heights_put(heights *h, int x, int y, int n, const float *samples);
 
+/* Once all samples are in, before heights_wrap: move each toward the mean around it, by a Gaussian with a standard
+ * deviation of `radius` samples, but by no more than `most` scene units. False: out of memory, and nothing is moved.
+ * (smooth.c) */
+bool heights_smooth(heights *h, double radius, double most, int threads);
+
 /* Once all samples are in: lay out what is around them. The bounds do not depend on the threads. */
 heights_bounds heights_wrap(heights *h, int threads);
 

@@ -113,6 +113,7 @@ bump *bump_mirrored_uv(bump *p, double lo, double hi)
     f->k = (ends){(real)lo, (real)hi};
     f->base.ops = &f->methods;
     f->base.pyramid = NULL;
+    f->base.others = f->base.ready = 0;
     return &f->base;
 }
 

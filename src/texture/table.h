@@ -17,10 +17,11 @@ typedef struct map_layout {
     double size[2];   /* of one copy of the map in u and in w; not 0 */
     double offset[2]; /* (u,w) of its corner */
     map_wrap wrap;
-    bool corners; /* n samples span n - 1 cells, the first and the last on the edge, as in POV-Ray's height_field;
-                     otherwise n cells with a sample in the middle of each, as in an image map */
-    double scale; /* scene units per unit of the samples; may be negative */
-    double zero;  /* the sample whose height is 0 */
+    bool corners;  /* n samples span n - 1 cells, the first and the last on the edge, as in POV-Ray's height_field;
+                      otherwise n cells with a sample in the middle of each, as in an image map */
+    double scale;  /* scene units per unit of the samples; may be negative */
+    double zero;   /* the sample whose height is 0 */
+    double smooth; /* of the heights: the standard deviation of a Gaussian, in samples; 0: none */
 } map_layout;
 
 /* A table laid on (u,w). */

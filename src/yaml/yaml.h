@@ -28,6 +28,10 @@ yaml *yaml_open(const char *path, const char *text, size_t size, int sets, const
                 errors *e);
 void yaml_close(yaml *y);
 
+/* The text with changes in it that yaml_open has made of it without an error; comments and layout stay. free() it. NULL:
+ * out of memory. */
+char *yaml_edited(const char *text, int sets, const char *const *set);
+
 node *yaml_root(const yaml *y);
 const char *yaml_source(const yaml *y); /* the file's text, owned by y */
 

@@ -382,8 +382,12 @@ REPLACED = [
     ("map-empty", "file: map.png", "file: empty.png", "17:24: 'empty.png' can't be used: the file is empty"),
     ("map-color", "file: map.png", "file: color.png",
      "17:24: 'color.png' can't be used: the PNG is in colour; a grey one is expected, of 8 or 16 bits"),
-    ("map-palette", "file: map.png", "file: palette.png",
-     "17:24: 'palette.png' can't be used: the PNG has a palette; a grey one is expected, of 8 or 16 bits"),
+    ("map-normals", "file: map.png", "file: normals.png",
+     "17:24: 'normals.png' can't be used: the PNG is a normal map, which has slopes but no heights; a grey height map "
+     "is expected, and docs/models.md tells how to make one"),
+    ("map-jpeg", "file: map.png", "file: map.jpg",
+     "17:24: 'map.jpg' can't be used: it is a JPEG; a PNG or an OpenEXR file is expected (kage import makes PNG files "
+     "of a model's JPEG files)"),
     ("map-cut", "file: map.png", "file: cut.png",
      "17:24: 'cut.png' can't be used: libpng: the file ends too early"),
     ("map-one", "file: map.png", "file: one.png", "17:24: 'one.png' has 1 x 1 samples, expected at least 2 x 2"),
@@ -495,7 +499,9 @@ def images(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("images")
     grey = (np.arange(48).reshape(6, 8) * 5).astype(np.uint8)
     Image.fromarray(grey).save(folder / "map.png")
-    Image.fromarray(np.stack([grey] * 3, -1)).save(folder / "color.png")
+    Image.fromarray(np.stack([grey, grey, 255 - grey], -1)).save(folder / "color.png")
+    Image.fromarray(np.stack([grey // 2 + 64, grey // 4 + 96, 0 * grey + 245], -1)).save(folder / "normals.png")
+    Image.fromarray(grey).save(folder / "map.jpg")
     Image.fromarray(grey).convert("P").save(folder / "palette.png")
     Image.fromarray(grey[:1, :1]).save(folder / "one.png")
     colors = np.stack([grey] * 4, -1)

@@ -60,9 +60,10 @@ def test_the_shadow_is_kages(made: Any, method: str) -> None:
 
 
 def test_the_program_writes_the_three(example: Any, tmp_path: Path) -> None:
-    command = [sys.executable, example.__file__, *"--size 60 45 --mesh 128 --method march:4 -o out.png".split()]
+    options = ["--size", "60", "45", "--mesh", "128", "--method", "march:4", "-o", "out.png"]
     path = {"PYTHONPATH": str(PROGRAM.parent / "python"), "PATH": "/usr/bin:/bin"}
-    done = subprocess.run(command, cwd=tmp_path, env=path, capture_output=True, text=True, timeout=120)
+    done = subprocess.run([sys.executable, example.__file__, *options], cwd=tmp_path, env=path,
+                          capture_output=True, text=True, timeout=120)
     assert done.returncode == 0, done.stderr
     assert [line.split(":")[0] for line in done.stdout.splitlines()] == ["none", "march", "displaced"]
     assert Image.open(tmp_path / "out.png").width > 3 * 60

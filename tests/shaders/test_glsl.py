@@ -12,6 +12,7 @@ import re
 import shutil
 import subprocess
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -22,7 +23,7 @@ from tests.support.shaders import functions
 
 HEADER = glsl.SOURCE.read_text(encoding="utf-8")
 LIBRARY = glsl.TARGET.read_text(encoding="utf-8")
-EXAMPLES = sorted((TOP / "examples/shader").glob("*.frag"))
+EXAMPLES = sorted(path.name for kind in ("frag", "comp") for path in (TOP / "examples/shader").glob(f"*.{kind}"))
 
 #: CI must have these compilers: there their absence is a failure.
 pytestmark = pytest.mark.skipif(
@@ -84,12 +85,13 @@ def test_what_cannot_be_said(body: str, message: str) -> None:
 # Compilers ------------------------------------------------------------------------------------------------------
 
 
-def run(*command: object) -> str:
-    done = subprocess.run([str(word) for word in command], capture_output=True, text=True, timeout=300)
+def run(*command: object, folder: Path = TOP) -> str:
+    done = subprocess.run([str(word) for word in command], cwd=folder, capture_output=True, text=True, timeout=300)
     assert done.returncode == 0, f"{' '.join(map(str, command))}\n{done.stdout}{done.stderr}"
     return done.stdout
 
 
+@cache
 def every_function() -> str:
     """A main that calls each function with numbers that are not known before, and adds up all it returns."""
     known = glsl.Writer(HEADER).known
@@ -204,6 +206,39 @@ float P, Pu, Pw, Pmin, Pmax, t0, t_hit, u, w, u0, w0, curvature;
 const int N = 8;
 float height(float u, float w) { return 0.1 * u * w; }
 """
+
+
+def by_its_head(name: str, folder: Path) -> Path:
+    """Does what the head of an example says, in a copy; where its files are then."""
+    shutil.copytree(TOP / "examples/shader", folder / "examples/shader")
+    shutil.copytree(TOP / "include", folder / "include")
+    made = folder / "examples/shader"
+    commands = re.findall(r"^ \* {5}((?:glslangV|spirv).*)$", (made / name).read_text(encoding="utf-8"), re.MULTILINE)
+    assert commands
+    for command in commands:
+        run(*command.split(), folder=made)
+    return made
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_example(name: str, tmp_path: Path) -> None:
+    made = by_its_head(name, tmp_path)
+    for path in made.glob("*.spv"):
+        run("spirv-val", "--target-env", "vulkan1.2", path)
+    if name == "raytraced.frag":
+        assert "intersection_query" in run("spirv-cross", made / "frag.spv", "--msl", "--msl-version", "30000")
+        assert "RayQuery<" in run("spirv-cross", made / "frag.spv", "--hlsl", "--shader-model", "65")
+
+
+def test_the_page_shows_what_is_made(tmp_path: Path) -> None:
+    """The HLSL and the Metal of docs/shaders.md are what spirv-cross has made of shift.comp; GLSL is the file's."""
+    made = by_its_head("shift.comp", tmp_path)
+    page = (TOP / "docs/shaders.md").read_text(encoding="utf-8")
+    start = (made / "start.glsl").read_text(encoding="utf-8")
+    for language, text in (("hlsl", (made / "shift.hlsl").read_text()), ("metal", (made / "shift.metal").read_text()),
+                           ("glsl", LIBRARY + start)):
+        shown = re.findall(rf"^```{language}\n(.*?)^```", page, re.MULTILINE | re.DOTALL)
+        assert shown and all(block in text for block in shown), f"{language}: {shown}"
 
 
 def test_examples_in_comments(tmp_path: Path) -> None:

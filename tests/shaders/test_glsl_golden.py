@@ -89,10 +89,12 @@ SHARES = Job("shares", "bs_real above, u, w", "bs_real share", """
 
 #: The height is the Taylor polynomial of the golden vectors.
 MARCH = Job("march", f"{SURFACE} bs_real P, Pu, Pw, Puu, Puw, Pww, Pmin, Pmax", """
-    bs_real v.sn, m.tau, iter, slab.front, slab.back; bs_bool m.found, finite
+    bs_real v.sn, m.tau, iter, slab.front, slab.back, turn.A, turn.B; bs_bool m.found, finite; bs_vec3 o.Qu, o.Qw
 """, f"""{RAY}
     bs_slab slab = bs_slab_of(v, Pmin, Pmax);
     bs_bool finite = bs_slab_ends(slab);
+    bs_offset o = bs_offset_of(n, Qu, Qw, Quu, Quw, Qww, P);
+    bs_turn turn = bs_turn_of(v, n, Qu, Qw, Quu, Quw, Qww);
     bs_march m = bs_march_start(slab);
     for (int i = 0; i <= 16; i++) {{
         bs_real tau = bs_march_tau(slab, i, 16), x = v.a * tau, y = v.b * tau;
@@ -222,6 +224,25 @@ def with_slab(cases: list[dict]) -> Columns:
     return q | {"Pmin": low, "Pmax": high}
 
 
+def turned(q: Columns) -> Columns:
+    """The same place of the same rough surface, seen from behind: u and w exchanged, so that n and P turn."""
+    other = {"Qu": "Qw", "Qw": "Qu", "Quu": "Qww", "Qww": "Quu", "Pu": "Pw", "Pw": "Pu", "Puu": "Pww", "Pww": "Puu",
+             "Pmin": "Pmax", "Pmax": "Pmin"}
+    return {name: q[other.get(name, name)] * (-1 if name.startswith("P") else 1) for name in q}
+
+
+def orders(shader: Gpu, q: Columns, behind: bool) -> Columns:
+    """As seen from the front."""
+    if not behind:
+        return shader.run(ORDERS, q)
+    got = shader.run(ORDERS, turned(q))
+    turned_back = {name: -got[name] for name in ("n", "np", "v.sn", "curvature")}
+    return got | turned_back | {"v.a": got["v.b"], "v.b": got["v.a"]}
+
+
+BOTH_SIDES = pytest.mark.parametrize("behind", [False, True], ids=["front", "behind"])
+
+
 def conditions(q: Columns, sn: np.ndarray, a: np.ndarray, b: np.ndarray, curvature: np.ndarray) -> list[np.ndarray]:
     """By how much the bound of tau grows for each order, where B or B^2 - 4 A P cancels."""
     slope = q["Pu"] * a + q["Pw"] * b - sn
@@ -234,10 +255,11 @@ def conditions(q: Columns, sn: np.ndarray, a: np.ndarray, b: np.ndarray, curvatu
     return found
 
 
-def test_orders(shader: Gpu, errors: Errors) -> None:
+@BOTH_SIDES
+def test_orders(behind: bool, shader: Gpu, errors: Errors) -> None:
     cases = golden("method")["cases"]
     q = with_slab(cases)
-    got = shader.run(ORDERS, q)
+    got = orders(shader, q, behind)
     assert len(cases) == 240 and got["regular"].all()
     a, b, sn = column(cases, "dudt"), column(cases, "dwdt"), rise(cases)
     errors.near_vector("n", got["n"], column(cases, "n"))
@@ -281,10 +303,11 @@ def guarded(cases: list[dict], q: Columns, asked: int, conditions: list[np.ndarr
     return Guarded(tau, order, condition, sure)
 
 
-def test_guard(shader: Gpu, errors: Errors) -> None:
+@BOTH_SIDES
+def test_guard(behind: bool, shader: Gpu, errors: Errors) -> None:
     cases = golden("method")["cases"]
     q = with_slab(cases)
-    got = shader.run(ORDERS, q)
+    got = orders(shader, q, behind)
     known = conditions(q, rise(cases), column(cases, "dudt"), column(cases, "dwdt"), got["curvature"])
     left = set()
     for asked in (1, 2, 3):
@@ -298,26 +321,45 @@ def test_guard(shader: Gpu, errors: Errors) -> None:
 
 
 def test_poles(shader: Gpu) -> None:
-    thin = [[0, 1e-8, 0], [0, 0, 0], [1, 0, 0], [0, 1e-5, 0]]
-    got = shader.run(POLES, {"Qu": [[1, 0, 0]] * 4, "Qw": thin})
-    assert got["regular"].tolist() == [0, 0, 0, 1]
+    """At any scale, and whichever of Qu and Qw is short."""
+    short = np.array([1e-8, 0, 1e-5, 1e-8, 0, 1e-5])
+    scale = np.array([1, 1, 1, 100, 0.01, 100])
+    long = np.outer(scale, [1, 0, 0])
+    for turned in (False, True):
+        across = np.outer(scale * short, [0, 1, 0])
+        got = shader.run(POLES, {"Qu": across if turned else long, "Qw": long if turned else across})
+        assert got["regular"].tolist() == [0, 0, 1] * 2
+    nearly = shader.run(POLES, {"Qu": [[1, 0, 0]] * 3, "Qw": [[1, 0, 0], [1, 1e-8, 0], [1, 1e-5, 0]]})
+    assert nearly["regular"].tolist() == [0, 0, 1]
 
 
 # March and iter -------------------------------------------------------------------------------------------------
 
 
-def test_march(shader: Gpu, processor: Processor, errors: Errors) -> None:
-    """As the header in double: from a slab that holds P there and at both ends of it."""
+def turn_size(q: Columns) -> np.ndarray:
+    """Of a quotient of second partials and first ones, times two steps."""
+    second = size(q["Quu"]) + size(q["Quw"]) + size(q["Qww"])
+    return size(q["s"])**2 * (second + 1) / np.minimum(size(q["Qu"]), size(q["Qw"]))**3
+
+
+@BOTH_SIDES
+def test_march(behind: bool, shader: Gpu, processor: Processor, errors: Errors) -> None:
+    """As the header in double; and so what bends surfaces, here of a general kind."""
     q = with_slab(golden("method")["cases"])
     q |= {"Pmin": -2 * abs(q["P"]), "Pmax": 2 * abs(q["P"])}
+    q = turned(q) if behind else q
     got, want = shader.run(MARCH, q), processor.run(MARCH, q)
     assert got["finite"].all() and want["finite"].all()
-    found = want["m.found"] == 1
+    found, thick = want["m.found"] == 1, want["slab.back"] - want["slab.front"]
     assert (got["m.found"] == want["m.found"]).all() and found.sum() > 200
-    errors.near("march:16", got["m.tau"][found], want["m.tau"][found], (want["slab.back"] - want["slab.front"])[found])
+    errors.near("march:16", got["m.tau"][found], want["m.tau"][found], thick[found])
     tame = abs(want["iter"]) < 2 * abs(want["slab.back"])  # where the repeated look-up stays in the slab
     assert tame.sum() > 0.9 * len(tame)
-    errors.near("iter:3", got["iter"][tame], want["iter"][tame], (want["slab.back"] - want["slab.front"])[tame])
+    errors.near("iter:3", got["iter"][tame], want["iter"][tame], thick[tame])
+    errors.near_vector("offset", got["o.Qu"], want["o.Qu"])
+    errors.near_vector("offset", got["o.Qw"], want["o.Qw"])
+    for axis in "AB":
+        errors.near("turn", got[f"turn.{axis}"], want[f"turn.{axis}"], turn_size(q))
 
 
 @pytest.mark.parametrize("large", [1e38, math.inf], ids=["1e38", "infinite"])
@@ -381,11 +423,8 @@ def test_ways(shader: Gpu, processor: Processor, errors: Errors) -> None:
     bend, sn = column(cases, "curvature"), column(cases, "sn")
     rest = 2 * abs(bend) * (q["top"] + abs(q["P"]))  # the root of sn^2 - 2 curvature rise: it may cancel
     errors.near("way's end", got["y.end"], column(cases, "end"), 1 + (sn**2 + rest) / abs(sn**2 - rest))
-    length = size(q["s"])
-    for axis in "AB":  # it is a quotient of second partials and first ones, times two steps
-        terms = length**2 * (size(q["Quu"]) + size(q["Quw"]) + size(q["Qww"]) + 1) / np.minimum(
-            size(q["Qu"]), size(q["Qw"]))**3
-        errors.near("way's turn", got[f"turn.{axis}"], double[f"turn.{axis}"], terms)
+    for axis in "AB":
+        errors.near("way's turn", got[f"turn.{axis}"], double[f"turn.{axis}"], turn_size(q))
 
 
 def test_own_shadows(shader: Gpu, processor: Processor) -> None:

@@ -1,6 +1,7 @@
 """A page in headless Chromium: what is wrong with it, and its slider moved by keys, pointer and finger.
 
-`check_page(path)` is for any page of bench/report.py, made-up or real. Without Chromium or selenium a test is skipped.
+`check_page(path)` is for any page of bench/report.py, made-up or real. Without Chromium or selenium a test is skipped,
+but not in CI.
 """
 
 from __future__ import annotations
@@ -35,7 +36,8 @@ def browser(script: bool = True, webgl: bool = False) -> Iterator[Chrome]:
 
     for program in (CHROMIUM, CHROMEDRIVER):
         if not os.access(program, os.X_OK):
-            pytest.skip(f"{program} is missing (Debian: chromium, chromium-driver)")
+            missing = pytest.fail if os.environ.get("CI") else pytest.skip  # CI must have it
+            missing(f"{program} is missing (Debian: chromium, chromium-driver)")
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
         options = webdriver.ChromeOptions()
         options.binary_location = str(CHROMIUM)

@@ -15,13 +15,15 @@ from pathlib import Path
 
 from scripts import rooms
 
-PROGRAMS = ("cli", "import")  # rooms that the library has not: only these print, exit and install signal handlers
+#: Rooms that the library has not: only these print, exit and install signal handlers.
+PROGRAMS = ("cli", "look", "view", "import")
 
 #: Headers of other projects, and the only places that include each: beginnings of a path below src/.
 OUTSIDE: dict[str, str | tuple[str, ...]] = {
-    "png.h": "image/png.c", "openexr.h": "image/exr_", "OpenEXRConfig.h": "image/exr_zip.c",
-    "libdeflate.h": "image/exr_zip.c", "libfyaml.h": "yaml/", "embree": "bvh/embree.c",
-    "assimp/": "import/", "omp.h": "base/threads.h", "pthread.h": ("api/api.h", "bvh/embree.c", "image/"),
+    "png.h": ("image/png.c", "import/picture.c"), "jpeglib.h": "import/picture.c", "openexr.h": "image/exr_",
+    "OpenEXRConfig.h": "image/exr_zip.c", "libdeflate.h": "image/exr_zip.c", "libfyaml.h": "yaml/",
+    "embree": "bvh/embree.c", "assimp/": "import/", "SDL": "view/", "fontconfig/": "view/font.c",
+    "omp.h": "base/threads.h", "pthread.h": ("api/api.h", "bvh/embree.c", "image/"),
 }
 
 #: What a library leaves to its caller: the streams, the process, its signals and settings.
@@ -78,7 +80,8 @@ def load(top: Path, build: Path) -> House:
     )
     names = [name for name in listed.stdout.splitlines() if (top / name).is_file() and is_text(name)]
     texts = {name: (top / name).read_text() for name in names}
-    objects = {name[4:-2]: symbols(build / (name[4:-2] + ".o")) for name in names if re.fullmatch(r"src/.*\.c", name)}
+    made = {name[4:-2]: build / (name[4:-2] + ".o") for name in names if re.fullmatch(r"src/.*\.c", name)}
+    objects = {name: symbols(path) for name, path in made.items() if path.exists() or not name.startswith("view/")}
     shared = build / "libkage.so"
     return House(texts, objects, [s.name for s in symbols(shared, "-D", "--defined-only")] if shared.exists() else [])
 
@@ -194,7 +197,8 @@ def exported_names_begin_with_kage(house: House) -> Iterator[str]:
 def the_program_uses_the_public_header(house: House) -> Iterator[str]:
     for path, text in house.sources.items():
         for other in rooms.includes(text):
-            if rooms.room_of(path) == "cli" and rooms.room_of(other) not in ("cli", "kage.h"):
+            room = rooms.room_of(path)
+            if room in PROGRAMS[:3] and rooms.room_of(other) not in (room, "kage.h", "look" if room == "view" else ""):
                 yield f"src/{path} includes {other}; it knows the tracer by kage.h alone"
 
 

@@ -7,7 +7,7 @@ const NAMES = ["PLANE", "RECTANGLE", "SPHERE", "BOX", ...Object.values(DEFINES)]
 const VERTEX = `#version 300 es
 void main() { gl_Position = vec4(ivec2(gl_VertexID & 1, gl_VertexID >> 1) * 4 - 1, 0, 1); }`;
 
-let gl = null, programs = new Map(), textures = {}, samplesOf = {};
+let gl = null, parallel = null, programs = new Map(), textures = {}, samplesOf = {};
 
 function definesOf(s, method) {
   const scene = scenes[s.scene];
@@ -37,22 +37,34 @@ function programOf(defines) {
   const shaders = [compile(gl.VERTEX_SHADER, VERTEX), compile(gl.FRAGMENT_SHADER, shaderText(defines))];
   for (const shader of shaders) gl.attachShader(program, shader);
   gl.linkProgram(program);
-  if (!gl.getProgramParameter(program, gl.LINK_STATUS) && !gl.isContextLost())
-    throw new Error("the shaders do not compile: " + shaders.map((x) => gl.getShaderInfoLog(x)).join("") +
-      gl.getProgramInfoLog(program));
-  for (const shader of shaders) gl.deleteShader(shader);
-  const uniforms = [];
-  for (let i = 0; i < gl.getProgramParameter(program, gl.ACTIVE_UNIFORMS); i++) {
-    const { name, type } = gl.getActiveUniform(program, i);
-    uniforms.push({ name, type, at: gl.getUniformLocation(program, name) });
-  }
   if (programs.size >= 40) { /* sliders of steps make many */
     const [oldest, old] = programs.entries().next().value;
     gl.deleteProgram(old.program);
     programs.delete(oldest);
   }
-  programs.set(key, { program, uniforms });
+  programs.set(key, { program, shaders, uniforms: null });
   return programs.get(key);
+}
+
+/* Whether a program can be used without waiting for its compiler. */
+function isCompiled({ program, uniforms }) {
+  return uniforms !== null || !parallel || gl.getProgramParameter(program, parallel.COMPLETION_STATUS_KHR) === true;
+}
+
+/* Once it is compiled. */
+function uniformsIn(made) {
+  const { program, shaders } = made;
+  if (made.uniforms) return made.uniforms;
+  if (!gl.getProgramParameter(program, gl.LINK_STATUS) && !gl.isContextLost())
+    throw new Error("the shaders do not compile: " + shaders.map((x) => gl.getShaderInfoLog(x)).join("") +
+      gl.getProgramInfoLog(program));
+  for (const shader of shaders) gl.deleteShader(shader);
+  made.uniforms = [];
+  for (let i = 0; i < gl.getProgramParameter(program, gl.ACTIVE_UNIFORMS); i++) {
+    const { name, type } = gl.getActiveUniform(program, i);
+    made.uniforms.push({ name, type, at: gl.getUniformLocation(program, name) });
+  }
+  return made.uniforms;
 }
 
 /* The values of all uniforms, by name. */
@@ -94,26 +106,36 @@ function textureOf(name) {
 
 /* Draw columns x0 to x1 of the picture by one method, with side x side samples a pixel. */
 function drawPart(s, method, width, height, x0, x1, side) {
-  if (x1 <= x0) return;
-  const { program, uniforms } = programOf(definesOf(s, method)), values = uniformsOf(s, width, height, side);
-  gl.useProgram(program);
+  const made = programOf(definesOf(s, method)), uniforms = uniformsIn(made);
+  const values = uniformsOf(s, width, height, side);
+  gl.useProgram(made.program);
   gl.bindTexture(gl.TEXTURE_2D, textureOf(scenes[s.scene].ground.bump.map));
   for (const uniform of uniforms) setUniform(uniform, values[uniform.name]);
   gl.scissor(x0, 0, x1 - x0, height);
   gl.drawArrays(gl.TRIANGLES, 0, 3);
 }
 
-function drawPicture(s, width, height, side) {
+/* What is drawn where: [method, first column, column behind the last]. */
+function partsOf(s, width) {
   const x = Math.round(s.line * width);
+  return [[s.left, 0, x], [s.right, x, width]].filter(([, x0, x1]) => x1 > x0);
+}
+
+/* Begin to compile what a picture needs. Whether all is ready. */
+function isReady(s, width) {
+  return partsOf(s, width).map(([method]) => programOf(definesOf(s, method))).every(isCompiled);
+}
+
+function drawPicture(s, width, height, side) {
   gl.viewport(0, 0, width, height);
   gl.enable(gl.SCISSOR_TEST);
-  drawPart(s, s.left, width, height, 0, x, side);
-  drawPart(s, s.right, width, height, x, width, side);
+  for (const [method, x0, x1] of partsOf(s, width)) drawPart(s, method, width, height, x0, x1, side);
 }
 
 function startGl() {
   gl = canvas.getContext("webgl2", { alpha: false, depth: false, stencil: false, antialias: false,
     powerPreference: "high-performance" });
+  parallel = gl?.getExtension("KHR_parallel_shader_compile");
   programs = new Map();
   textures = {};
   return gl !== null;

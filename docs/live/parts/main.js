@@ -1,7 +1,7 @@
 
 /* ---- frames: only where something has changed ---- */
 
-const MOST_PIXELS = 2.4e6, SLOW = 28, QUICK = 12, STILL = 220; /* milliseconds */
+const MOST_PIXELS = 2.4e6, SLOW = 28, QUICK = 12, REFINED = 60, STILL = 220; /* milliseconds */
 const plain = (x) => x.toFixed(x < 10 ? 1 : 0);
 let asked = false, busy = false, dirty = false, coarse = 1, refineTimer = 0, count = 0;
 
@@ -38,6 +38,11 @@ function tryFrame(share, side) {
 
 function drawFrame(share, side) {
   const [width, height] = fullSize().map((n) => Math.max(Math.round(n * share), 8)), start = performance.now();
+  busy = !isReady(state, width);
+  if (busy) { /* the old picture stays meanwhile */
+    setTimeout(() => { busy = false; request(); }, 15);
+    return;
+  }
   if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, { width, height });
   busy = true;
   drawPicture(state, width, height, side);
@@ -55,6 +60,7 @@ function drawFrame(share, side) {
 /* The picture is coarser while it moves if it is slow. Once it stands it is drawn whole, then with 2 x 2 samples. */
 function frameDone(ms, share, side, size) {
   busy = false;
+  introduce(ms);
   const whole = ms / (share * share * side * side);
   count++;
   still.hidden = true;
@@ -67,7 +73,7 @@ function frameDone(ms, share, side, size) {
   const left = Math.max(STILL - (performance.now() - moving), 0) + 30;
   if (swaying) return;
   if (share < 1) refineTimer = setTimeout(request, left);
-  else if (side === 1 && whole < 400) refineTimer = setTimeout(() => !asked && !busy && gl && tryFrame(1, 2), left);
+  else if (side === 1 && whole < REFINED) refineTimer = setTimeout(() => !asked && !busy && gl && tryFrame(1, 2), left);
 }
 
 /* ---- what moves by itself: the line, once at the start, and the light, if it is asked to ---- */
@@ -111,6 +117,12 @@ function sweepLine() {
   const { line } = START;
   const at = (t) => line + 0.4 * Math.cos(t / 3 * 2.5 * Math.PI) * (1 - t / 3);
   startSway((t) => (t < 3 ? { line: at(t) } : null), { line }, false);
+}
+
+/* The line moves after the first picture, and not on where that is slow. */
+function introduce(ms) {
+  if (count === 0 && !location.hash && !reducedMotion.matches) sweepLine();
+  else if (count > 3 && ms > SLOW * 4 && swaying && $("play").getAttribute("aria-pressed") === "false") stopSway();
 }
 
 /* ---- start, and where WebGL is missing or lost ---- */
@@ -159,7 +171,6 @@ async function start() {
   showLive(true);
   tryFrame(1, 1);
   new ResizeObserver(request).observe(canvas);
-  if (!location.hash && !reducedMotion.matches) sweepLine();
 }
 
 /* For tests, and for the console: the state, and the pixels of one method, from the top left. */

@@ -151,7 +151,7 @@ static void memory_is_used_again(void **state)
         assert_true(same_films(f, fresh));
         kage_film_free(fresh);
     }
-    assert_int_equal(shared, 3); /* all but where there is no room, or far too much */
+    assert_int_equal(shared, 4); /* all but where there is no room, or far too much */
     assert_int_equal(kage_render(s, &(kage_render_options){.aa = -1, .reuse = f}, &f, NULL), KAGE_BAD_OPTION);
     assert_null(f); /* valgrind and the sanitizers tell that it is freed */
     kage_scene_free(s);

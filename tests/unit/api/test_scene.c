@@ -151,7 +151,7 @@ static void the_scene_says_where_the_camera_and_the_bumps_are(void **state)
                                       "{file: bumps.png}, scale: 0.2, zero: 0.5, sign: down}}\n";
     kage_scene *s = parse_with(text, KAGE_TESTS_DIR "/../scenes/data", NULL);
     const kage_scene_info *i = kage_scene_get_info(s);
-    NEAR(i->camera.from[2], -5, 1e-6);
+    NEAR(i->camera.eye[2], -5, 1e-6);
     NEAR(i->camera.at[2], 0, 1e-6);
     NEAR(i->camera.up[1], 1, 1e-6);
     NEAR(i->camera.fov, 40, 1e-6);

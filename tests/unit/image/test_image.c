@@ -325,17 +325,53 @@ static void png_grey_of_every_kind_reads_exactly(void **state)
     unlink(path);
 }
 
-static void png_of_other_kinds_is_refused(void **state)
+/* Red, green and blue that are one grey are as good as a grey; so is a palette of greys. */
+static void png_in_colour_is_read_if_it_is_grey(void **state)
 {
     (void)state;
-    static const unsigned char bytes[HEIGHT][WIDTH * 4];
+    static unsigned char bytes[HEIGHT][WIDTH * 4];
     const char *path = in_folder("other.png");
-    make_png(path, 8, PNG_COLOR_TYPE_RGB, 0, bytes[0], sizeof bytes[0], false);
-    assert_refused(path, NULL, "colour");
-    make_png(path, 8, PNG_COLOR_TYPE_RGB_ALPHA, 0, bytes[0], sizeof bytes[0], false);
-    assert_refused(path, NULL, "colour");
+    for (int alpha = 0; alpha <= 1; alpha++) {
+        for (int y = 0; y < HEIGHT; y++)
+            for (int x = 0; x < WIDTH * (3 + alpha); x++)
+                bytes[y][x] = (unsigned char)grey_of(x / (3 + alpha), y, 255);
+        make_png(path, 8, alpha ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB, 0, bytes[0], sizeof bytes[0], false);
+        image m = read_well(path, NULL);
+        for (int k = 0; k < WIDTH * HEIGHT; k++)
+            CHECK(m.v[k], ==, (float)((double)grey_of(k % WIDTH, k / WIDTH, 255) / 255));
+        free(m.v);
+        bytes[HEIGHT - 1][(3 + alpha) * (WIDTH - 1) + 1] ^= 1;
+        make_png(path, 8, alpha ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB, 0, bytes[0], sizeof bytes[0], false);
+        assert_refused(path, NULL, "in colour; a grey one is expected");
+    }
     make_png(path, 1, PNG_COLOR_TYPE_PALETTE, 0, bytes[0], sizeof bytes[0], false);
-    assert_refused(path, NULL, "palette");
+    free(read_well(path, NULL).v);
+    assert_int_equal(image_png_bits(path), 1);
+    unlink(path);
+    assert_int_equal(image_png_bits(path), 0);
+}
+
+/* Unit vectors around (0, 0, 1), as colours. */
+static void normal_map_is_refused_as_one(void **state)
+{
+    (void)state;
+    static unsigned char bytes[HEIGHT][WIDTH * 3];
+    const char *path = in_folder("normals.png");
+    for (int k = 0; k < WIDTH * HEIGHT; k++) {
+        const double x = 0.4 * sin(k), y = 0.4 * cos(3 * k), v[3] = {x, y, sqrt(1 - x * x - y * y)};
+        for (int c = 0; c < 3; c++)
+            bytes[k / WIDTH][3 * (k % WIDTH) + c] = (unsigned char)(127.5 * (v[c] + 1) + 0.5);
+    }
+    make_png(path, 8, PNG_COLOR_TYPE_RGB, 0, bytes[0], sizeof bytes[0], false);
+    assert_refused(path, NULL, "a normal map, which has slopes but no heights");
+    unlink(path);
+}
+
+static void png_has_no_channels(void **state)
+{
+    (void)state;
+    static const unsigned char bytes[HEIGHT][WIDTH];
+    const char *path = in_folder("other.png");
     make_png(path, 8, PNG_COLOR_TYPE_GRAY, 0, bytes[0], sizeof bytes[0], false);
     assert_refused(path, "height", "no channel 'height'");
     unlink(path);
@@ -1015,7 +1051,9 @@ int main(void)
         cmocka_unit_test(srgb_steps_where_the_standard_does),
         cmocka_unit_test(srgb_rises_and_clamps),
         cmocka_unit_test(png_grey_of_every_kind_reads_exactly),
-        cmocka_unit_test(png_of_other_kinds_is_refused),
+        cmocka_unit_test(png_in_colour_is_read_if_it_is_grey),
+        cmocka_unit_test(normal_map_is_refused_as_one),
+        cmocka_unit_test(png_has_no_channels),
         cmocka_unit_test(png_holds_the_srgb_codes_and_texts),
         cmocka_unit_test(damaged_png_is_refused),
         cmocka_unit_test(huge_png_is_refused),
