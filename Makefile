@@ -107,7 +107,8 @@ programs: $(BUILD)/libkage.a $(BUILD)/libkage.so
 help:
 	@echo 'make            build the program, $(BUILD)/kage, and the library'
 	@echo 'make render     the pictures of the paper and the gallery, into out/'
-	@echo 'make bench      measure cost and accuracy of each method, BENCH=quick|normal|full, into out/bench/index.html'
+	@echo 'make bench      measure cost and accuracy of each method, BENCH=quick|normal|full, into out/bench/index.html;'
+	@echo '                SCHEDULER=tcp://HOST:PORT or local:N: all but times by Dask'
 	@echo 'make speed      measure what kage demands of its speed, SPEED=quick|normal|full, into out/speed/index.html'
 	@echo 'make readme     the same, then update the tables of README and docs'
 	@echo 'make python     the Python package, to import from $(BUILD)/python'
@@ -325,7 +326,7 @@ bench: all
 	@CC='$(CC)' scripts/bootstrap python povray valgrind || echo 'bench: going on without what is missing' >&2
 	@$(MAKE) --no-print-directory $(JOBS) python || echo 'bench: going on without the package, which is slower' >&2
 	@python=.venv/bin/python; scripts/venv || python=python3; \
-	    $$python -m bench --level $(BENCH) --kage $(BUILD)/kage || [ $$? -eq 3 ]
+	    $$python -m bench --level $(BENCH) --kage $(BUILD)/kage $(SCHEDULER:%=--scheduler %) || [ $$? -eq 3 ]
 
 # Each bound of docs/performance.md, with the peers, in one table; SPEED=quick|normal|full.
 speed: all

@@ -22,6 +22,7 @@ try:
 except ModuleNotFoundError as error:
     sys.exit(f"bench: the Python package {error.name} is missing, and the bench needs it (`scripts/venv` installs it)")
 from bench.data import Claim, Report
+from bench.machines import machines
 from bench.plan import LEVELS, TITLES, Bench
 from bench.programs import KAGE, TOP, MeasureError
 from bench.runner import Job, Runner
@@ -41,6 +42,8 @@ def parse_arguments(arguments: Sequence[str] | None) -> argparse.Namespace:
                         help=f"measure only this scene; may be given again: {', '.join(TITLES)}")
     parser.add_argument("--out", type=Path, default=TOP / "out" / "bench", metavar="DIR", help="(out/bench)")
     parser.add_argument("--kage", type=Path, default=KAGE, metavar="FILE", help="the program (build/float/kage)")
+    parser.add_argument("--scheduler", metavar="ADDRESS",
+                        help="measure all but times on a Dask cluster: tcp://HOST:PORT, or local:N processes")
     options = parser.parse_args(arguments)
     options.kage, options.out = options.kage.resolve(), options.out.resolve()
     if not os.access(options.kage, os.X_OK):
@@ -99,10 +102,10 @@ def bench(options: argparse.Namespace) -> int:
     names = options.scene or TITLES
     facts = {name: plan.facts(options.kage, name) for name in TITLES if name in names}
     about = Bench(options.kage, programs.file_digest(options.kage), options.out, LEVELS[options.level], facts)
-    with Store(options.out / "results.jsonl") as store:
+    with Store(options.out / "results.jsonl") as store, machines(options.scheduler) as elsewhere:
         faults = make_references(about)
         jobs, more = plan_jobs(about, options.only or PARTS)
-        runner = Runner(store)
+        runner = Runner(store, elsewhere)
         runner.run(jobs)
         data = summary.summarise(about, store, jobs, runner.failed, judge)
     data["incomplete"] += faults + more

@@ -1,8 +1,8 @@
 """Runs the jobs that are not done yet.
 
 Jobs come in stages, one after the other, as later ones need files of earlier ones. The jobs of a stage share the
-processors, except jobs that measure time: each of those runs alone and pinned. They run in the order of the plan, in
-which jobs that are compared are neighbours.
+processors, or those of other machines, except jobs that measure time: each of those runs alone and pinned. They run in
+the order of the plan, in which jobs that are compared are neighbours.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ import os
 import sys
 import time
 from collections.abc import Callable, Iterable, Sequence
-from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from concurrent.futures import FIRST_COMPLETED, Executor, Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from enum import IntEnum
@@ -75,10 +75,13 @@ class Progress:
 
 
 class Runner:
-    """Does jobs and keeps their values. `failed` has the jobs that could not be done, each with its reason."""
+    """Does jobs and keeps their values. `failed` has the jobs that could not be done, each with its reason.
 
-    def __init__(self, store: Store) -> None:
-        self.store, self.commit = store, programs.commit()
+    elsewhere: where jobs run that measure no time (bench/machines.py); None: in threads here.
+    """
+
+    def __init__(self, store: Store, elsewhere: Executor | None = None) -> None:
+        self.store, self.commit, self.elsewhere = store, programs.commit(), elsewhere
         self.failed: dict[str, str] = {}
 
     def keep(self, job: Job, value: Value, seconds: float) -> None:
@@ -92,7 +95,8 @@ class Runner:
             self.failed[job.name] = str(error)
 
     def together(self, jobs: Sequence[Job], progress: Progress) -> None:
-        pool = ThreadPoolExecutor(os.cpu_count())
+        here = ThreadPoolExecutor(os.cpu_count())
+        pool = self.elsewhere or here
         futures: dict[Future[tuple[Value, float]], Job] = {pool.submit(timed, job): job for job in jobs}
         try:
             left = set(futures)
@@ -102,7 +106,7 @@ class Runner:
                     self.finish(futures[future], future.result)
                     progress.done(futures[future])
         finally:
-            pool.shutdown(cancel_futures=True)
+            here.shutdown(cancel_futures=True)
 
     def alone(self, jobs: Sequence[Job], progress: Progress) -> None:
         with pinned():

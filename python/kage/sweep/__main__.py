@@ -107,7 +107,6 @@ def sweep(options: argparse.Namespace) -> Done:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     options = parse_arguments(arguments)
-    signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:
         done = sweep(options)
     except (SweepError, kage.KageError) as error:
@@ -125,4 +124,5 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 if __name__ == "__main__":
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
     sys.exit(main())

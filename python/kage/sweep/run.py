@@ -61,7 +61,7 @@ def cluster(scheduler: str | None = None, workers: int | None = None) -> Iterato
         return
     count = workers or len(os.sched_getaffinity(0))
     with dask.config.set({"distributed.scheduler.allowed-failures": DEATHS}), LocalCluster(
-        n_workers=count, threads_per_worker=1, processes=True, dashboard_address=None, silence_logs=SILENT,
+        n_workers=count, threads_per_worker=1, processes=True, dashboard_address=":0", silence_logs=SILENT,
         preload="kage.sweep.quiet",
     ) as local, Client(local, set_as_default=False) as client:
         yield client
