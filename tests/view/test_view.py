@@ -215,6 +215,20 @@ def test_help_and_values_lie_over_the_picture_on_demand(kage: Kage, screen: Disp
 
 
 @needs_window
+def test_the_picture_has_the_size_of_the_window(kage: Kage, screen: Display, scene: Path) -> None:
+    with view(screen, PROGRAM, scene, cwd=kage.folder) as window:
+        window.park()
+        name = screen.do("search", "--pid", window.process.pid).split()[0]
+        screen.do("windowsize", name, 600, 400)
+        size = re.search(r"size=600x(\d+) ", window.settle("size=600x"))
+        assert size and 340 < int(size[1]) < 390  # less the two lines below it
+        place = dict(line.split("=") for line in screen.do("getwindowgeometry", "--shell", name).splitlines())
+        window.place = int(place["X"]), int(place["Y"])
+        picture = rendered(kage, scene, "--size", f"600x{size[1]}", *FINISH)
+        assert until(lambda: bool((window.pixels(600, int(size[1])) == picture).all()))
+
+
+@needs_window
 def test_a_wish_of_the_window_manager_to_close_ends_it(kage: Kage, screen: Display, scene: Path) -> None:
     with view(screen, PROGRAM, scene, cwd=kage.folder) as window:
         window.process.terminate()
