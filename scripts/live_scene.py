@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 import OpenEXR
-import yaml  # type: ignore[import-untyped]
+import yaml
 from numpy.typing import NDArray
 from PIL import Image
 

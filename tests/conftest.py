@@ -28,7 +28,7 @@ needs_povray = pytest.mark.skipif(not shutil.which("povray") and not os.environ.
 
 #: The files that take longest, which begin first, so that two workers end together.
 LONG = ("test_parity.py", "test_bench_run.py", "test_images.py", "test_regression.py", "test_input.py", "test_mesh.py",
-        "test_pov.py")
+        "test_pov.py", "test_live.py")
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

@@ -82,6 +82,10 @@ class ObjectInfo:
     bump_of: str | None
     #: the bump's `scale`
     bump_scale: float
+    #: of the map's samples, which have 2^map_bits values from 0 to 1; 0: floats
+    map_bits: int
+    #: the radius of its smoothing, in samples; 0: none
+    map_smooth: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,6 +128,8 @@ class SceneInfo:
     #: render.shade: shifted
     shifted: bool
     camera: CameraInfo
+    #: the scene's YAML, with the changes in it that it was read with; None: out of memory
+    text: str | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -246,6 +252,8 @@ class BumpSurvey:
     slope_max: float
     #: [1], [2]: by order 1 and 2, in per cent of the samples; [0] is 0
     fell_back: NDArray[np.float64]
+    step: float
+    step_slope: float
 
 
 @dataclass(frozen=True, eq=False)

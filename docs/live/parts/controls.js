@@ -106,5 +106,6 @@ function startControls() {
   addEventListener("hashchange", () => { stopSway(); set(stateOf(location.hash.slice(1))); });
   $("hint").textContent = matchMedia("(pointer: coarse)").matches
     ? "One finger turns the eye, two move the light."
-    : "Drag turns the eye, Shift-drag moves the light. Keys there: arrows, + −; n 0 1 2 3 m d choose what is right.";
+    : "Drag turns the eye, Shift-drag moves the light. Keys there: arrows, + −, and n 0 1 2 3 m d for the method right "
+      + "of the line.";
 }
