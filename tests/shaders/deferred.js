@@ -17,6 +17,7 @@ function deferred(given) {
     }`;
   const depth_fragment = '#version 300 es\nvoid main() {}';
 
+  const floats = (text) => new Float32Array(Uint8Array.from(atob(text), (c) => c.charCodeAt(0)).buffer);
   const program = (vertex, fragment) => {
     const p = gl.createProgram();
     for (const [kind, text] of [[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, fragment]]) {
@@ -66,12 +67,13 @@ function deferred(given) {
     const vertices = gl.createVertexArray();
     gl.bindVertexArray(vertices);
     gl.bindBuffer(gl.ARRAY_BUFFER, gl.createBuffer());
-    gl.bufferData(gl.ARRAY_BUFFER, new Float32Array(mesh.vertices), gl.STATIC_DRAW);
+    const numbers = floats(mesh.vertices);
+    gl.bufferData(gl.ARRAY_BUFFER, numbers, gl.STATIC_DRAW);
     [[3, 0], [3, 12], [2, 24]].forEach(([size, offset], i) => {
       gl.enableVertexAttribArray(i);
       gl.vertexAttribPointer(i, size, gl.FLOAT, false, 32, offset);
     });
-    return {...mesh, vertices, count: mesh.vertices.length / 8};
+    return {...mesh, vertices, count: numbers.length / 8};
   });
   const draw_meshes = (p, uniforms, clip) => {
     gl.enable(gl.DEPTH_TEST);
@@ -88,7 +90,7 @@ function deferred(given) {
   framebuffer([], map);
   gl.viewport(0, 0, given.map, given.map);
   gl.enable(gl.POLYGON_OFFSET_FILL);
-  gl.polygonOffset(2, 4);
+  gl.polygonOffset(4, 4);
   draw_meshes(program(mesh_vertex, depth_fragment), {}, given.world_to_map);
   gl.disable(gl.POLYGON_OFFSET_FILL);
   gl.bindTexture(gl.TEXTURE_2D, map);
@@ -100,8 +102,7 @@ function deferred(given) {
     of_picture(gl.RGBA16F, gl.HALF_FLOAT)];
   const depth = depth_of(given.width, given.height);
   const heights = texture(gl.R16F, given.map_size[0], given.map_size[1], gl.RED, gl.FLOAT,
-      new Float32Array(Uint8Array.from(atob(given.heights), (c) => c.charCodeAt(0)).buffer), gl.LINEAR,
-      gl.REPEAT);
+      floats(given.heights), gl.LINEAR, gl.REPEAT);
   framebuffer([color, rough, normal], depth);
   draw_meshes(program(mesh_vertex, given.gbuffer), {eye: given.eye, heights, zero: given.zero}, given.world_to_picture);
 

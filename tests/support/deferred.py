@@ -1,8 +1,8 @@
-"""Figure 5's scene by the shaders of examples/shader, in a small deferred renderer (tests/shaders/deferred.js).
+"""Figures 5 and 8 by the shaders of examples/shader, in a small deferred renderer (tests/shaders/deferred.js).
 
     scripts/venv python -m tests.support.deferred -o docs/shaders.png
 
-draws it without the method and with it, side by side.
+draws them without the method and with it, side by side.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from tests.support.shaders import Gpu, gpu
 
 SHADERS, SCRIPT = TOP / "examples/shader", TOP / "tests/shaders/deferred.js"
 MAP = 2048  # samples of the shadow map, across
-SCENE = TOP / "scenes/cube.yaml"
+CUBE, SPHERE = TOP / "scenes/cube.yaml", TOP / "scenes/sphere.yaml"
 #: Where lighting.frag looks the shadow map up.
 LINE = "shadow_start(Q, normalize(Q - eye), n_tau.w, n, to_light)"
 
@@ -66,26 +66,52 @@ def box(low: np.ndarray, high: np.ndarray) -> list[float]:
     return found
 
 
-def given(size: tuple[int, int], lighting: str) -> dict[str, Any]:
-    """Figure 5's scene for deferred.js."""
-    scene = yaml.safe_load(SCENE.read_text(encoding="utf-8"))
+def ball(center: np.ndarray, radius: float, repeat: list[float], parts: int) -> list[float]:
+    """Twice as many parts around as from pole to pole; kage's u and w."""
+    u, w = np.meshgrid(np.linspace(-np.pi, np.pi, 2 * parts + 1), np.linspace(0, np.pi, parts + 1), indexing="ij")
+    n = np.stack([np.sin(w) * np.cos(u), np.cos(w), np.sin(w) * np.sin(u)], axis=-1)
+    uv = np.stack([(u / (2 * np.pi) + 0.5) * repeat[0], w / np.pi * repeat[1]], axis=-1)
+    grid = np.concatenate([center + radius * n, n, uv], axis=-1)
+    a, b, c, d = grid[:-1, :-1], grid[1:, :-1], grid[1:, 1:], grid[:-1, 1:]
+    found: list[float] = np.stack([a, b, c, a, c, d], axis=2).ravel().tolist()
+    return found
+
+
+def floats(numbers: Any) -> str:
+    return base64.b64encode(np.asarray(numbers, np.float32).tobytes()).decode()
+
+
+def meshes(scene: dict[str, Any]) -> list[dict[str, Any]]:
+    """Of figure 5's scene or figure 8's: the surface with bumps, and the box."""
+    found = []
+    for thing in scene["objects"].values():
+        if "plane" in thing:
+            origin, u, w = (np.array(thing["plane"][name], float) for name in ("origin", "u", "w"))
+            size = thing["bump"]["size"][0]
+            numbers = quad(origin - size * (u + w), 3 * size * u, 3 * size * w, np.cross(u, w), size)
+        elif "sphere" in thing:
+            numbers = ball(np.array(thing["sphere"]["center"]), thing["sphere"]["radius"], thing["bump"]["repeat"], 96)
+        else:
+            numbers = box(np.array(thing["box"]["from"]), np.array(thing["box"]["to"]))
+        found.append({"vertices": floats(numbers), "color": scene["materials"][thing["material"]]["color"],
+                      "scale": thing.get("bump", {"scale": 0})["scale"]})
+    return found
+
+
+def given(size: tuple[int, int], lighting: str, path: Path) -> dict[str, Any]:
+    """A scene for deferred.js."""
+    scene = yaml.safe_load(path.read_text(encoding="utf-8"))
     eye, at = np.array(scene["camera"]["from"]), np.array(scene["camera"]["at"])
-    light, ground = np.array(scene["lights"]["lamp"]["at"]), scene["objects"]["ground"]
-    cube, bump = scene["objects"]["cube"]["box"], scene["objects"]["ground"]["bump"]
-    with Image.open(SCENE.parent / bump["map"]["file"]) as image:
-        heights = (np.asarray(image, float) / (65535 if image.mode.startswith("I") else 255)).astype(np.float32)
+    light = np.array(scene["lights"]["lamp"]["at"])
+    (bump,) = (thing["bump"] for thing in scene["objects"].values() if "bump" in thing)
+    with Image.open(path.parent / bump["map"]["file"]) as image:
+        heights = np.asarray(image, float) / (65535 if image.mode.startswith("I") else 255)
     to_picture = clip_matrix(eye, at, scene["camera"]["fov"], size[0] / size[1], 1, 30)
-    origin, u, w = (np.array(ground["plane"][name], float) for name in ("origin", "u", "w"))
-    color = {name: scene["materials"][name]["color"] for name in ("clay", "blue")}
-    plane = {"vertices": quad(origin - 12 * (u + w), 36 * u, 36 * w, np.array([0, 1, 0]), bump["size"][0]),
-             "color": color["clay"], "scale": bump["scale"]}
-    cubic = {"vertices": box(np.array(cube["from"]), np.array(cube["to"])), "color": color["blue"], "scale": 0}
-    return {"width": size[0], "height": size[1], "map": MAP, "meshes": [plane, cubic], "eye": eye.tolist(),
+    return {"width": size[0], "height": size[1], "map": MAP, "meshes": meshes(scene), "eye": eye.tolist(),
             "light": light.tolist(), "light_color": [0.8 * x for x in scene["lights"]["lamp"]["color"]],
-            "ambient": [0.12] * 3, "heights": base64.b64encode(heights.tobytes()).decode(),
-            "map_size": heights.shape[::-1], "zero": bump["zero"], "world_to_picture": rows(to_picture),
-            "picture_to_world": rows(np.linalg.inv(to_picture)),
-            "world_to_map": rows(clip_matrix(light, np.array([0.5, 0, 0.3]), 50, 1, 2, 20)),
+            "ambient": [0.12] * 3, "heights": floats(heights), "map_size": heights.shape[::-1], "zero": bump["zero"],
+            "world_to_picture": rows(to_picture), "picture_to_world": rows(np.linalg.inv(to_picture)),
+            "world_to_map": rows(clip_matrix(light, at, 50, 1, 2, 20)),
             "gbuffer": included("gbuffer.frag"), "lighting": lighting}
 
 
@@ -97,9 +123,9 @@ def included(name: str) -> str:
     return text
 
 
-def drawn(shader: Gpu, size: tuple[int, int], lighting: str) -> np.ndarray:
+def drawn(shader: Gpu, size: tuple[int, int], lighting: str, scene: Path = CUBE) -> np.ndarray:
     script = SCRIPT.read_text(encoding="utf-8")
-    out = shader.driver.execute_script(f"{script}\nreturn deferred(arguments[0]);", given(size, lighting))
+    out = shader.driver.execute_script(f"{script}\nreturn deferred(arguments[0]);", given(size, lighting, scene))
     return np.frombuffer(base64.b64decode(out), np.uint8).reshape(size[1], size[0], 4)[::-1]
 
 
@@ -115,9 +141,10 @@ def main() -> None:
     path = parser.parse_args().o
     lighting = included("lighting.frag")
     with gpu() as shader:
-        sides = [drawn(shader, (960, 720), text) for text in (lighting.replace(LINE, "Q"), lighting)]
-    small = [Image.fromarray(srgb(side[..., :3])).resize((480, 360), Image.Resampling.LANCZOS) for side in sides]
-    Image.fromarray(np.concatenate([np.asarray(image) for image in small], axis=1)).save(path, optimize=True)
+        large = np.concatenate([
+            np.concatenate([drawn(shader, (960, 720), text, scene)[..., :3] for scene in (CUBE, SPHERE)])
+            for text in (lighting.replace(LINE, "Q"), lighting)], axis=1)
+    Image.fromarray(srgb(large)).resize((960, 720), Image.Resampling.LANCZOS).save(path, optimize=True)
 
 
 if __name__ == "__main__":
