@@ -26,7 +26,8 @@ layout(location = 2) out vec4 normal; // n/|n|
 
 float P_at(vec2 at) { return scale * (texture(heights, at).r - zero); }
 
-/* dQ/du and dQ/dw from what the rasteriser knows, so that no tangents are needed; those of a vertex do as well. */
+/* dQ/du and dQ/dw from what the rasteriser knows, so that no tangents are needed; those of a vertex do as well. They
+ * are laid into the plane across the interpolated normal, else a curved mesh would show its triangles. */
 void partials(out vec3 Qu, out vec3 Qw)
 {
     vec3 Qx = dFdx(Q), Qy = dFdy(Q);
@@ -34,6 +35,8 @@ void partials(out vec3 Qu, out vec3 Qw)
     float i = 1.0 / (x.x * y.y - x.y * y.x);
     Qu = (Qx * y.y - Qy * x.y) * i;
     Qw = (Qy * x.x - Qx * y.x) * i;
+    Qu -= N * (dot(N, Qu) / dot(N, N));
+    Qw -= N * (dot(N, Qw) / dot(N, N));
 }
 
 void main()
@@ -50,12 +53,14 @@ void main()
         float p = Pu;
         Pu = Pw, Pw = p;
     }
-    vec3 n = bs_normal(Qu, Qw);                                                              // (kage)
-    bs_view v = bs_view_of(s, n, Qu, Qw);                                                    // (kage)
-    bs_bump p = bs_bump(P, Pu, Pw, 0.0, 0.0, 0.0);                                           // (kage)
-    bs_slab slab = bs_slab_of(v, scale * (0.0 - zero), scale * (1.0 - zero));                // (kage)
-    float tau = bs_shift_of(0, true, v, 0.0, p, slab).tau;                                   // (kage)
+    vec3 n = bs_normal(Qu, Qw);                                                   // (kage)
+    vec3 np = bs_perturbed_normal(n, Qu, Qw, Pu, Pw);                             // (kage)
+    bs_view v = bs_view_of(s, n, Qu, Qw);                                         // (kage)
+    bs_bump p = bs_bump(P, Pu, Pw, 0.0, 0.0, 0.0);                                // (kage)
+    bs_slab slab = bs_slab_of(v, scale * (0.0 - zero), scale * (1.0 - zero));     // (kage)
+    float tau = bs_shift_of(0, true, v, 0.0, p, slab).tau;                        // (kage)
+    bool regular = bs_regular(n, Qu, Qw); // not where the texture is degenerate  // (kage)
     color = vec4(albedo, 1.0);
-    rough = vec4(normalize(bs_perturbed_normal(n, Qu, Qw, Pu, Pw)), tau);                    // (kage)
-    normal = vec4(normalize(n), 0.0);
+    normal = vec4(normalize(N), 0.0);
+    rough = regular ? vec4(normalize(np), tau) : normal;                          // (kage)
 }

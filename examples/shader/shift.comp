@@ -1,6 +1,6 @@
 #version 450
-/* The shift of many pixels as a pass of its own, for engines whose G-buffer pass can't be changed; and a file from which
- * spirv-cross makes the functions in HLSL and Metal:
+/* The shift of many pixels as a pass of its own, for engines whose G-buffer pass can't be changed; and a file from
+ * which spirv-cross makes the functions in HLSL and Metal:
  *
  *     glslangValidator -V -I../../include shift.comp -o shift.spv
  *     spirv-cross shift.spv --hlsl --shader-model 60 --output shift.hlsl

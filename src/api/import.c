@@ -11,6 +11,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 /* ---- names of files ---- */
@@ -139,7 +140,8 @@ static bool make_wishes(wishes *w, const char *model, const char *file, const ch
 
 static bool has_bytes(const char *path, const void *bytes, size_t size)
 {
-    FILE *f = fopen(path, "rb");
+    struct stat about; /* a pipe would be waited for */
+    FILE *f = stat(path, &about) == 0 && S_ISREG(about.st_mode) ? fopen(path, "rb") : NULL;
     char *there = f ? malloc(size + 1) : NULL;
     const bool same = there && fread(there, 1, size + 1, f) == size && memcmp(there, bytes, size) == 0;
     free(there);

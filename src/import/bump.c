@@ -47,6 +47,22 @@ bool scene_find_bumps(importer *k, char why[MESH_WHY])
     return true;
 }
 
+/* A key and its value, n bytes long; a pair is written AxB. */
+static void add_key(importer *k, const char *key, int name, const char *value, int n)
+{
+    const char *x = memchr(value, 'x', (size_t)n);
+    text_add(&k->out, "      %.*s: ", name, key);
+    if (x && x > value && x[-1] >= '0' && x[-1] <= '9')
+        text_add(&k->out, "[%.*s, %.*s]\n", (int)(x - value), value, n - (int)(x - value) - 1, x + 1);
+    else
+        text_add(&k->out, "%.*s\n", n, value);
+}
+
+static bool is_key(const char *key, int name, const char *word)
+{
+    return strlen(word) == (size_t)name && strncmp(key, word, (size_t)name) == 0;
+}
+
 /* Scale and the like as they were given: the reader of scenes checks them. `zero` and `sign` have Blender's defaults.
  */
 void scene_write_bump(importer *k, const import_bump *b)
@@ -54,12 +70,18 @@ void scene_write_bump(importer *k, const import_bump *b)
     bool zero = false, sign = false;
     text_add(&k->out, "    bump:\n      map: {file: ");
     text_string(&k->out, b->map);
+    const char *channel = b->rest;
+    while (channel && strncmp(channel, "channel=", 8) != 0)
+        channel = (channel = strchr(channel, ',')) ? channel + 1 : NULL;
+    if (channel)
+        text_add(&k->out, ", channel: %.*s", (int)strcspn(channel + 8, ","), channel + 8);
     text_add(&k->out, "}\n");
     for (const char *at = b->rest; *at;) {
         const int n = (int)strcspn(at, ","), name = (int)strcspn(at, "=,");
-        zero |= name == 4 && strncmp(at, "zero", 4) == 0;
-        sign |= name == 4 && strncmp(at, "sign", 4) == 0;
-        text_add(&k->out, "      %.*s: %.*s\n", name, at, n > name ? n - name - 1 : 0, at + name + 1);
+        zero |= is_key(at, name, "zero");
+        sign |= is_key(at, name, "sign");
+        if (!is_key(at, name, "channel"))
+            add_key(k, at, name, at + name + (name < n), n - name - (name < n));
         at += n + (at[n] == ',');
     }
     if (!zero)

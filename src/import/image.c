@@ -8,6 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 /* ---- names ---- */
 
@@ -54,7 +55,8 @@ static char *join(const char *a, size_t n, const char *b)
 static unsigned char *read_whole(const char *path, size_t *size)
 {
     enum { MOST = 1 << 29 };
-    FILE *f = fopen(path, "rb");
+    struct stat about; /* a pipe would be waited for */
+    FILE *f = stat(path, &about) == 0 && S_ISREG(about.st_mode) ? fopen(path, "rb") : NULL;
     long n = f && fseek(f, 0, SEEK_END) == 0 ? ftell(f) : -1;
     unsigned char *bytes = n > 0 && n < MOST && fseek(f, 0, SEEK_SET) == 0 ? malloc((size_t)n) : NULL;
     if (bytes && fread(bytes, 1, (size_t)n, f) != (size_t)n) {

@@ -78,7 +78,7 @@ static void of_metal(const struct aiMaterial *m, double metallic, look *l)
 /* An OBJ's illum 3 and above are mirrors. */
 static void of_phong(const struct aiMaterial *m, look *l)
 {
-    double shine[4] = {0, 0, 0, 1}, n = 0, share = 0;
+    double shine[4] = {0, 0, 0, 1}, mirror[4], n = 0, share = 0;
     int illum = 0, shading = 0;
     aiGetMaterialIntegerArray(m, AI_MATKEY_SHADING_MODEL, &shading, NULL);
     const bool dull = shading == aiShadingMode_Flat || shading == aiShadingMode_Gouraud;
@@ -90,10 +90,12 @@ static void of_phong(const struct aiMaterial *m, look *l)
         l->roughness = within(1 / n, 1e-4, 100);
     }
     if (aiGetMaterialIntegerArray(m, "$mat.illum", 0, 0, &illum, NULL) == aiReturn_SUCCESS && illum >= 3 && illum <= 7)
-        share = 1;
-    get_number(m, AI_MATKEY_REFLECTIVITY, &share);
+        memcpy(l->mirror, shine, sizeof l->mirror);
+    else if (get_number(m, AI_MATKEY_REFLECTIVITY, &share) && get_color(m, AI_MATKEY_COLOR_REFLECTIVE, mirror))
+        for (int c = 0; c < 3; c++)
+            l->mirror[c] = share * mirror[c];
     for (int c = 0; c < 3; c++)
-        l->mirror[c] = within(share * shine[c], 0, 1);
+        l->mirror[c] = within(l->mirror[c], 0, 1);
 }
 
 static void set_clearness(const struct aiMaterial *m, double alpha, look *l)

@@ -5,8 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "view/events.h"
-
 /* Milliseconds: between two looks at the file, and how long a message stays. */
 enum { LOOK_EACH = 200, MESSAGE_STAYS = 4000 };
 
@@ -30,6 +28,7 @@ bool app_start(app *a, const app_options *o, kage_scene *scene)
     memset(a, 0, sizeof *a);
     a->o = *o;
     watch_start(&a->watch, o->path);
+    a->shown.timed = !o->report;
     snprintf(title, sizeof title, "%s - kage", base_name(o->path));
     if (!window_open(&a->window, title, &width, &height)) {
         kage_scene_free(scene);
@@ -65,7 +64,7 @@ static void report_picture(const app *a)
     if (!a->o.report)
         return;
     printf("shown %d %s stage=%d size=%dx%d shadow=%s beside=%s shade=%s own=%s surface=%s layer=%s\n", f->number,
-           f->last ? "last" : "first", f->stage, f->columns, f->rows, f->shadow, *f->beside ? f->beside : "-",
+           f->last ? "last" : "more", f->stage, f->columns, f->rows, f->shadow, *f->beside ? f->beside : "-",
            f->shifted ? "shifted" : "smooth", f->own, f->displaced ? "displaced" : "smooth", layers[f->legend.layer]);
     fflush(stdout);
 }
@@ -76,6 +75,14 @@ static void report_text(const app *a, const char *what, const char *text)
         return;
     printf("%s%s%.*s\n", what, *text ? " " : "", (int)strcspn(text, "\n"), text);
     fflush(stdout);
+}
+
+static void report_under(const app *a)
+{
+    const readout *r = &a->shown.news.under;
+    char text[2 * VIEW_NAME];
+    snprintf(text, sizeof text, "%d %d %s", r->x, r->y, r->owner);
+    report_text(a, "under", text);
 }
 
 /* ---- events ---- */
@@ -103,7 +110,7 @@ static unsigned take_events(app *a, int wait)
     for (bool some = SDL_WaitEventTimeout(&e, wait); some; some = SDL_PollEvent(&e)) {
         if (e.type == SDL_WINDOWEVENT && e.window.event == SDL_WINDOWEVENT_EXPOSED)
             asked |= ASK_WINDOW;
-        else if (events_read(&e, &own))
+        else if (events_read(&a->held, &e, &own))
             take_event(a, &own, &asked);
     }
     return asked;
@@ -147,9 +154,10 @@ static void hear_news(app *a)
         tell(a, x->news.saved);
         report_text(a, x->news.saved, "");
     }
-    if (strcmp(under.owner, x->news.under.owner) != 0)
-        report_text(a, "under", x->news.under.owner);
-    a->stale = a->stale || under.x != x->news.under.x || under.y != x->news.under.y;
+    if (under.x != x->news.under.x || under.y != x->news.under.y) {
+        a->stale = true;
+        report_under(a);
+    }
 }
 
 /* Take the newest picture and texts. True: the picture is another one. */

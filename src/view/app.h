@@ -3,6 +3,7 @@
 #define KAGE_VIEW_APP_H
 
 #include "look/watch.h"
+#include "view/events.h"
 #include "view/window.h"
 
 typedef struct app_options {
@@ -19,6 +20,7 @@ typedef struct app {
     worker *worker;
     view_state state;
     shown shown;
+    held_keys held;
     watch watch;
     Uint32 event;      /* of SDL: the worker has something new */
     int number;        /* of the newest look */

@@ -12,17 +12,15 @@ const char *bar_method(const char *method, char text[2 * VIEW_METHOD])
 }
 
 /* On the left: the method and what else changes the picture. */
-static void make_left(char *text, size_t size, const frame *f, const view_state *v)
+static void make_left(char *text, size_t size, const frame *f)
 {
     char method[2 * VIEW_METHOD];
     bar_method(f->shadow, method);
     if (f->displaced)
         snprintf(text, size, "true displacement");
     else
-        snprintf(text, size, "shadows: %s   shade: %s   own shadows: %s", method, f->shifted ? "shifted" : "smooth",
+        snprintf(text, size, "shadows %s \xc2\xb7 shade %s \xc2\xb7 own %s", method, f->shifted ? "shifted" : "smooth",
                  f->own);
-    if (v->look.layer != LAYER_PICTURE)
-        snprintf(text + strlen(text), size - strlen(text), "   layer: %s", colours_title(v->look.layer));
 }
 
 /* On the right: how far the picture is, its time, the frames a second, the key for help. */
@@ -31,14 +29,16 @@ static void make_right(char *text, size_t size, const shown *x)
     const frame *f = &x->picture;
     *text = 0;
     if (x->news.busy && x->news.share > 0 && !f->last && f->seconds > 0.1)
-        snprintf(text, size, "%.0f %%   ", 100 * x->news.share);
-    if (x->rate > 0)
-        snprintf(text + strlen(text), size - strlen(text), "%.0f fps   ", x->rate);
-    snprintf(text + strlen(text), size - strlen(text), "%s %.1f ms   h: help",
+        snprintf(text, size, "%.0f %%  ", 100 * x->news.share);
+    if (x->rate > 0 && x->timed)
+        snprintf(text + strlen(text), size - strlen(text), "%.0f fps  ", x->rate);
+    snprintf(text + strlen(text), size - strlen(text), "%s",
              f->stage > STAGE_FULL    ? "coarse"
-             : f->stage == STAGE_FINE ? "antialiased"
-                                      : "full",
-             1e3 * f->seconds);
+             : f->stage == STAGE_FINE ? "fine"
+                                      : "full");
+    if (x->timed)
+        snprintf(text + strlen(text), size - strlen(text), " %.1f ms", 1e3 * f->seconds);
+    snprintf(text + strlen(text), size - strlen(text), "  h: help");
 }
 
 /* The second line: a message, the light that moves, or the values under the mouse. */
@@ -65,7 +65,7 @@ void bar_draw(canvas *c, int y, int width, int height, const shown *x, const vie
     make_right(text, sizeof text, x);
     const int right = width - margin - font_letters(text) * margin;
     font_draw(c->font, c->s, right, y + 4, width, pale, text);
-    make_left(text, sizeof text, &x->picture, v);
+    make_left(text, sizeof text, &x->picture);
     font_draw(c->font, c->s, margin, y + 4, right - margin, white, text);
     make_second(text, sizeof text, x, v, s);
     font_draw(c->font, c->s, margin, y + 4 + line, width - margin, *x->message ? white : pale, text);

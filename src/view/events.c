@@ -59,10 +59,20 @@ static bool read_window(const SDL_WindowEvent *w, view_event *to)
     return w->event == SDL_WINDOWEVENT_LEAVE || w->event == SDL_WINDOWEVENT_SIZE_CHANGED;
 }
 
-bool events_read(const SDL_Event *from, view_event *to)
+/* Follow shift and ctrl. An event of a key has the others that are held after it. */
+static void follow(held_keys *held, const SDL_Event *e)
 {
-    const SDL_Keymod mod = SDL_GetModState();
-    *to = (view_event){.shift = (mod & KMOD_SHIFT) != 0, .ctrl = (mod & KMOD_CTRL) != 0};
+    if (e->type == SDL_KEYDOWN || e->type == SDL_KEYUP)
+        held->mod = (SDL_Keymod)e->key.keysym.mod;
+    else if (e->type == SDL_WINDOWEVENT &&
+             (e->window.event == SDL_WINDOWEVENT_FOCUS_GAINED || e->window.event == SDL_WINDOWEVENT_FOCUS_LOST))
+        held->mod = SDL_GetModState();
+}
+
+bool events_read(held_keys *held, const SDL_Event *from, view_event *to)
+{
+    follow(held, from);
+    *to = (view_event){.shift = (held->mod & KMOD_SHIFT) != 0, .ctrl = (held->mod & KMOD_CTRL) != 0};
     switch (from->type) {
     case SDL_QUIT:
         *to = (view_event){.kind = EVENT_KEY, .key = 'q'};

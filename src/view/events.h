@@ -6,7 +6,12 @@
 
 #include "look/state.h"
 
+/* The keys that are held, as the events have told so far: SDL_GetModState is ahead of them. */
+typedef struct held_keys {
+    SDL_Keymod mod;
+} held_keys;
+
 /* False: the event means nothing to the view. */
-bool events_read(const SDL_Event *from, view_event *to);
+bool events_read(held_keys *held, const SDL_Event *from, view_event *to);
 
 #endif

@@ -16,7 +16,7 @@ static const char help[] =
     "                       --surface, --no-self-shadow, --no-guard, --aa and --aa-threshold, as for kage render\n"
     "  --threads N          number of threads (as many as there are processors)\n"
     "  --frames N           turn the eye for N frames, print how long they took, and end\n"
-    "  --report             print a line for each picture that is shown\n"
+    "  --report             print a line for each picture that is shown, and show no times: for tests\n"
     "\n"
     "The picture comes coarse at once, then full, then antialiased. The scene is read again when its file changes.\n"
     "Its errors are shown in the window. Mouse and keys:\n"

@@ -32,18 +32,19 @@ void panel_help(canvas *c, int width, int height)
     int lines = 0;
     for (int k = 0; k < view_key_count; k++)
         lines += view_keys[k].name != NULL;
+    const int fit = SDL_max(1, (height - 8) / line - 1), rows = SDL_min(lines, fit);
     const int w = SDL_min(columns * advance, width), x = (width - w) / 2;
-    const int step = SDL_min(line, (height - 8) / (lines + 1)), y = SDL_max(0, (height - (lines + 1) * step) / 2);
-    panel_dim(c, x, y - 4, w, (lines + 1) * step + 8);
-    int row = y;
-    for (int k = 0; k < view_key_count; k++) {
+    const int y = SDL_max(4, (height - (rows + 1) * line) / 2);
+    panel_dim(c, x, y - 4, w, (rows + 1) * line + 8);
+    for (int k = 0, row = 0; k < view_key_count && row < rows; k++) {
         if (!view_keys[k].name)
             continue;
-        font_draw(c->font, c->s, x + advance, row, x + w, warm, view_keys[k].name);
-        font_draw(c->font, c->s, x + names * advance, row, x + w, white, view_keys[k].help);
-        row += step;
+        font_draw(c->font, c->s, x + advance, y + row * line, x + w, warm, view_keys[k].name);
+        font_draw(c->font, c->s, x + names * advance, y + row * line, x + w, white, view_keys[k].help);
+        row++;
     }
-    font_draw(c->font, c->s, x + names * advance, row, x + w, pale, "h closes this list");
+    font_draw(c->font, c->s, x + names * advance, y + rows * line, x + w, pale,
+              rows < lines ? "h closes this; the rest: kage view --help" : "h closes this list");
 }
 
 void panel_errors(canvas *c, int width, int height, const char *errors, bool of_file)

@@ -22,6 +22,7 @@ typedef struct shown {
     frame picture;
     worker_news news;
     char message[SAVE_TEXT]; /* in place of the readout; empty: none */
+    bool timed;              /* with times, which differ from run to run */
     double rate;             /* frames a second while something moves; 0: nothing does */
 } shown;
 

@@ -44,6 +44,20 @@ def test_render(installed: Installed, tmp_path: Path) -> None:
     assert wrong.returncode == 1 and "'best' is no method" in wrong.stderr
 
 
+def test_change(installed: Installed, tmp_path: Path) -> None:
+    """Its last picture is that of the text that it writes, with a function in place of the array."""
+    program = installed.build(EXAMPLES / "change.c", tmp_path / "change", "-lm")
+    subprocess.run([program, tmp_path], check=True)
+    scene = tmp_path / "last.yaml"
+    assert "lamp: {at: [-2.525, 3, -3.102], color: [1, 1, 1]} # moves" in scene.read_text()
+    text = scene.read_text()
+    begin = text.index("map: ")
+    scene.write_text(text[:begin] + "function: 0.2*cos(9.6*sqrt((u - 4)^2 + (w - 4)^2))}\n")
+    last, before = picture(tmp_path / "7.png"), picture(tmp_path / "6.png")
+    same = np.abs(last - render(scene, "0", tmp_path / "b.png")).mean()  # apart from what repeats far away
+    assert same < 0.3 * np.abs(last - before).mean()
+
+
 def embree() -> str:
     return "-lembree4" if Path("/usr/include/embree4").exists() else "-lembree3"
 
@@ -60,12 +74,12 @@ def test_embree(installed: Installed, tmp_path: Path) -> None:
     assert differs(theirs["none"], theirs["0"]) > 0.01
 
 
-@pytest.mark.parametrize(("name", "most"), [("render.c", 59), ("embree.c", 149)])
+@pytest.mark.parametrize(("name", "most"), [("render.c", 59), ("change.c", 61), ("embree.c", 149)])
 def test_examples_are_short(name: str, most: int) -> None:
     assert len((EXAMPLES / name).read_text().splitlines()) <= most
 
 
 def test_the_docs_show_the_examples() -> None:
     text = (TOP / "docs" / "library.md").read_text()
-    for name in ("render.c", "embree.c"):
+    for name in ("render.c", "change.c", "embree.c"):
         assert f"<!-- examples/{name} -->\n```c\n{(EXAMPLES / name).read_text()}```\n<!-- end -->" in text

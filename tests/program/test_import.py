@@ -222,7 +222,8 @@ def test_bump(kage: Kage) -> None:
     flat, moved = (rgb(picture(kage, "--shadow", method)) for method in ("none", "auto"))
     assert (np.abs(flat - moved).max(-1) > 0.05).mean() > 0.002
     text = scene_of(kage, "garden.gltf", "--overwrite", "--bump", f"Tree*Leaves={sand}{BUMP}", "--bump",
-                    f"Tree.001/Leaves={sand},scale=0.02")
+                    f"Tree.001/Leaves={sand},scale=0.02,repeat=2x1,sign=down")
+    assert "repeat: [2, 1]\n      sign: down\n      zero: 0.5" in text
     assert text.count("bump:") == 4 and text.count("copy:") == 3  # the one with another bump is no copy
 
 
@@ -272,7 +273,9 @@ def test_steps(kage: Kage) -> None:
 
 
 def test_smooth_is_for_steps(kage: Kage) -> None:
-    scene_of(kage, "corner.glb", "--bump", f"Floor={TOP / 'scenes/data/jacksboro.exr'},scale=1e-5,zero=300")
+    exr = TOP / "scenes/data/jacksboro.exr"
+    text = scene_of(kage, "corner.glb", "--bump", f"Floor={exr},scale=1e-5,zero=300,channel=elevation")
+    assert "jacksboro.exr, channel: elevation}" in text
     done = kage("check", "x.yaml", "--set", "objects.Floor.bump.smooth=2")
     assert done.returncode == 2 and "the samples are floats, which have no steps to be smoothed" in done.stderr
 

@@ -1,6 +1,7 @@
 """A page in headless Chromium: what is wrong with it, and its slider moved by keys, pointer and finger.
 
-`check_page(path)` is for any page of bench/report.py, made-up or real. Without Chromium or selenium a test is skipped, but not in CI.
+`check_page(path)` is for any page of bench/report.py, made-up or real. Without Chromium or selenium a test is skipped,
+but not in CI.
 """
 
 from __future__ import annotations

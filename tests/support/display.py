@@ -106,8 +106,8 @@ class View:
         """Press at x, y, move, and let go, with a key held."""
         left, top = self.place
         down, up = (["keydown", hold], ["keyup", hold]) if hold else ([], [])
-        self.display.do("mousemove", left + x, top + y, *down, "mousedown", button, "mousemove", left + to_x, top + to_y,
-                        "mouseup", button, *up)
+        self.display.do("mousemove", left + x, top + y, *down, "mousedown", button, "mousemove", left + to_x,
+                        top + to_y, "mouseup", button, *up)
 
     def pixels(self, width: int, height: int) -> np.ndarray[Any, Any]:
         """The picture in the window."""

@@ -99,6 +99,32 @@ struct fy_node *__wrap_fy_node_build_from_malloc_string(struct fy_document *to, 
 
 /* NOLINTEND(bugprone-reserved-identifier) */
 
+/* What a scene is read with, and a change that is made of it; NULL: none. */
+static const kage_load_options *arrays;
+static const char *change;
+
+/* Change a scene, render both by what must be read again, and write its text. Returns the step. */
+static const char *change_it(kage_scene *s, const char *path, kage_status *status, kage_errors **e)
+{
+    kage_scene *t = NULL;
+    kage_film *f = NULL;
+    const kage_load_options o = {.sets = (const char *[]){"camera.fov=30", change}, .set_count = 2};
+    const kage_render_options exact = {.threads = 1, .method = "exact", .width = 8, .height = 8};
+    const char *step = "change";
+    *status = kage_scene_change(s, &o, &t, e);
+    if (*status == KAGE_OK) {
+        step = "render what is changed";
+        *status = kage_render(t, &exact, &f, e);
+    }
+    if (*status == KAGE_OK) {
+        step = "write the text";
+        *status = kage_scene_write(t, path, e);
+    }
+    kage_film_free(f);
+    kage_scene_free(t);
+    return step;
+}
+
 static const char *work_on(const char *text, const kage_render_options *o, const char *path, kage_status *status)
 {
     kage_scene *s = NULL;
@@ -108,7 +134,8 @@ static const char *work_on(const char *text, const kage_render_options *o, const
     char png[64], exr[64];
     snprintf(png, sizeof png, "%s.png", path);
     snprintf(exr, sizeof exr, "%s.exr", path);
-    const kage_load_options one = {.threads = 1};
+    kage_load_options one = arrays ? *arrays : (kage_load_options){0};
+    one.threads = 1;
     const kage_write_options write = {.threads = 1, .band = 16};
     *status = kage_scene_parse(text, strlen(text), "m", KAGE_TESTS_DIR "/../scenes/data", &one, &s, &e);
     if (*status == KAGE_OK) {
@@ -135,6 +162,8 @@ static const char *work_on(const char *text, const kage_render_options *o, const
         step = "export";
         *status = kage_scene_write_povray(s, path, NULL, NULL, &e);
     }
+    if (*status == KAGE_OK && change)
+        step = change_it(s, path, status, &e);
     if (*status != KAGE_OK && *status != KAGE_NO_MEMORY)
         print_error("%s\n", kage_errors_get(e, 0)->message);
     if (*status != KAGE_OK && kage_errors_count(e) == 0)
@@ -190,6 +219,31 @@ static void of_maps(void **state)
     each_fails(WITH_MAP, &plain, 1);
 }
 
+static void of_changes(void **state)
+{
+    (void)state;
+    change = "objects.ball.bump.scale=0.2";
+    each_fails(WITH_MAP, &plain, 3);
+    change = NULL;
+}
+
+static void of_arrays(void **state)
+{
+    (void)state;
+    static const uint8_t sample[4] = {0, 200, 100, 255};
+    static const double at[9] = {0, 0, 0, 1, 0, 0, 0, 0, 1};
+    static const uint32_t corner[3] = {0, 2, 1};
+    static const kage_image_array h = {"h", 2, 2, 1, KAGE_U8, sample};
+    static const kage_mesh_array m = {"m", 3, 1, at, at, at, corner};
+    static const char *const set[] = {"objects.ball.bump.map.file=\"array:h\"",
+                                      "objects.flat={mesh: {file: \"array:m\"}, material: clay}"};
+    const kage_load_options o = {
+        .sets = set, .set_count = 2, .images = &h, .image_count = 1, .meshes = &m, .mesh_count = 1};
+    arrays = &o;
+    each_fails(WITH_MAP, &plain, 3);
+    arrays = NULL;
+}
+
 static void of_displaced_surfaces(void **state)
 {
     (void)state;
@@ -238,8 +292,14 @@ static void of_lists(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(of_functions),           cmocka_unit_test(of_maps),   cmocka_unit_test(of_displaced_surfaces),
-        cmocka_unit_test(of_parametric_surfaces), cmocka_unit_test(of_models), cmocka_unit_test(of_lists),
+        cmocka_unit_test(of_changes),
+        cmocka_unit_test(of_arrays),
+        cmocka_unit_test(of_functions),
+        cmocka_unit_test(of_maps),
+        cmocka_unit_test(of_displaced_surfaces),
+        cmocka_unit_test(of_parametric_surfaces),
+        cmocka_unit_test(of_models),
+        cmocka_unit_test(of_lists),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -67,6 +67,49 @@ static void threads_share_a_scene(void **state)
     kage_scene_free(s);
 }
 
+/* Change after change of a scene that all share, rendered by a method for which each is read again. */
+static void *use_changes(void *user)
+{
+    enum { STEPS = 4 };
+    static const char *const sets[STEPS] = {"camera.fov=30", "objects.ground.bump.scale=0.2", "render.aa=2",
+                                            "objects.ground.bump.scale=0.1"};
+    work *k = user;
+    kage_scene *s = k->shared;
+    for (int i = 0; k->good && i < STEPS; i++) {
+        kage_scene *t = NULL;
+        const kage_load_options o = {.sets = &sets[(i + k->number) % STEPS], .set_count = 1};
+        k->good = kage_scene_change(s, &o, &t, NULL) == KAGE_OK;
+        if (s != k->shared)
+            kage_scene_free(s);
+        s = t;
+        const kage_render_options r = {
+            .method = k->number % 2 ? "exact" : "0", .threads = 1, .reuse = k->film, .width = 24, .height = 16};
+        k->good = k->good && kage_scene_get_info(s)->text && kage_render(s, &r, &k->film, NULL) == KAGE_OK &&
+                  kage_scene_get_info(k->shared)->text;
+    }
+    kage_scene_free(s == k->shared ? NULL : s);
+    return NULL;
+}
+
+static void threads_change_a_scene(void **state)
+{
+    (void)state;
+    pthread_t thread[THREADS];
+    work all[THREADS];
+    const char *const set = "objects.ground.bump.scale=0.5";
+    kage_scene *s = parse_with(GROUND, NULL, &(kage_load_options){.sets = &set, .set_count = 1, .threads = 1});
+    for (int k = 0; k < THREADS; k++) {
+        all[k] = (work){.shared = s, .number = k, .good = 1};
+        assert_int_equal(pthread_create(&thread[k], NULL, use_changes, &all[k]), 0);
+    }
+    for (int k = 0; k < THREADS; k++) {
+        assert_int_equal(pthread_join(thread[k], NULL), 0);
+        assert_true(all[k].good);
+        kage_film_free(all[k].film);
+    }
+    kage_scene_free(s);
+}
+
 static void *read_model(void *user)
 {
     kage_scene *s = NULL;
@@ -92,6 +135,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(threads_share_a_scene),
+        cmocka_unit_test(threads_change_a_scene),
         cmocka_unit_test(threads_read_models),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
