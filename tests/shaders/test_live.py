@@ -205,7 +205,7 @@ def test_shown(driver: Chrome, tmp_path: Path) -> None:
     (tmp_path / "shot.png").write_bytes(base64.b64decode(shot))
     with Image.open(tmp_path / "shot.png") as image:
         seen = np.asarray(image.convert("RGB")).astype(int)
-    middle, free = slice(size[1] // 3, -8), 30  # without labels, corners and the line
+    middle, free = slice(size[1] // 5, -8), 30  # without labels, corners and the line
     line = round(0.6 * size[0])
     for method, part in (("none", slice(8, line - free)), ("0", slice(line + free, size[0] - 8))):
         wanted = kage(tmp_path, "cube", "--shadow", method, "--aa", "2", size=tuple(size))

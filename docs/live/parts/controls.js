@@ -69,8 +69,8 @@ function show() {
   divider.setAttribute("aria-valuetext", `${percent} %: left ${nameOf("left")}, right ${nameOf("right")}`);
   $("chip-left").textContent = nameOf("left");
   $("chip-right").textContent = nameOf("right");
-  $("chip-left").style.opacity = state.line > 0.02 ? 1 : 0;
-  $("chip-right").style.opacity = state.line < 0.98 ? 1 : 0;
+  for (const [side, share] of [["left", state.line], ["right", 1 - state.line]])
+    Object.assign($("chip-" + side).style, { maxWidth: `calc(${share * 100}% - 1rem)`, opacity: share > 0.1 ? 1 : 0 });
   for (const side of ["left", "right"])
     $("which").querySelector(`[value=${side}] + span`).textContent = `${side}: ${METHODS[state[side]].name}`;
   const key = [state.scene, nameOf("left"), nameOf("right"), state.line > 0, state.line < 1].join();
