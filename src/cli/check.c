@@ -17,10 +17,11 @@ static void print_steps(const kage_object_info *o, const kage_survey *v, int id)
 {
     const kage_warning *w = find_warning(v, id, KAGE_WARN_STEPS);
     if (w)
-        printf("    warning: the map has %d bits: where it rises slowly its steps of %.3g are seen as stairs, slopes of "
-               "%.3f\n"
-               "             beside its own of %.3f; use a map of 16 bits, or bump.smooth: 2\n",
-               o->map_bits, v->objects[id].step, w->value, v->objects[id].slope_median);
+        printf(
+            "    warning: the map has %d bits: where it rises slowly its steps of %.3g are seen as stairs, slopes of "
+            "%.3f\n"
+            "             beside its own of %.3f; use a map of 16 bits, or bump.smooth: 2\n",
+            o->map_bits, v->objects[id].step, w->value, v->objects[id].slope_median);
 }
 
 static void print_bump(const kage_object_info *o, const kage_survey *v, int id)

@@ -147,7 +147,7 @@ static char *make_file(importer *k, const unsigned char *bytes, size_t size, con
     if (!picture_decode(bytes, size, &p, why))
         return NULL;
     if (p.clear)
-        scene_note(k, 2, "image %.100s is transparent in places, which is left out", name);
+        scene_tell(k, 2, "image %.100s is transparent in places, which is left out", name);
     if (kind == PICTURE_PNG && !p.clear && is_white(factor)) {
         free(p.v);
         return kept ? join("", 0, kept) : send_file(k, name, ".png", bytes, size);
@@ -220,7 +220,7 @@ const char *scene_image_file(importer *k, const char *uri, const double factor[3
     char *file = t ? file_of_embedded(k, t, factor, why) : file_beside(k, uri, factor, why);
     k->image[k->images++] = (scene_image){key.s, file};
     if (!file)
-        scene_note(k, 2, "material %.60s: its image %.200s can't be used: %s", owner,
+        scene_tell(k, 2, "material %.60s: its image %.200s can't be used: %s", owner,
                    *uri == '*' ? "in the model" : uri, why);
     return file;
 }

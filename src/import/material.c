@@ -174,20 +174,20 @@ static void note_lost(importer *k, const struct aiMaterial *m, const look *l)
     double x = 0;
     for (size_t i = 0; i < sizeof maps / sizeof *maps; i++)
         if (has_image(m, maps[i].type))
-            scene_note(k, 2, "material %s: left out: %s", l->name, maps[i].what);
+            scene_tell(k, 2, "material %s: left out: %s", l->name, maps[i].what);
     if (has_image(m, aiTextureType_NORMALS) || has_image(m, aiTextureType_NORMAL_CAMERA))
-        scene_note(
+        scene_tell(
             k, 2,
             "material %s: left out: the normal map, which has slopes but no heights; docs/models.md tells how to "
             "make a height map",
             l->name);
     if (has_image(m, aiTextureType_HEIGHT))
-        scene_note(k, 2, "material %s: left out: the bump map; if it has heights, put it on an object by --bump",
+        scene_tell(k, 2, "material %s: left out: the bump map; if it has heights, put it on an object by --bump",
                    l->name);
     if (aiGetMaterialString(m, AI_MATKEY_GLTF_ALPHAMODE, &mode) == aiReturn_SUCCESS && strcmp(mode.data, "MASK") == 0)
-        scene_note(k, 2, "material %s: left out: what its alpha cuts away", l->name);
+        scene_tell(k, 2, "material %s: left out: what its alpha cuts away", l->name);
     if (get_number(m, AI_MATKEY_CLEARCOAT_FACTOR, &x) && x > 0)
-        scene_note(k, 2, "material %s: left out: the clear coat", l->name);
+        scene_tell(k, 2, "material %s: left out: the clear coat", l->name);
 }
 
 /* ---- text ---- */
@@ -225,7 +225,7 @@ static void note_layout(importer *k, const struct aiMaterial *m, const look *l)
     struct aiUVTransform t;
     if (aiGetMaterialUVTransform(m, AI_MATKEY_UVTRANSFORM(l->image, 0), &t) == aiReturn_SUCCESS &&
         (t.mScaling.x <= 0 || t.mScaling.y <= 0 || fabsf(t.mRotation) >= 1e-6f))
-        scene_note(k, 2, "material %s: left out: how its image is turned or mirrored", l->name);
+        scene_tell(k, 2, "material %s: left out: how its image is turned or mirrored", l->name);
 }
 
 /* The colour multiplies the image; a grey one does so as a factor of diffuse and ambient. */

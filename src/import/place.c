@@ -32,7 +32,7 @@ double scene_middle(const importer *k, double middle[3])
     return sqrt(sum);
 }
 
-void scene_note(importer *k, int indent, const char *fmt, ...)
+void scene_tell(importer *k, int indent, const char *fmt, ...)
 {
     char line[MESH_WHY];
     va_list args;

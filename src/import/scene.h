@@ -48,7 +48,7 @@ void scene_place(const importer *k, const struct aiMatrix4x4 *m, const struct ai
 double scene_middle(const importer *k, double middle[3]);
 
 /* Tell what the scene lacks, to the user and as a comment in the scene, indented by `indent`. */
-void scene_note(importer *k, int indent, const char *fmt, ...) TEXT_PRINTF(3, 4);
+void scene_tell(importer *k, int indent, const char *fmt, ...) TEXT_PRINTF(3, 4);
 
 /* ---- view.c ---- */
 

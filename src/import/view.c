@@ -80,7 +80,7 @@ static void camera_of_box(importer *k)
     scene_middle(k, at);
     make_unit(dir, ahead);
     along(at, -distance_to_box(k, at, dir, fov), dir, from);
-    scene_note(k, 0, "the model has no camera: the scene's sees all of it");
+    scene_tell(k, 0, "the model has no camera: the scene's sees all of it");
     text_add(&k->out, "camera: {");
     add_place(k, "from", from, ", ");
     add_place(k, "at", at, ", ");
@@ -145,7 +145,7 @@ bool scene_camera(importer *k, char why[MESH_WHY])
     if (c < k->s->mNumCameras) {
         write_camera(k, k->s->mCameras[c]);
         if (k->s->mNumCameras > 1 && !wanted)
-            scene_note(k, 0, "the first of %u cameras is taken, %.100s; --camera NAME takes another", k->s->mNumCameras,
+            scene_tell(k, 0, "the first of %u cameras is taken, %.100s; --camera NAME takes another", k->s->mNumCameras,
                        k->s->mCameras[0]->mName.data);
         return true;
     }
@@ -268,7 +268,7 @@ static void light_of_box(importer *k)
 {
     double m[3];
     const double size = scene_middle(k, m), at[3] = {m[0] - 0.9 * size, m[1] + 1.3 * size, m[2] - 0.9 * size};
-    scene_note(k, 2, "the model has no lights: the scene's is above, in front, to the left");
+    scene_tell(k, 2, "the model has no lights: the scene's is above, in front, to the left");
     text_add(&k->out, "  lamp:\n");
     add_place(k, "    at", at, "\n");
     text_add(&k->out, "    color: [%g, %g, %g]\n", k->wish->brightness, k->wish->brightness, k->wish->brightness);
@@ -290,7 +290,7 @@ void scene_lights(importer *k)
     for (unsigned i = 0; i < n && name; i++) {
         const lamp x = lamp_of(k, k->s->mLights[i]);
         if (!is_lamp(x.l)) {
-            scene_note(k, 2, "light %.100s is left out: kage has no light of its kind", x.l->mName.data);
+            scene_tell(k, 2, "light %.100s is left out: kage has no light of its kind", x.l->mName.data);
             continue;
         }
         if (made == 0)

@@ -830,7 +830,8 @@ def test_set_bytes(bench: Kage) -> None:
 # ---- the command line ----
 
 COMMAND = [
-    ("command", ["rendr"], "no command 'rendr', expected render, check, pixel, pov or methods; see kage --help"),
+    ("command", ["rendr"],
+     "no command 'rendr', expected render, check, pixel, pov, import, view or methods; see kage --help"),
     ("no-scene", ["render"], "'kage render' lacks a scene; see kage --help"),
     ("no-scene-check", ["check"], "'kage check' lacks a scene; see kage --help"),
     ("no-pixel", ["pixel", "scene.yaml"], "'kage pixel' lacks the pixel X,Y; see kage --help"),
