@@ -100,8 +100,8 @@ bool film_has_layer(const film *f, const char *word, size_t n);
 #define PICTURE_CROP "kage:crop"
 
 /* What a picture's file says of it; crop: as picture_crop writes it. The film owns the texts. */
-void picture_texts(const kage_film *f, const char *crop, image_text text[PICTURE_TEXTS]);
-void picture_crop(window part, char text[PICTURE_CROP_SIZE]);
+void picture_texts(const kage_film *f, const char *crop, image_text to[PICTURE_TEXTS]);
+void picture_crop(window w, char text[PICTURE_CROP_SIZE]);
 
 /* A picture's file that is being written, and the planes of films that go into it. */
 typedef struct picture {

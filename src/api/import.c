@@ -59,13 +59,10 @@ static char *folder_between(const char *from, const char *to)
 static char *name_from(const char *from, const char *path)
 {
     char *to = folder_of(path), *between = to ? folder_between(from, to) : NULL;
-    const size_t n = between ? strlen(between) : 0;
     const char *base = base_of(path);
-    char *name = between ? malloc(n + strlen(base) + 1) : strdup(path);
-    if (name && between) {
-        memcpy(name, between, n);
-        strcpy(name + n, base);
-    }
+    char *name = between ? malloc(strlen(between) + strlen(base) + 1) : strdup(path);
+    if (name && between)
+        strcat(strcpy(name, between), base);
     free(to);
     free(between);
     return name;

@@ -79,9 +79,9 @@ char *reader_name(reader *r, node *map, node *key);
 /* Add the error that a name is there twice. Always false. */
 bool reader_second(reader *r, node *key, const char *name);
 
-/* The map of at most `most` named things under a required key of the scene. Sets *array to one zeroed item of `size`
+/* The map of at most `most` named things under a required key of the scene. Sets *items_at to one zeroed item of `size`
  * bytes for each, owned by the scene. NULL with an error; *count is then unchanged. */
-node *reader_named(reader *r, const char *key, int most, size_t size, void *array, int *count);
+node *reader_named(reader *r, const char *key, int most, size_t size, void *items_at, int *count);
 
 /* The path of a file that is given relative to the scene's folder; owned by the caller. Adds the file to those that the
  * scene is made from. NULL: out of memory, with an error. */

@@ -118,7 +118,8 @@ static void a_film_says_what_its_files_say(void **state)
         const kage_metadata m = kage_film_metadata(f, k);
         const size_t key = strlen(m.name) + 1, value = strlen(m.value);
         size_t at = 0;
-        while (at + key + value <= n && (memcmp(read + at, m.name, key) || memcmp(read + at + key, m.value, value)))
+        while (at + key + value <= n &&
+               (memcmp(read + at, m.name, key) != 0 || memcmp(read + at + key, m.value, value) != 0))
             at++;
         assert_true(at + key + value <= n);
     }
