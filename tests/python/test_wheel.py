@@ -42,7 +42,8 @@ def installed(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_it_is_for_all_pythons_from_3_11_on(wheel: Path) -> None:
     assert re.fullmatch(r"kage-[\d.]+-cp311-abi3-manylinux_\d+_\d+_x86_64\.whl", wheel.name)
     names = zipfile.ZipFile(wheel).namelist()
-    assert {"kage/py.typed", "kage/kage-import", "kage/_kage.abi3.so", "kage/sweep/__init__.py"} <= set(names)
+    needed = ("py.typed", "kage-import", "_kage.abi3.so", "sweep/__init__.py", "sweep/index.html.jinja")
+    assert {f"kage/{name}" for name in needed} <= set(names)
     libraries = [name for name in names if name.startswith("kage.libs/")]
     licenses = [name for name in names if ".dist-info/licenses/" in name]
     assert any("libembree" in name for name in libraries) and any("libassimp" in name for name in libraries)

@@ -33,7 +33,7 @@ try:
     from kage.sweep.run import Done, cluster, run
     from kage.sweep.worker import Result
 except ModuleNotFoundError as missing:
-    sys.exit(f"kage.sweep: the Python package {missing.name} is missing: pip install 'dask[distributed]'")
+    sys.exit(f"kage.sweep: the Python package {missing.name} is missing: pip install 'dask[distributed]' Jinja2")
 
 
 def parse_arguments(arguments: Sequence[str] | None) -> argparse.Namespace:
