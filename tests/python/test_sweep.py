@@ -99,6 +99,14 @@ def test_what_cannot_be_written_fails_alone(client: Client, tmp_path: Path) -> N
     assert sorted(done.records) == ["shadow=0.png", "shadow=2.png"]
 
 
+def test_an_index_that_cannot_be_written_is_told(client: Client, tmp_path: Path,
+                                                 capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "index.json").mkdir()
+    words = ["--size", "64x48", "--scheduler", client.scheduler.address, "--out", tmp_path]
+    assert main([str(CUBE), *map(str, words)]) == 1
+    assert "Is a directory" in capsys.readouterr().err
+
+
 # Bands and frames -----------------------------------------------------------------------------------
 
 

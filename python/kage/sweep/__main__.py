@@ -109,9 +109,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     options = parse_arguments(arguments)
     try:
         done = sweep(options)
-    except (SweepError, kage.KageError) as error:
+    except SweepError as error:
         print(error, file=sys.stderr)
-        return error.status if isinstance(error, SweepError) else 2
+        return error.status
+    except (kage.KageError, OSError) as error:
+        print(error, file=sys.stderr)
+        return 2 if isinstance(error, kage.InputError | kage.OptionError) else 1
     except KeyboardInterrupt:
         print("\nkage.sweep: interrupted; the same command goes on from here", file=sys.stderr)
         return 130

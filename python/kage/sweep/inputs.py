@@ -50,10 +50,10 @@ class Inputs:
         """The scene in a file. values: of changes, which may name files, too. send: the files are to travel."""
         try:
             text = scene.read_text(encoding="utf-8")
+            folder = scene.resolve().parent
+            files = tuple(read_file(folder, name, send) for name in named_files(folder, [text, *values]))
         except (OSError, UnicodeDecodeError) as error:
             raise SweepError(f"{scene}: can't be read: {error}") from error
-        folder = scene.resolve().parent
-        files = tuple(read_file(folder, name, send) for name in named_files(folder, [text, *values]))
         about = [scene.name, text, *([file.name, file.digest] for file in files)]
         return Inputs(scene.name, text, str(folder), files, hashlib.sha256(json.dumps(about).encode()).hexdigest())
 
