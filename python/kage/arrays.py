@@ -95,7 +95,7 @@ def name_of(*arrays: NDArray[Any]) -> str:
 def image_array(value: Any, path: str) -> NDArray[Any]:
     """Height x width x channels, of a type that the library knows."""
     array = np.asarray(value)
-    if array.dtype == np.float16:
+    if array.dtype.name == "float16":
         array = array.astype(np.float32)
     if array.ndim == 2:
         array = array[..., np.newaxis]
@@ -105,7 +105,7 @@ def image_array(value: Any, path: str) -> NDArray[Any]:
     if array.ndim != 3 or not 1 <= array.shape[2] <= 4 or array.size == 0:
         raise OptionError(f"{path}: an array of shape {np.shape(value)}, expected height x width, or height x width x "
                           "1 to 4")
-    return np.ascontiguousarray(array)
+    return np.ascontiguousarray(array, array.dtype.newbyteorder("="))
 
 
 def mesh_arrays(value: Mapping[str, Any], path: str) -> dict[str, NDArray[Any]]:

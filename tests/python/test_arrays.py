@@ -45,7 +45,8 @@ def test_a_height_map_is_what_its_file_is(tmp_path: Path) -> None:
     assert np.array_equal(of_name.rgb, of_file.rgb) and np.allclose(of_floats["height"], of_file["height"], atol=1e-6)
 
 
-@pytest.mark.parametrize("turned", [lambda a: a, np.asfortranarray, lambda a: np.repeat(a, 2, axis=1)[:, ::2]])
+@pytest.mark.parametrize("turned", [
+    lambda a: a, np.asfortranarray, lambda a: np.repeat(a, 2, axis=1)[:, ::2], lambda a: a.astype(">f8")])
 def test_any_order_in_memory(turned: Any) -> None:
     one, other = (kage.load(scene(bump=bump(array))).render(size=SMALL) for array in (HEIGHTS, turned(HEIGHTS.copy())))
     assert np.array_equal(one.rgb, other.rgb) and one.metadata == other.metadata
