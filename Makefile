@@ -264,7 +264,7 @@ $(BUILD)/unit/api/test_memory: private override LDFLAGS += $(WRAPPED:%=-Wl,--wra
 PACKAGE   = $(BUILD)/python/kage
 PY_CFLAGS = -Iinclude -Ipython -DPy_LIMITED_API=0x030b0000 -fPIC -O2 \
             -isystem $$($(PYTHON) -c 'import sysconfig; print(sysconfig.get_path("include"))')
-MODULES   = $(PACKAGE)/_kage.abi3.so $(if $(wildcard python/methods.h),$(PACKAGE)/_methods.abi3.so)
+MODULES   = $(PACKAGE)/_kage.abi3.so $(PACKAGE)/_methods.abi3.so
 # What a module takes from libkage.a is its own.
 PY_LINK   = $(CC) $(LDFLAGS) -shared -Wl,--exclude-libs,ALL
 
@@ -274,7 +274,7 @@ python: $(MODULES) $(BUILD)/kage-import FORCE
 	    $(patsubst %/__init__.py,%,$(wildcard python/kage/*/__init__.py))) $(PACKAGE)
 
 # With it python/kage/structs.py, which is under version control as others read it, too.
-$(BUILD)/python/_kage.c: python/build_ext.py python/structs.py include/kage.h $(wildcard python/methods.h)
+$(BUILD)/python/_kage.c: python/build_ext.py python/structs.py include/kage.h python/methods.h
 	@echo '  PY  $@'
 	$(Q)$(PYTHON) python/structs.py && $(PYTHON) python/build_ext.py $(@D) >/dev/null
 

@@ -3,8 +3,8 @@
     python build_ext.py FOLDER
 
 makes FOLDER/_kage.c, the module kage._kage, from include/kage.h, and FOLDER/_methods.c, kage._methods, from methods.h
-beside this script, where that is there. cffi writes both, for Python's stable ABI. So a function or a struct of a
-header is in Python without a second text of it.
+beside this script. cffi writes both, for Python's stable ABI. So a function or a struct of a header is in Python
+without a second text of it.
 """
 
 from __future__ import annotations
@@ -58,8 +58,7 @@ def main() -> None:
     folder = Path(sys.argv[1])
     folder.mkdir(parents=True, exist_ok=True)
     library().emit_c_code(str(folder / "_kage.c"))
-    if METHODS.exists():
-        methods().emit_c_code(str(folder / "_methods.c"))
+    methods().emit_c_code(str(folder / "_methods.c"))
 
 
 if __name__ == "__main__":
