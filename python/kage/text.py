@@ -15,4 +15,9 @@ def text_of(value: Any) -> str | None:
 
 def bytes_of(value: str | os.PathLike[str] | None) -> Any:
     """For a const char * of an argument: None is NULL."""
-    return ffi.NULL if value is None else os.fsencode(value)
+    if value is None:
+        return ffi.NULL
+    text = os.fsencode(value)
+    if b"\0" in text:
+        raise ValueError("embedded null byte")  # as open() says; in C the text would end there
+    return text

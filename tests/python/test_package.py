@@ -158,6 +158,8 @@ def test_errors_of_options_changes_and_files(tmp_path: Path) -> None:
     assert isinstance(missing.value, OSError)
     with pytest.raises(kage.OptionError, match="png"):
         picture.save(tmp_path / "x.jpg")
+    with pytest.raises(ValueError, match="embedded null byte"):
+        picture.save(f"{tmp_path}/x.png\0.exr")
     assert not list(tmp_path.iterdir())
 
 
