@@ -377,14 +377,18 @@ def before_the_page(driver: Chrome, script: str) -> Iterator[None]:
         driver.execute_cdp_cmd("Page.removeScriptToEvaluateOnNewDocument", {"identifier": id_})
 
 
-def test_no_webgl(page: Chrome) -> None:
+@pytest.mark.parametrize(("script", "why"), [
+    ("HTMLCanvasElement.prototype.getContext = () => null;", "WebGL"),
+    ("delete globalThis.DecompressionStream;", "DecompressionStream"),
+])
+def test_old_browser(page: Chrome, script: str, why: str) -> None:
     """The picture by kage, and why."""
-    with before_the_page(page, "HTMLCanvasElement.prototype.getContext = () => null;"):
+    with before_the_page(page, script):
         browser.resize(page, PHONE, phone=True)
         page.get("about:blank")
         browser.open_page(page, live.PAGE)
     wait(page, "!document.getElementById('notice').hidden;")
-    assert "WebGL" in page.find_element("id", "notice").text
+    assert why in page.find_element("id", "notice").text
     assert shown(page, "still") and not shown(page, "canvas") and not shown(page, "divider")
     assert browser.bad_images(page) == []
     assert browser.sideways(page) <= 0

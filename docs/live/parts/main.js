@@ -32,9 +32,12 @@ function tryFrame(share, side) {
   try {
     drawFrame(share, side);
   } catch (error) {
-    failed(`The live picture does not work here (${error.message}). This one was made by kage itself.`);
+    failed(notWorking(error));
   }
 }
+
+const notWorking = (error) =>
+  `The live picture does not work here (${error.message}). This one was made by kage itself.`;
 
 function drawFrame(share, side) {
   const [width, height] = fullSize().map((n) => Math.max(Math.round(n * share), 8)), start = performance.now();
@@ -167,7 +170,12 @@ async function start() {
     failed("This browser has no WebGL 2, which the live picture needs. This one was made by kage itself.");
     return;
   }
-  for (const name of Object.keys(maps)) samplesOf[name] = await readMap(name);
+  try { /* older browsers have WebGL 2, but cannot inflate */
+    for (const name of Object.keys(maps)) samplesOf[name] = await readMap(name);
+  } catch (error) {
+    failed(notWorking(error));
+    return;
+  }
   showLive(true);
   tryFrame(1, 1);
   new ResizeObserver(request).observe(canvas);
