@@ -157,8 +157,9 @@ static bool write_file(const char *path, const void *bytes, size_t size, errors 
 struct import_report {
     kage_import_report shown; /* first, as the caller has its address */
     model_scene made;
-    char **path;  /* of the files, then of the scene; owned */
-    bool *is_new; /* of the files */
+    char **path;    /* of the files, then of the scene; owned */
+    bool *is_new;   /* of the files */
+    bool unwritten; /* one of them can't be written */
 };
 
 /* Remove the files that were not there before. */
@@ -194,8 +195,10 @@ static bool write_images(struct import_report *r, const char *file, const kage_i
         if (!(r->path[k] = malloc((size_t)folder + strlen(f->name) + 1)))
             return errors_add(e, "out of memory");
         sprintf(r->path[k], "%.*s%s", folder, file, f->name);
-        if (!may_write(r->path[k], f->bytes, f->size, o, opened, &fresh, e) ||
-            (!has_bytes(r->path[k], f->bytes, f->size) && !write_file(r->path[k], f->bytes, f->size, e)))
+        if (!may_write(r->path[k], f->bytes, f->size, o, opened, &fresh, e))
+            return false;
+        r->unwritten = !has_bytes(r->path[k], f->bytes, f->size) && !write_file(r->path[k], f->bytes, f->size, e);
+        if (r->unwritten)
             return false;
         r->is_new[k] = fresh;
     }
@@ -263,7 +266,8 @@ kage_status kage_model_import(const char *model, const char *file, const kage_im
     struct import_report *r = calloc(1, sizeof *r);
     const bool good = r ? make(r, model, file, &o, &p, &e) : errors_add(&e, "out of memory");
     c_locale_end(&l);
-    kage_status status = errors_give(&e, good ? KAGE_OK : KAGE_BAD_INPUT, &w, to);
+    const kage_status bad = r && r->unwritten ? KAGE_NOT_WRITTEN : KAGE_BAD_INPUT;
+    kage_status status = errors_give(&e, good ? KAGE_OK : bad, &w, to);
     if (status == KAGE_OK)
         status = try_scene(r, file, &o, to);
     if (status == KAGE_OK && !write_file(file, r->made.text, strlen(r->made.text), &e))

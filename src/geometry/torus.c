@@ -179,7 +179,7 @@ surface *torus_new(vec3 centre, vec3 axis, double major, double minor)
     if (!f)
         return NULL;
     const frame a = frame_about(axis);
-    *f = (torus){.base = {&torus_methods, NULL},
+    *f = (torus){.base = {&torus_methods, NULL, 0},
                  .C = {centre.x, centre.y, centre.z},
                  .X = {a.x.x, a.x.y, a.x.z},
                  .Y = {a.y.x, a.y.y, a.y.z},

@@ -88,8 +88,11 @@ bool save_picture(const save_order *o, char text[SAVE_TEXT])
         return false;
     }
     kage_status status = write_scene(o, scene, &e);
-    if (status == KAGE_OK)
+    if (status == KAGE_OK) {
         status = write_picture(o, scene, picture, &e);
+        if (status != KAGE_OK) /* both, or none */
+            remove(scene);
+    }
     const kage_error *first = kage_errors_get(e, 0);
     if (status == KAGE_OK)
         snprintf(text, SAVE_TEXT, "saved %.200s and %.200s", base_of(scene), base_of(picture));

@@ -44,6 +44,7 @@ struct worker {
     kage_scene *changed; /* base with the changes of done.look; NULL: it has errors */
     int stage;           /* of the last picture of done.look; -1: its last one is shown */
     bool first;          /* the picture is the look's first */
+    bool owed;           /* it was given up */
     Uint32 began, ended; /* when that was begun and done */
     stage_cost cost;
     frame_films films;
@@ -215,6 +216,7 @@ static void draw_first(worker *w)
     kage_errors *e = NULL;
     kage_scene *changed = NULL;
     w->first = true;
+    w->owed = false;
     w->began = SDL_GetTicks();
     changes_make(&c, l, kage_scene_get_info(w->base), false);
     const kage_load_options o = {
@@ -225,13 +227,16 @@ static void draw_first(worker *w)
     w->changed = changed;
     if (status != KAGE_OK) {
         w->stage = -1;
-        if (status != KAGE_CANCELLED)
+        w->owed = status == KAGE_CANCELLED;
+        if (!w->owed)
             set_errors(w, &w->look_errors, status, e);
         return;
     }
     w->stage = stage_first(&w->cost, (double)l->width * l->height);
-    if (!draw(w, fixed))
+    if (!draw(w, fixed)) {
         w->stage = -1;
+        w->owed = SDL_AtomicGet(&w->urgent);
+    }
     w->ended = SDL_GetTicks();
 }
 
@@ -304,7 +309,7 @@ static int run(void *user)
         const bool news = wait_for_request(w, &before);
         if (w->done.quit)
             return 0;
-        bool again = w->done.number != before.number;
+        bool again = w->owed || w->done.number != before.number; /* a save may have stopped it, or a bad file */
         if (w->done.reloads != before.reloads)
             again = reload(w) || again;
         if (again)
