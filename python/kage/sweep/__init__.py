@@ -14,10 +14,13 @@ docs/sweep.md is the guide.
 
 from __future__ import annotations
 
-from kage.sweep.axes import Axis, axis
-from kage.sweep.errors import SweepError
-from kage.sweep.keys import Keys
-from kage.sweep.plan import Output, Plan
-from kage.sweep.run import Done, run
+try:
+    from kage.sweep.axes import Axis, axis
+    from kage.sweep.errors import SweepError
+    from kage.sweep.keys import Keys
+    from kage.sweep.plan import Output, Plan
+    from kage.sweep.run import Done, run
+except ModuleNotFoundError as missing:
+    raise ModuleNotFoundError(f"kage.sweep needs {missing.name}: pip install 'dask[distributed]' Jinja2") from missing
 
 __all__ = ["Axis", "Done", "Keys", "Output", "Plan", "SweepError", "axis", "run"]

@@ -21,19 +21,15 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
+from tqdm import tqdm
+
 import kage
-
-try:
-    from tqdm import tqdm
-
-    from kage.sweep.axes import axis
-    from kage.sweep.errors import SweepError
-    from kage.sweep.keys import Keys
-    from kage.sweep.plan import Output, Plan, Task
-    from kage.sweep.run import Done, cluster, run
-    from kage.sweep.worker import Result
-except ModuleNotFoundError as missing:
-    sys.exit(f"kage.sweep: the Python package {missing.name} is missing: pip install 'dask[distributed]' Jinja2")
+from kage.sweep.axes import axis
+from kage.sweep.errors import SweepError
+from kage.sweep.keys import Keys
+from kage.sweep.plan import Output, Plan, Task
+from kage.sweep.run import Done, cluster, run
+from kage.sweep.worker import Result
 
 
 def parse_arguments(arguments: Sequence[str] | None) -> argparse.Namespace:
