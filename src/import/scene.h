@@ -50,10 +50,12 @@ double scene_middle(const importer *k, double middle[3]);
 /* Tell what the scene lacks, to the user and as a comment in the scene, indented by `indent`. */
 void scene_tell(importer *k, int indent, const char *fmt, ...) TEXT_PRINTF(3, 4);
 
-/* ---- view.c ---- */
+/* ---- camera.c ---- */
 
 /* The keys camera and image. False, with a reason: there is no camera of the name. */
 bool scene_camera(importer *k, char why[MESH_WHY]);
+
+/* ---- lights.c ---- */
 
 /* The key lights. */
 void scene_lights(importer *k);

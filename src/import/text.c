@@ -43,6 +43,13 @@ void text_vector(text *t, const double v[3])
     text_add(t, "]");
 }
 
+void text_vector_of(text *t, const char *key, const double v[3], const char *end)
+{
+    text_add(t, "%s: ", key);
+    text_vector(t, v);
+    text_add(t, "%s", end);
+}
+
 /* Words that YAML might take for something else than a string begin with no letter, or are among these. A path may
  * begin with ../ */
 static bool is_plain(const char *s)

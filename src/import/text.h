@@ -27,6 +27,9 @@ void text_number(text *t, double x, int digits);
 /* Append `[x, y, z]` with 7 digits. */
 void text_vector(text *t, const double v[3]);
 
+/* Append `key: [x, y, z]` and an end. */
+void text_vector_of(text *t, const char *key, const double v[3], const char *end);
+
 /* Append a string of YAML in double quotes, or without them where it needs none. */
 void text_string(text *t, const char *s);
 
