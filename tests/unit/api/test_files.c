@@ -11,28 +11,7 @@
 
 #include "support/check.h"
 #include "support/image_whole.h"
-
-static char *slurp(const char *path, size_t *size)
-{
-    FILE *f = fopen(path, "rb");
-    struct stat st;
-    assert_non_null(f);
-    assert_int_equal(fstat(fileno(f), &st), 0);
-    char *bytes = malloc((size_t)st.st_size + 1);
-    *size = fread(bytes, 1, (size_t)st.st_size, f);
-    fclose(f);
-    return bytes;
-}
-
-static void assert_same_files(const char *a, const char *b)
-{
-    size_t m, n;
-    char *p = slurp(a, &m), *q = slurp(b, &n);
-    assert_int_equal(m, n);
-    assert_memory_equal(p, q, n);
-    free(p);
-    free(q);
-}
+#include "support/same_files.h"
 
 static void pictures_are_written(void **state)
 {

@@ -3,10 +3,9 @@
 
 #include "unit/api/scenes.h"
 
-#include <sys/stat.h>
 #include <unistd.h>
 
-#include "support/check.h"
+#include "support/same_files.h"
 
 enum { BANDS = 3, SIZE = 96 };
 
@@ -41,28 +40,6 @@ static int end(void **state)
     const int gone = rmdir(x->folder);
     free(x);
     return gone;
-}
-
-static char *slurp(const char *path, size_t *size)
-{
-    FILE *f = fopen(path, "rb");
-    struct stat st;
-    assert_non_null(f);
-    assert_int_equal(fstat(fileno(f), &st), 0);
-    char *bytes = malloc((size_t)st.st_size + 1);
-    *size = fread(bytes, 1, (size_t)st.st_size, f);
-    fclose(f);
-    return bytes;
-}
-
-static void assert_same_files(const char *a, const char *b)
-{
-    size_t m, n;
-    char *p = slurp(a, &m), *q = slurp(b, &n);
-    assert_int_equal(m, n);
-    assert_memory_equal(p, q, n);
-    free(p);
-    free(q);
 }
 
 /* Render a part of the picture to a file. */
