@@ -70,23 +70,23 @@ static motion motion_of(const importer *k, const struct aiMatrix4x4 *m)
     return x;
 }
 
-static double minor(const double m[3][3], int i, int j)
+static double minor(const motion *x, int i, int j)
 {
     const int a = (i + 1) % 3, b = (i + 2) % 3, c = (j + 1) % 3, d = (j + 2) % 3;
-    return m[a][c] * m[b][d] - m[a][d] * m[b][c];
+    return x->m[a][c] * x->m[b][d] - x->m[a][d] * x->m[b][c];
 }
 
 /* b a^-1: what moves a to b. False: a has no inverse. */
 static bool motion_between(const motion *a, const motion *b, motion *out)
 {
-    const double det = a->m[0][0] * minor(a->m, 0, 0) + a->m[0][1] * minor(a->m, 0, 1) + a->m[0][2] * minor(a->m, 0, 2);
+    const double det = a->m[0][0] * minor(a, 0, 0) + a->m[0][1] * minor(a, 0, 1) + a->m[0][2] * minor(a, 0, 2);
     if (!(fabs(det) > 1e-30))
         return false;
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++) {
             out->m[i][j] = 0;
             for (int c = 0; c < 3; c++)
-                out->m[i][j] += b->m[i][c] * minor(a->m, j, c) / det;
+                out->m[i][j] += b->m[i][c] * minor(a, j, c) / det;
         }
     for (int i = 0; i < 3; i++)
         out->t[i] = b->t[i] - (out->m[i][0] * a->t[0] + out->m[i][1] * a->t[1] + out->m[i][2] * a->t[2]);
@@ -101,7 +101,7 @@ static bool keeps_shape(const motion *x, double *scale)
         for (int j = 0; j < 3; j++)
             dot[i][j] = x->m[0][i] * x->m[0][j] + x->m[1][i] * x->m[1][j] + x->m[2][i] * x->m[2][j];
     const double s = (dot[0][0] + dot[1][1] + dot[2][2]) / 3,
-                 det = x->m[0][0] * minor(x->m, 0, 0) + x->m[0][1] * minor(x->m, 0, 1) + x->m[0][2] * minor(x->m, 0, 2);
+                 det = x->m[0][0] * minor(x, 0, 0) + x->m[0][1] * minor(x, 0, 1) + x->m[0][2] * minor(x, 0, 2);
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++)
             if (!(fabs(dot[i][j] - (i == j ? s : 0)) <= 1e-5 * s))
