@@ -18,13 +18,14 @@ static int begin(void **state)
 {
     fixture *x = calloc(1, sizeof *x);
     *state = x;
-    strcpy(x->folder, "/tmp/kage-join-XXXXXX");
-    if (!x || !mkdtemp(x->folder))
+    char folder[sizeof x->folder] = "/tmp/kage-join-XXXXXX";
+    if (!x || !mkdtemp(folder))
         return -1;
-    snprintf(x->whole, SIZE, "%s/whole.exr", x->folder);
-    snprintf(x->joined, SIZE, "%s/joined.exr", x->folder);
+    strcpy(x->folder, folder);
+    snprintf(x->whole, SIZE, "%s/whole.exr", folder);
+    snprintf(x->joined, SIZE, "%s/joined.exr", folder);
     for (int k = 0; k < BANDS; k++) {
-        snprintf(x->band[k], SIZE, "%s/%d.exr", x->folder, k);
+        snprintf(x->band[k], SIZE, "%s/%d.exr", folder, k);
         x->paths[k] = x->band[k];
     }
     return 0;

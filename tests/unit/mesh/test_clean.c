@@ -9,7 +9,7 @@
 static mesh_data triangles(int n)
 {
     static const float corners[3][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
-    mesh_data d = {n, malloc(sizeof *d.at * (size_t)n), calloc((size_t)n, sizeof *d.skin), {0}};
+    mesh_data d = {.n = n, .at = malloc(sizeof *d.at * (size_t)n), .skin = calloc((size_t)n, sizeof *d.skin)};
     assert_non_null(d.at);
     assert_non_null(d.skin);
     for (int k = 0; k < n; k++) {
