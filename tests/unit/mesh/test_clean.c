@@ -153,7 +153,7 @@ static void triangles_without_a_texture_are_counted(void **state)
  * a corner's normal is the mean of three sides, however these are cut into triangles. */
 static void check_cube(double crease, bool smooth)
 {
-    mesh_data d = {12, malloc(sizeof *d.at * 12), calloc(12, sizeof *d.skin), {0}};
+    mesh_data d = {.n = 12, .at = malloc(sizeof *d.at * 12), .skin = calloc(12, sizeof *d.skin)};
     char why[MESH_WHY];
     for (int k = 0; k < 12; k++)
         for (int i = 0; i < 3; i++) {
