@@ -98,24 +98,12 @@ static bool read_bands(const char *const *path, int count, const exr_band *first
 
 /* ---- copying ---- */
 
-/* Progress of one band as that of the whole. */
-typedef struct stretch {
-    const progress *whole;
-    int band, bands;
-} stretch;
-
-static bool show_stretch(void *user, const char *what, double share)
-{
-    const stretch *s = user;
-    return progress_show(s->whole, what, (s->band + share) / s->bands);
-}
-
 static bool copy(const band *b, int count, const image_form *form, image_writer *to, const progress *p, errors *e)
 {
     bool good = true;
     for (int k = 0; good && k < count; k++) {
-        stretch s = {p, k, count};
-        const progress show = {show_stretch, &s};
+        progress_part part = {p, NULL, (double)k / count, (k + 1.0) / count};
+        const progress show = {progress_part_show, &part};
         exr_band *file = exr_band_open(b[k].path, e);
         band now = {b[k].path, {0, 0, 0, 0}};
         good = file && read_part(exr_band_form(file), &now, e) &&
@@ -156,11 +144,10 @@ static kage_status join(const band *b, int count, const exr_band *first, const c
 
 static bool options_are_good(int count, const char *path, errors *e)
 {
-    const size_t n = strlen(path);
     bool good = true;
     if (count < 1)
         good = errors_add(e, "%d bands, expected one or more", count);
-    if (n < 5 || strcmp(path + n - 4, ".exr") != 0)
+    if (!has_ending(path, ".exr"))
         good = errors_add(e, "%s: only an EXR can be joined, expected a name that ends in .exr", path);
     return good;
 }

@@ -273,19 +273,6 @@ static int band_rows(const job *j, int threads)
     return rows > IMAGE_ROWS ? (int)(rows - rows % IMAGE_ROWS) : IMAGE_ROWS;
 }
 
-/* A stretch of the work, whose progress is shown as that of the whole. */
-typedef struct stretch {
-    const progress *whole;
-    double from, to;
-} stretch;
-
-static bool show_stretch(void *user, const char *what, double share)
-{
-    const stretch *s = user;
-    (void)what;
-    return progress_show(s->whole, "rendering", s->from + (s->to - s->from) * share);
-}
-
 /* Render and write the rows that are not in the file yet. */
 static bool fill_bands(kage_film *f, const job *j, const kage_render_options *o, int rows, picture *to,
                        const progress *p, errors *e)
@@ -298,8 +285,8 @@ static bool fill_bands(kage_film *f, const job *j, const kage_render_options *o,
     for (int y = part.y0 + image_writer_rows(to->writer), next; good && y < part.y1; y = next) {
         next = part.y1 - y < rows ? part.y1 : y + rows;
         const double from = (y - part.y0) / all, end = (next - part.y0) / all, half = (from + end) / 2;
-        stretch first = {p, from, half}, second = {p, half, end};
-        const progress rendering = {show_stretch, &first}, writing = {show_stretch, &second};
+        progress_part first = {p, "rendering", from, half}, second = {p, "rendering", half, end};
+        const progress rendering = {progress_part_show, &first}, writing = {progress_part_show, &second};
         film_move(f->film, y, next);
         good = fill(f, j, o, p ? &rendering : NULL, &t, &seconds, e) && picture_add(to, f->film, p ? &writing : NULL);
     }

@@ -24,7 +24,7 @@ static bool is_wanted(const char *layers, const char *plane)
     return !layers || word;
 }
 
-static bool has_ending(const char *path, const char *ending)
+bool has_ending(const char *path, const char *ending)
 {
     const size_t n = strlen(path), m = strlen(ending);
     return n > m && strcmp(path + n - m, ending) == 0;

@@ -19,4 +19,18 @@ static inline bool progress_show(const progress *w, const char *what, double sha
     return !w || !w->show || w->show(w->user, what, share);
 }
 
+/* A part of the work, from one share of it to another, whose progress is shown as that of the whole. */
+typedef struct progress_part {
+    const progress *whole; /* NULL: not shown */
+    const char *what;      /* in place of the part's own; NULL: that */
+    double from, to;
+} progress_part;
+
+/* For progress.show, with a progress_part as the user. */
+static inline bool progress_part_show(void *user, const char *what, double share)
+{
+    const progress_part *p = (const progress_part *)user;
+    return progress_show(p->whole, p->what ? p->what : what, p->from + (p->to - p->from) * share);
+}
+
 #endif
