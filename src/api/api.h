@@ -104,7 +104,7 @@ void picture_texts(const kage_film *f, const char *crop, image_text to[PICTURE_T
 void picture_crop(window w, char text[PICTURE_CROP_SIZE]);
 
 /* Whether a file's name has something before this ending. */
-bool has_ending(const char *path, const char *ending);
+bool path_ends_in(const char *path, const char *ending);
 
 /* A picture's file that is being written, and the planes of films that go into it. */
 typedef struct picture {

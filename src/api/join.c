@@ -147,7 +147,7 @@ static bool options_are_good(int count, const char *path, errors *e)
     bool good = true;
     if (count < 1)
         good = errors_add(e, "%d bands, expected one or more", count);
-    if (!has_ending(path, ".exr"))
+    if (!path_ends_in(path, ".exr"))
         good = errors_add(e, "%s: only an EXR can be joined, expected a name that ends in .exr", path);
     return good;
 }

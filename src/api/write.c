@@ -24,7 +24,7 @@ static bool is_wanted(const char *layers, const char *plane)
     return !layers || word;
 }
 
-bool has_ending(const char *path, const char *ending)
+bool path_ends_in(const char *path, const char *ending)
 {
     const size_t n = strlen(path), m = strlen(ending);
     return n > m && strcmp(path + n - m, ending) == 0;
@@ -33,9 +33,9 @@ bool has_ending(const char *path, const char *ending)
 /* False: an error is in *e. */
 static bool options_are_good(const char *path, const kage_write_options *o, const film *f, errors *e)
 {
-    const bool png = has_ending(path, ".png");
+    const bool png = path_ends_in(path, ".png");
     bool good = true;
-    if (!png && !has_ending(path, ".exr"))
+    if (!png && !path_ends_in(path, ".exr"))
         good = errors_add(e, "%s: no such kind of picture, expected a name that ends in .png or .exr", path);
     if (o->bits != 0 && o->bits != 8 && o->bits != 16)
         good = errors_add(e, "%d bits, expected 8 or 16", o->bits);
@@ -54,7 +54,7 @@ static bool options_are_good(const char *path, const kage_write_options *o, cons
 
 static image_writer *begin(const picture *p, const film *f, const image_form *form, const char *path, errors *e)
 {
-    if (has_ending(path, ".png"))
+    if (path_ends_in(path, ".png"))
         return image_writer_png(path, form, e);
     const char **name = malloc((size_t)p->planes * sizeof *name);
     image_form named = *form;
@@ -78,7 +78,7 @@ kage_status picture_begin(picture *p, const kage_film *f, window part, const cha
                           errors *e)
 {
     const film *planes = f->film;
-    const char *layers = has_ending(path, ".png") ? "color" : o->layers;
+    const char *layers = path_ends_in(path, ".png") ? "color" : o->layers;
     image_text text[PICTURE_TEXTS];
     char crop[PICTURE_CROP_SIZE];
     *p = (picture){0};
