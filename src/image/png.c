@@ -1,6 +1,5 @@
 /* Reads and writes PNG files with libpng. */
 #include <errno.h>
-#include <math.h>
 #include <png.h>
 #include <pthread.h>
 #include <setjmp.h>
@@ -11,6 +10,7 @@
 #include "base/real.h"
 #include "base/threads.h"
 #include "image/format.h"
+#include "image/grey.h"
 #include "image/srgb.h"
 
 /* Rows on their way from the thread that decodes to one that passes them on, in two halves of job->packed. */
@@ -21,12 +21,6 @@ typedef struct png_relay {
     bool started, ended;
     int first[2], rows[2]; /* that wait in each half; 0: it is free */
 } png_relay;
-
-/* What a file in colour has that should be a grey one. */
-typedef struct png_colours {
-    int64_t pixels, unequal, units; /* unequal: red, green and blue differ; units: as 2 c - 1 they are a unit vector */
-    double sum[3];                  /* of each, 0..1 */
-} png_colours;
 
 /* libpng's error handler must not return, so it calls longjmp. What is needed after the jump is in this struct, outside
  * the frame of setjmp's function, where the jump cannot change it. */
@@ -41,7 +35,7 @@ typedef struct png_job {
     int bytes;   /* of a sample */
     int samples; /* of a row */
     bool colour; /* the file has red, green and blue, and a grey is wanted */
-    png_colours found;
+    grey_colours found;
     image_stream *to;
     png_relay relay;
 } png_job;
@@ -78,31 +72,6 @@ STAGE static void png_to_float16(int n, const unsigned char *restrict from, floa
         to[i] = image_of_u16(from[2 * i] << 8 | from[2 * i + 1]);
 }
 
-/* n pixels of red, green and blue: note them, and keep one of the three, in place. */
-static void take_grey(int n, float *v, png_colours *c)
-{
-    for (int i = 0; i < n; i++) {
-        const float *p = v + 3 * i;
-        double square = 0;
-        for (int k = 0; k < 3; k++) {
-            c->sum[k] += (double)p[k];
-            square += (2 * (double)p[k] - 1) * (2 * (double)p[k] - 1);
-        }
-        c->unequal += p[0] != p[1] || p[1] != p[2];
-        c->units += square > 0.85 && square < 1.15;
-        v[i] = p[0];
-    }
-    c->pixels += n;
-}
-
-/* A normal map in tangent space: unit vectors that point up, in blue, on the whole. */
-static bool is_normal_map(const png_colours *c)
-{
-    const double n = (double)c->pixels;
-    return (double)c->units > 0.9 * n && fabs(c->sum[0] / n - 0.5) < 0.15 && fabs(c->sum[1] / n - 0.5) < 0.15 &&
-           c->sum[2] / n > 0.7;
-}
-
 /* Pass on n rows, from row y on. (The samples are finite, so none is refused.) */
 static void pass_rows(png_job *job, int y, int n, const unsigned char *packed)
 {
@@ -110,7 +79,7 @@ static void pass_rows(png_job *job, int y, int n, const unsigned char *packed)
     for (int k = 0; k < n; k++) {
         (job->bytes == 2 ? png_to_float16 : png_to_float8)(job->samples, packed + (size_t)k * job->row_bytes, job->row);
         if (job->colour)
-            take_grey(to->width, job->row, &job->found);
+            grey_take(to->width, job->row, &job->found);
         image_pass(to, 0, y + k, to->width, job->row, to->range, job->why);
     }
 }
@@ -282,11 +251,7 @@ bool image_read_png(FILE *file, int threads, image_stream *to, char *why)
     png_job job = {.why = why, .to = to};
     bool ok = decode(&job, file, threads);
     relay_end(&job.relay);
-    if (ok && job.found.unequal)
-        ok = is_normal_map(&job.found)
-                 ? image_refuse(why, "the PNG is a normal map, which has slopes but no heights; a grey height map is "
-                                     "expected, and docs/models.md tells how to make one")
-                 : image_refuse(why, "the PNG is in colour; a grey one is expected, of 8 or 16 bits");
+    ok = ok && grey_found(&job.found, why);
     png_destroy_read_struct(&job.png, &job.info, NULL);
     free(job.packed);
     free(job.row);
