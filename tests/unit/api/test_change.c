@@ -279,8 +279,9 @@ static void the_changed_text_is_written(void **state)
     kage_scene_free(read);
 }
 
-/* A change of the camera costs a part of a reading: the least time of some of each, in turns, as other work on the machine
- * only adds. That of a bump's scale is told alone: it makes a map's table anew, whose pages cost what the system asks. */
+/* A change of the camera costs a part of a reading: the least time of some of each, in turns, as other work on the
+ * machine only adds. That of a bump's scale is told alone: it makes a map's table anew, whose pages cost what the
+ * system asks. */
 static double seconds(void)
 {
     struct timespec t;
