@@ -258,6 +258,26 @@ $(filter $(BUILD)/unit/look/%,$(UNITS:%=$(BUILD)/%)): $(patsubst %,$(BUILD)/%.o,
 WRAPPED   = malloc calloc realloc posix_memalign strdup free fy_node_build_from_malloc_string
 $(BUILD)/unit/api/test_memory: private override LDFLAGS += $(WRAPPED:%=-Wl,--wrap=%)
 
+# ---- fuzzing ----
+
+# All targets in one program, which runs that of its name: with libFuzzer (clang), or over files with plain main.
+FUZZ      = $(patsubst tests/%.c,%,$(wildcard tests/fuzz/*.c))
+FUZZED    = $(filter-out fuzz/engine fuzz/replay fuzz/letters,$(FUZZ))
+
+$(BUILD)/fuzz/kage-fuzz: $(FUZZED:%=$(BUILD)/%.o) $(BUILD)/fuzz/engine.o $(BUILD)/internal.a | $(BUILD)/fuzz/letters
+	@echo '  LD  $@'
+	$(Q)$(CC) $(LDFLAGS) -fsanitize=fuzzer -o $@ $^ $(LIBS)
+
+$(BUILD)/fuzz/replay: $(FUZZED:%=$(BUILD)/%.o) $(BUILD)/fuzz/replay.o $(BUILD)/internal.a | $(BUILD)/fuzz/letters
+	@echo '  LD  $@'
+	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(LIBS)
+
+# It is started anew for each input, so without what a sanitizer does first.
+$(BUILD)/fuzz/letters: tests/fuzz/letters.c src/mesh/letter.h
+	@echo '  LD  $@'
+	@mkdir -p $(@D)
+	$(Q)$(CC) -Iinclude -Isrc $(STANDARD) -O1 -o $@ $<
+
 # ---- the Python package ----
 
 # In $(BUILD)/python, to import from there: links to python/kage, and the modules in C for Python's stable ABI, 3.11 on.
