@@ -328,10 +328,10 @@ typedef struct kage_write_options {
     void *reserved[7];
 } kage_write_options;
 
-/* Write a film. Where `path` ends in ".png": R, G and B in sRGB; in ".exr": planes as 32-bit floats, linear, ZIP. The
- * file appears whole or not at all, and replaces an older one only then: a call that is cancelled or fails changes
- * nothing. It contains the scene's text, the changes and options, but no path, time or host name. options: NULL for the
- * defaults. Another ending, or a layer that the film does not have, is KAGE_BAD_OPTION. */
+/* Write a film. Where `path` ends in ".png" or ".PNG": R, G and B in sRGB; in ".exr": planes as 32-bit floats, linear,
+ * ZIP. The file appears whole or not at all, and replaces an older one only then: a call that is cancelled or fails
+ * changes nothing. It contains the scene's text, the changes and options, but no path, time or host name. options: NULL
+ * for the defaults. Another ending, or a layer that the film does not have, is KAGE_BAD_OPTION. */
 KAGE_API kage_status kage_film_write(const kage_film *film, const char *path, const kage_write_options *options,
                                      kage_errors **errors);
 
