@@ -1,4 +1,5 @@
 /* libkage: shadows on bump-mapped surfaces (Sumi and Noma's method), as a library. C99 and C++17.
+ * SPDX-License-Identifier: MIT
  *
  *     kage_scene *scene;
  *     kage_film *film;
