@@ -158,8 +158,8 @@ def correct(a: Layers, heights: Heights | Bump, method: str = "1", *, guard: boo
 
     heights: a height map or function, or a Bump with the layers P, Pu, Pw, ... of each pixel; then iter, march and
     `shifted` cannot look P up elsewhere. method: none (or bump), 0, 1, 2, 2+, iter:K or march:N, as kage's. bounds:
-    the lowest and the highest P, for the guard and march; those of `heights` if not given, and of the layer P of a Bump. shade: n'
-    is that at the smooth hit, or at the place under the origin, "shifted".
+    the lowest and the highest P, for the guard and march; those of `heights` if not given, and of the layer P of a
+    Bump. shade: n' is that at the smooth hit, or at the place under the origin, "shifted".
     """
     word, _, number = ("none" if method == "bump" else method).partition(":")
     if word not in ORDERS or bool(number) != (word in ("iter", "march")) or (number and not number.isdigit()):
