@@ -329,10 +329,11 @@ typedef struct kage_write_options {
     void *reserved[6];
 } kage_write_options;
 
-/* Write a film. Where `path` ends in ".png": R, G and B in sRGB; in ".exr": planes as 32-bit floats, linear, ZIP. The
- * file appears whole or not at all, and replaces an older one only then: a call that is cancelled or fails changes
- * nothing, and of a process that is killed nothing is left (see kage_file_tidy). A link leads to the file that is
- * written, also where that is not there yet. What is no regular file, and what stands for a descriptor of the process
+/* Write a film. Where `path` ends in ".png" or ".PNG": R, G and B in sRGB; in ".exr": planes as 32-bit floats, linear,
+ * ZIP. The file appears whole or not at all, and replaces an older one only then: a call that is cancelled or fails
+ * changes nothing, and of a process that is killed nothing is left (see kage_file_tidy). A link leads to the file that
+ * is written, also where that is not there yet. What is no regular file, and what stands for a descriptor of the
+ * process
  * ("/dev/stdout", "/dev/fd/3"), gets the bytes at the end. The file contains the scene's text, the changes and options,
  * but no path, time or host name. options: NULL for the defaults. Another ending, or a layer that the film does not
  * have, is KAGE_BAD_OPTION. */

@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 /* ---- the options ---- */
 
@@ -25,7 +26,7 @@ static bool is_wanted(const char *layers, const char *plane)
 bool path_ends_in(const char *path, const char *ending)
 {
     const size_t n = strlen(path), m = strlen(ending);
-    return n > m && strcmp(path + n - m, ending) == 0;
+    return n > m && strcasecmp(path + n - m, ending) == 0;
 }
 
 /* Whether the file is a PNG, otherwise an EXR; or neither. */

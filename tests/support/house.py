@@ -195,9 +195,12 @@ def exported_names_begin_with_kage(house: House) -> Iterator[str]:
 
 
 def the_program_uses_the_public_header(house: House) -> Iterator[str]:
+    """base/spelling.h alone is linked besides, as it is no part of a tracer."""
     for path, text in house.sources.items():
         for other in rooms.includes(text):
             room = rooms.room_of(path)
+            if other == "base/spelling.h":
+                continue
             if room in PROGRAMS[:3] and rooms.room_of(other) not in (room, "kage.h", "look" if room == "view" else ""):
                 yield f"src/{path} includes {other}; it knows the tracer by kage.h alone"
 
