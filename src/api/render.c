@@ -197,6 +197,8 @@ static void set_stats(kage_film *f, const stats *t, double seconds)
         .order_count = ORDER_CODES,
         .stages = f->stages,
         .orders = f->orders,
+        .undefined = t->undefined,
+        .undefined_object = t->undefined_object - 1,
     };
 }
 
