@@ -67,6 +67,16 @@ def plain(scene: Scene) -> Scene:
 
 # ---- the same bytes ------------------------------------------------------------------------------
 
+def builds(lab: Lab, scene: Scene, _: Draw) -> str:
+    """All builds in float: compilers, levels of optimisation, and without hierarchies."""
+    others = [name for name in lab.builds if name not in ("float", "double")]
+    if not others:
+        raise Cannot("there is one build only")
+    want = lab.picture(scene)
+    wrong = ((name, same(lab.picture(scene, name), want)) for name in others)
+    return "; ".join(f"{name}: {told}" for name, told in wrong if told)
+
+
 def threads(lab: Lab, scene: Scene, _: Draw) -> str:
     return same(lab.picture(scene, threads=7), lab.picture(scene))
 
@@ -264,7 +274,7 @@ def precision(lab: Lab, scene: Scene, _: Draw) -> str:
 
 PROPERTIES: dict[str, Property] = {
     found.__name__: found for found in (
-        threads, crops, larger, far_objects, reversed_objects, channels, fresh, list_of_copies, brightness, deeper,
+        builds, threads, crops, larger, far_objects, reversed_objects, channels, fresh, list_of_copies, brightness, deeper,
         samples, no_height, moves, mirrors, exchanges, precision)}
 
 

@@ -16,7 +16,7 @@ import kage
 
 def rendered(request: dict[str, Any]) -> tuple[dict[str, Any], list[bytes]]:
     """The answer, and the planes."""
-    scene = kage.load(request["text"], folder=request["folder"], sets=request.get("first"), progress=False)
+    scene = kage.load(request["text"], folder=request["folder"], sets=request.get("first"), threads=1, progress=False)
     if "then" in request:
         scene.render(**request["options"], progress=False)  # with all that a render builds
         scene.set(request["then"])
@@ -25,7 +25,7 @@ def rendered(request: dict[str, Any]) -> tuple[dict[str, Any], list[bytes]]:
         return {"planes": []}, []
     picture = scene.render(**request["options"], progress=False)
     if "save" in request:
-        picture.save(request["save"], progress=False)
+        picture.save(request["save"], threads=1, progress=False)
     planes = {name: picture[name] for name in picture.planes}
     return ({"planes": list(planes), "shape": [picture.height, picture.width]},
             [plane.astype("<f4").tobytes() for plane in planes.values()])
