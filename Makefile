@@ -186,8 +186,9 @@ out/gallery/index.html: $(GALLERY:%=out/gallery/%-none.png) $(GALLERY:%=out/gall
 
 # ---- the program ----
 
-# It knows the library by kage.h alone. Models are read by kage-import, which it finds beside itself.
-$(BUILD)/kage: $(PROGRAM:%=$(BUILD)/%.o) $(BUILD)/libkage.a | $(BUILD)/kage-import
+# It knows the library by kage.h alone, and how words are spelled. Models are read by kage-import, which it finds beside
+# itself.
+$(BUILD)/kage: $(PROGRAM:%=$(BUILD)/%.o) $(BUILD)/base/spelling.o $(BUILD)/libkage.a | $(BUILD)/kage-import
 	@echo '  LD  $@'
 	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(LIBS)
 

@@ -6,6 +6,7 @@
 #define KAGE_CLI_COMMAND_H
 
 #include <stdbool.h>
+#include <stdio.h>
 
 #include "kage.h"
 
@@ -17,17 +18,21 @@ enum { EXIT_OUTPUT = 1, EXIT_INPUT = 2, MAX_OUTPUTS = 16, MAX_SETS = 256, MAX_BU
 #define CLI_PRINTF(fmt, first)
 #endif
 
-/* The commands that take a scene or a model, as bits. */
+/* The commands, as bits. */
 enum {
     COMMAND_RENDER = 1,
     COMMAND_CHECK = 2,
     COMMAND_PIXEL = 4,
     COMMAND_POV = 8,
     COMMAND_IMPORT = 16,
-    COMMAND_VIEW = 32
+    COMMAND_VIEW = 32,
+    COMMAND_METHODS = 64,
+    COMMAND_HELP = 128
 };
 
 /* The parsed command line. Zero: not given. */
+struct command;
+
 typedef struct arguments {
     const char *name; /* of the command */
     int command;
@@ -46,11 +51,11 @@ typedef struct arguments {
     double brightness;
     int frames; /* of view, to measure */
     bool z_up;
-    bool stats, quiet, no_cast, overwrite, resume, report;
+    bool stats, quiet, no_cast, overwrite, resume, report, help;
 } arguments;
 
 /* Parse a command's arguments. False: the mistake is on stderr. Call arguments_free in either case. */
-bool arguments_read(arguments *a, int argc, char **argv, int command);
+bool arguments_read(arguments *a, int argc, char **argv, const struct command *c);
 void arguments_free(arguments *a);
 
 int command_render(const arguments *given);
@@ -59,7 +64,12 @@ int command_pixel(const arguments *a);
 int command_pov(const arguments *a);
 int command_import(const arguments *a);
 int command_view(const arguments *a); /* returns only where the window's program can't be started */
-int command_view_help(void);
+int command_view_help(void);          /* prints the window's keys, if its program is there */
+
+/* ---- help.c ---- */
+
+void print_help(FILE *to);
+void print_command_help(const struct command *c);
 
 /* ---- common.c ---- */
 
@@ -79,6 +89,17 @@ bool usage_error(const char *fmt, ...) CLI_PRINTF(1, 2);
 bool outputs_spare_inputs(const kage_scene *s, const char *const *output, int outputs);
 
 bool has_ending(const char *path, const char *ending);
+
+/* ---- wrap.c ---- */
+
+enum { COLUMNS = 80 };
+
+/* The width of a terminal. 0: it is none. */
+int terminal_columns(FILE *to);
+
+/* Print a text that begins in column `at`, and a newline. It is broken at spaces so that no line is longer than `width`
+ * (0: not broken), and goes on in column `indent`. */
+void print_wrapped(FILE *to, int at, int indent, int width, const char *text);
 
 /* ---- progress_bar.c ---- */
 

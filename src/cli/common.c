@@ -4,6 +4,7 @@
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
+#include <strings.h>
 
 bool usage_error(const char *fmt, ...)
 {
@@ -47,7 +48,7 @@ static void print_flat(const kage_scene_info *s)
 bool has_ending(const char *path, const char *ending)
 {
     const size_t n = strlen(path), m = strlen(ending);
-    return n > m && strcmp(path + n - m, ending) == 0;
+    return n > m && strcasecmp(path + n - m, ending) == 0;
 }
 
 bool outputs_spare_inputs(const kage_scene *s, const char *const *output, int outputs)

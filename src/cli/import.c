@@ -51,7 +51,7 @@ int command_import(const arguments *a)
     kage_errors *e;
     progress_bar p;
     if (!a->outputs) {
-        usage_error("'kage import' lacks -o SCENE.yaml; see kage --help");
+        usage_error("'kage import' lacks -o SCENE.yaml; see kage import --help");
         return EXIT_INPUT;
     }
     progress_bar_start(&p, a->quiet, base_name(a->operand[0]), 0);

@@ -50,7 +50,7 @@ static int write_scene(kage_scene *s, const arguments *a)
 int command_pov(const arguments *a)
 {
     if (!a->outputs) {
-        usage_error("'kage pov' lacks -o FILE.pov; see kage --help");
+        usage_error("'kage pov' lacks -o FILE.pov; see kage pov --help");
         return EXIT_INPUT;
     }
     kage_scene *s = load_scene(a);

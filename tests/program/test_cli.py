@@ -43,15 +43,46 @@ def same(a: dict[str, np.ndarray], b: dict[str, np.ndarray]) -> bool:
 # ---- what it says ----
 
 
-def test_help_and_version(kage: Kage) -> None:
+COMMANDS = ("render", "view", "check", "pixel", "pov", "import", "methods", "help")
+
+
+def test_help_names_the_commands(kage: Kage) -> None:
     text = kage.good("--help")
-    for word in ("render", "check", "pixel", "methods", "--set", "--size", "-o", "--shadow", "--no-guard", "--aa",
-                 "--aa-threshold", "--crop", "--layers", "--bits", "--overwrite", "--resume", "--threads", "--stats",
-                 "--quiet"):
-        assert word in text
-    assert max(map(len, text.splitlines())) <= 120
-    assert kage.good("-h") == text == kage.good("render", "--help")
+    assert kage.good("-h") == text == kage.good("help")
+    for name in COMMANDS:
+        assert re.search(rf"^  {name}\b", text, re.MULTILINE), name
+    assert "--shadow" not in text
+    assert len(text.splitlines()) <= 24
     assert re.fullmatch(r"kage \d+\.\d+\.\d+ \((float|double)\)\n", kage.good("--version"))
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_help_of_a_command_has_its_own_options(kage: Kage, name: str) -> None:
+    text = kage.good("help", name)
+    assert kage.good(name, "--help") == kage.good(name, "x.yaml", "-h") == text
+    assert text.startswith(f"Usage: kage {name}")
+    assert max(map(len, text.splitlines())) <= 80
+    found = set(re.findall(r"^  (?:-\w, |    )(--[\w-]+)", text, re.MULTILINE))
+    assert "--help" in found
+    assert ("--crop" in found) == (name == "render") and ("--no-cast" in found) == (name == "pov")
+    assert ("--set" in found) == (name in ("render", "view", "check", "pixel", "pov"))
+    for option in found - {"--help"}:  # the parser has it
+        done = kage(name, "missing.yaml", f"{option}=")
+        assert done.returncode == 2 and "no option of" not in done.stderr, option
+
+
+def test_ways_to_write_options(kage: Kage) -> None:
+    written = []
+    for options in (["-o", "a.png"], ["-oa.png"], ["--output", "a.png"], ["--output=a.png"], ["-o", "a.PNG"]):
+        kage.good("render", *options, CUBE, *SMALL, "-q")
+        written.append((kage.folder / options[-1].rpartition("=")[2].removeprefix("-o")).read_bytes())
+    assert len(set(written)) == 1
+    kage.good("render", CUBE, *SMALL, "-o", "a.Exr")
+    assert (kage.folder / "a.Exr").read_bytes()[:4] == b"\x76\x2f\x31\x01"
+    (kage.folder / "-cube.yaml").symlink_to(CUBE)
+    (kage.folder / "bumps.png").symlink_to(DATA / "bumps.png")
+    assert "object cube" in kage.good("check", "--size=80x60", "--", "-cube.yaml")
+    assert "one argument too many" in kage("check", "--", "-cube.yaml", "--size=80x60").stderr
 
 
 def test_methods(kage: Kage) -> None:
