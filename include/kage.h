@@ -1,4 +1,5 @@
 /* libkage: shadows on bump-mapped surfaces (Sumi and Noma's method), as a library. C99 and C++17.
+ * SPDX-License-Identifier: MIT
  *
  *     kage_scene *scene;
  *     kage_film *film;
@@ -545,7 +546,8 @@ typedef struct kage_method {
 KAGE_API int kage_method_count(void);
 KAGE_API kage_method kage_method_get(int index); /* NULL fields: no such method */
 
-/* Whether `name` is a method for kage_render_options.method, such as "2+" or "iter:4". */
+/* Whether `name` is a method for kage_render_options.method, such as "2+" or "iter:4". "bump", for bump mapping only, is
+ * another name for "none". */
 KAGE_API int kage_method_is_known(const char *name);
 
 /* The same for the shadows of bumps on their own surface: none march:N horizon exact. */
