@@ -230,6 +230,20 @@ def test_metadata(kage: Kage) -> None:
     assert (h["kage:crop"], h["kage:shadow"], h["kage:guard"]) == ("10,20,50,60", "march:4", "no")
 
 
+@pytest.mark.parametrize("how", ["option", "set", "scene"])
+def test_bump_is_another_name_for_none(kage: Kage, how: str) -> None:
+    """The same pixels, and the metadata hold the name that has always been there."""
+    scene = kage.folder / "bump.yaml"
+    told = "bump" if how == "scene" else "0"
+    text = CUBE.read_text().replace("{shadow: 0}", f"{{shadow: {told}}}")
+    scene.write_text(text.replace("bumps.png", f"{CUBE.parent}/bumps.png"))
+    asked = {"option": ["--shadow", "bump"], "set": ["--set", "render.shadow=bump"], "scene": []}[how]
+    kage.good("render", scene, *SMALL, *asked, "-o", "bump.exr")
+    kage.good("render", CUBE, *SMALL, "--shadow", "none", "-o", "none.exr")
+    assert header(kage.folder / "bump.exr")["kage:shadow"] == "none"
+    assert same(*(exr(kage.folder / f"{name}.exr") for name in ("bump", "none")))
+
+
 def test_exrheader_reads_it(kage: Kage) -> None:
     if not shutil.which("exrheader"):
         pytest.skip("exrheader is not installed")
