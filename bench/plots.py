@@ -84,6 +84,11 @@ def look(method: str) -> tuple[str, str, bool]:
     return colour, marker, not (method.endswith(" bare") or method == "displaced")
 
 
+def cell_name(method: str) -> str:
+    """As short as a cell of a map needs it: the other name of `none`."""
+    return "bump" if method == "none" else method
+
+
 def cell_colour(method: str | None) -> str:
     if method is None:
         return CELL_NONE_GOOD
@@ -309,7 +314,7 @@ def cost_error(report: Report, scene: str) -> str | None:
     axes.set_xticks([t for t in COST_TICKS if t < axes.get_xlim()[1]],
                     [f"+{t}" if t else "0" for t in COST_TICKS if t < axes.get_xlim()[1]])
     axes.xaxis.set_minor_locator(_no_ticks())
-    axes.set_xlabel(f"added time, % of none's  (log; linear below {LINEAR_COST:g})")
+    axes.set_xlabel(f"added time, % over {data.BUMP_ONLY}  (log; linear below {LINEAR_COST:g})")
     axes.set_ylabel("wrong pixels of the cast shadow", rotation=90, rotation_mode="anchor", labelpad=6)
     axes.grid(True)
 
@@ -326,6 +331,9 @@ def cost_error(report: Report, scene: str) -> str | None:
                   markerfacecolor=colour if filled else PAGE, markeredgewidth=1.2, zorder=3)
     corners = [_pixels(axes, corner) for corner in zip(stairs_x, stairs_y, strict=True)]
     lines = [(*a, *b) for a, b in itertools.pairwise(corners)]
+    for method, (_, y) in at.items():
+        if bar := tables.added_cost(report, scene, method):
+            lines.append((*_pixels(axes, (bar["low"], y)), *_pixels(axes, (bar["high"], y))))
     if scale.has_zero:
         left, right = ((x, scale.border) for x in axes.get_xlim())
         lines.append((*_pixels(axes, left), *_pixels(axes, right)))
@@ -376,7 +384,7 @@ def _label_points(axes: Axes, at: dict[str, tuple[float, float]], bold: Sequence
 # Stages -------------------------------------------------------------------------------------------------------
 
 LEGEND_COLUMNS = 5
-LONGEST_BAR = 4.0  # times none: longer bars are cut off, or the others would be too short to see
+LONGEST_BAR = 4.0  # times the shortest: longer bars are cut off, or the others would be too short to see
 
 
 @styled
@@ -454,7 +462,8 @@ def sweep_map(sweep: Sweep, bound: float) -> str:
         method = cheapest(wrong, sweep["by_cost"], bound)
         colour = cell_colour(method)
         axes.add_patch(_cell(column, row, facecolor=colour, edgecolor=PAGE, linewidth=1.2))
-        axes.text(column + 0.5, row + 0.5, method or "×", ha="center", va="center_baseline", fontsize=8.5,
+        text = "×" if method is None else cell_name(method)
+        axes.text(column + 0.5, row + 0.5, text, ha="center", va="center_baseline", fontsize=8.5,
                   color=CELL_LIGHT if _luminance(colour) < 0.18 else CELL_DARK)
     axes.set_xticks([i + 0.5 for i in range(len(xs))], [tables.short(x) for x in xs])
     axes.set_yticks([i + 0.5 for i in range(len(ys))], [tables.short(y) for y in ys])

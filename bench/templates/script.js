@@ -63,7 +63,7 @@
     }
 
     function choose_scene() {
-      fill(left, ["none"]);
+      fill(left, ["bump only"]);
       fill(right, ["order 0", "exact"]);
       update();
     }
