@@ -100,7 +100,7 @@ C_FILES   = $(wildcard include/*.h src/*/*.[ch] examples/*.c python/*.[ch] tests
 TIDY      = $(filter-out bench/limits/% $(if $(filter yes,$(VIEW)),,src/view/%),$(filter %.c,$(C_FILES)))
 
 .PHONY: all render bench speed readme reference accept counts test unit-tests program-tests programs sanitize format
-.PHONY: lint tidy same python wheel install install-files uninstall clean help bootstrap FORCE
+.PHONY: dist docs lint tidy same python wheel install install-files uninstall clean help bootstrap FORCE
 all: bootstrap
 	@$(MAKE) --no-print-directory $(JOBS) programs
 
@@ -123,6 +123,8 @@ help:
 	@echo 'make sanitize   unit tests, and some program tests, under ASan, UBSan and TSan'
 	@echo 'make lint       check style, likely mistakes and types; make format applies the style'
 	@echo 'make same       compare all pictures with another commit, REV=COMMIT, ONLY=TEXT in their names'
+	@echo 'make dist       the source archive of HEAD, out/kage-$(VERSION).tar.gz; scripts/deb: Debian packages'
+	@echo 'make docs       the documentation as pages, into out/docs/index.html'
 	@echo 'make install    install program, library and headers to PREFIX ($(PREFIX)), under DESTDIR'
 	@echo 'make uninstall  remove what install has put there'
 	@echo 'make clean      remove build/ and out/'
@@ -419,6 +421,15 @@ $(TIDY:%=tidy-%): tidy-%: %
 same: all
 	@CC='$(CC)' scripts/bootstrap python valgrind
 	scripts/venv python -m scripts.same $(or $(REV),HEAD) --real $(REAL) $(ONLY:%=--only %)
+
+# ---- to give away ----
+
+dist:
+	@python3 -m scripts.dist
+
+docs:
+	@CC='$(CC)' scripts/bootstrap python
+	scripts/venv python -m scripts.docs
 
 # LIBDIR, LIBEXEC: of the library, and of kage-import, where they are not in PREFIX/lib and PREFIX/libexec/kage.
 install: all
