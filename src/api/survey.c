@@ -200,7 +200,9 @@ static kage_survey *report(const kage_scene *k, seen *all)
 kage_status kage_scene_survey(kage_scene *k, kage_survey **out, kage_errors **to)
 {
     const scene *s = k->first;
-    workspace *v = workspace_new(&(tracer){.scene = s});
+    memory m = {.from = k->memory.budget, .limit = k->memory.most};
+    char words[MEMORY_WORDS];
+    workspace *v = workspace_new(&(tracer){.scene = s}, &m);
     seen *all = calloc((size_t)s->objects + 1, sizeof *all);
     *out = NULL;
     if (to)
@@ -214,7 +216,7 @@ kage_status kage_scene_survey(kage_scene *k, kage_survey **out, kage_errors **to
     }
     free(all);
     workspace_free(v);
-    return *out ? KAGE_OK : error_give(KAGE_NO_MEMORY, to, "out of memory");
+    return *out ? KAGE_OK : error_give(KAGE_NO_MEMORY, to, "%s", memory_words(&m, words));
 }
 
 void kage_survey_free(kage_survey *v) { free(v); }

@@ -91,15 +91,15 @@ static bool needs_halving(const pieces *l, double flat, const piece *f)
 }
 
 /* One round: each piece that needs it is halved. False: out of memory. *any: whether one was. */
-static bool halve(const patch *q, double flat, pieces *l, bool *any)
+static bool halve(const patch *q, double flat, memory *m, pieces *l, bool *any)
 {
     const int n = l->n;
-    piece *more = realloc(l->piece, sizeof *more * (size_t)(2 * n));
+    piece *more = memory_resize(m, l->piece, sizeof *more * (size_t)(2 * n));
     *any = false;
     if (!more)
         return false;
     l->piece = more;
-    int32_t *parent = malloc(sizeof *parent * (size_t)n); /* the pieces that are halved */
+    int32_t *parent = memory_new(m, sizeof *parent * (size_t)n); /* the pieces that are halved */
     if (!parent)
         return false;
     int halved = 0;
@@ -114,7 +114,7 @@ static bool halve(const patch *q, double flat, pieces *l, bool *any)
         more[parent[k]] = piece_half(q, &whole, 0);
         more[n + k] = piece_half(q, &whole, 1);
     }
-    free(parent);
+    memory_free(parent);
     l->n = n + halved;
     *any = halved > 0;
     return true;
@@ -128,15 +128,15 @@ static bool has_bounds(const pieces *l)
     return l->space.radius > POINT * vec3_length(l->space.centre) && l->space.radius < HUGE_VAL;
 }
 
-bool pieces_of(const patch *q, double flat, pieces *l, bool *bounded)
+bool pieces_of(const patch *q, double flat, const progress *w, pieces *l, bool *bounded)
 {
-    *l = (pieces){.piece = malloc(sizeof *l->piece * (size_t)q->parts)};
+    *l = (pieces){.piece = memory_new(progress_memory(w), sizeof *l->piece * (size_t)q->parts)};
     bool good = l->piece, any = true;
     for (int part = 0; good && part < q->parts; part++)
         l->piece[l->n++] = piece_of(q, part, q->u, q->w);
     while (good && any && l->n < MOST) {
         measure(l);
-        good = halve(q, flat, l, &any);
+        good = halve(q, flat, progress_memory(w), l, &any);
     }
     if (good) {
         measure(l);
@@ -147,7 +147,7 @@ bool pieces_of(const patch *q, double flat, pieces *l, bool *bounded)
 
 void pieces_free(pieces *l)
 {
-    free(l->piece);
+    memory_free(l->piece);
     *l = (pieces){0};
 }
 
