@@ -20,8 +20,7 @@ static bool take_triangles(void *user, reader_pipe *p)
 {
     mesh_data *out = user;
     const mesh_data come = p->letter.data;
-    if (p->letter.is != LETTER_DONE || come.n <= 0 || come.n > MESH_MOST || come.parts <= 0 ||
-        come.parts > come.n)
+    if (p->letter.is != LETTER_DONE || come.n <= 0 || come.n > MESH_MOST || come.parts <= 0 || come.parts > come.n)
         return reader_fails(p, "its reader failed, expected a valid file");
     const size_t n = (size_t)come.n, parts = (size_t)come.parts;
     *out = (mesh_data){come.n,     malloc(sizeof *out->at * n),       malloc(sizeof *out->skin * n),
