@@ -92,12 +92,14 @@ SHOWN     = wall teapot shell
 GALLERY   = $(patsubst scenes/gallery/%.yaml,%,$(wildcard scenes/gallery/*.yaml))
 
 # What `make format` and `make lint` look at. The yardsticks in bench/limits are compiled by themselves.
-C_FILES   = $(wildcard include/*.h src/*/*.[ch] examples/*.c python/*.[ch] tests/support/*.h tests/unit/*/*.[ch] tests/fuzz/*.[ch] \
+C_FILES   = $(wildcard include/*.h src/*/*.[ch] examples/*.c python/*.[ch] tests/support/*.h tests/unit/*/*.[ch] \
+                       tests/fuzz/*.[ch] \
                        bench/limits/*.c)
 TIDY      = $(filter-out bench/limits/% $(if $(filter yes,$(VIEW)),,src/view/%),$(filter %.c,$(C_FILES)))
 
 .PHONY: all render bench speed readme reference accept counts test unit-tests program-tests programs sanitize format
-.PHONY: fuzz fuzz-program fuzz-replay lint tidy same python wheel install install-files uninstall clean help bootstrap FORCE
+.PHONY: fuzz fuzz-program fuzz-replay
+.PHONY: lint tidy same python wheel install install-files uninstall clean help bootstrap FORCE
 all: bootstrap
 	@$(MAKE) --no-print-directory $(JOBS) programs
 
@@ -118,7 +120,7 @@ help:
 	@echo 'make counts     count the instructions of eight renders again, and keep them for the test'
 	@echo 'make reference  render stale reference pictures with POV-Ray, into reference/'
 	@echo 'make sanitize   unit tests, and some program tests, under ASan, UBSan and TSan'
-	@echo 'make fuzz       fuzz each of the targets in tests/fuzz for FUZZ_SECONDS=$(FUZZ_SECONDS); make fuzz-replay repeats finds'
+	@echo 'make fuzz       fuzz the targets of tests/fuzz for FUZZ_SECONDS=$(FUZZ_SECONDS) each; fuzz-replay repeats the finds'
 	@echo 'make lint       check style, likely mistakes and types; make format applies the style'
 	@echo 'make same       compare all pictures with another commit, REV=COMMIT, ONLY=TEXT in their names'
 	@echo 'make install    install program, library and headers to PREFIX ($(PREFIX)), under DESTDIR'
@@ -264,7 +266,7 @@ $(BUILD)/unit/api/test_memory: private override LDFLAGS += $(WRAPPED:%=-Wl,--wra
 
 # All targets in one program, which runs that of its name: with libFuzzer (clang), or over files with a plain main.
 FUZZED    = $(filter-out fuzz/engine fuzz/replay fuzz/letters,$(patsubst tests/%.c,%,$(wildcard tests/fuzz/*.c)))
-FUZZ_CC   = clang
+FUZZ_CC  ?= clang
 FUZZ_INPUTS = tests/fuzz/finds
 
 $(BUILD)/fuzz/kage-fuzz: $(FUZZED:%=$(BUILD)/%.o) $(BUILD)/fuzz/engine.o $(BUILD)/internal.a | $(BUILD)/fuzz/letters

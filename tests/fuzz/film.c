@@ -259,11 +259,13 @@ static void join_bytes(const bytes *b)
     const size_t half = b->left / 2;
     remove(to);
     fuzz_write(path[0], b->at, b->left);
-    fuzz_errors(kage_file_join(path, 1, to, &o, &e), e);
+    kage_status status = kage_file_join(path, 1, to, &o, &e);
+    fuzz_errors(status, e);
     fuzz_write(path[0], b->at, half);
     fuzz_write(path[1], b->at + half, b->left - half);
     e = NULL;
-    fuzz_errors(kage_file_join(path, 2, to, &o, &e), e);
+    status = kage_file_join(path, 2, to, &o, &e);
+    fuzz_errors(status, e);
 }
 
 /* The first byte: PNG of 16 or 8 bits, EXR, or bands. */
