@@ -23,7 +23,6 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from tests.fuzz import seeds
-from tests.verify import record
 
 TOP = Path(__file__).resolve().parent.parent
 OUT = TOP / "out" / "fuzz"
@@ -133,28 +132,29 @@ def told(result: Result, log: str) -> str:
                       f"repeat: make fuzz-replay FUZZ_INPUTS='{result.target} {find}'"])
 
 
-def main() -> int:
+def fuzz_all(argv: list[str]) -> tuple[list[str], list[Result]]:
+    """What the command line says; also the options that repeat it."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("targets", nargs="*", metavar="TARGET", help=" ".join(seeds.SEEDS))
     parser.add_argument("--seconds", type=int, default=1800, help="for each target (1800)")
-    parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1, help="targets at a time (processors)")
-    options = parser.parse_args()
+    parser.add_argument("--jobs", type=int, default=(os.cpu_count() or 1) + 1,
+                        help="targets at a time (one more than processors, as each waits for files)")
+    options = parser.parse_args(argv)
     unknown = [target for target in options.targets if target not in seeds.SEEDS]
     if unknown:
         parser.error(f"no target {unknown[0]}, expected some of: {' '.join(seeds.SEEDS)}")
     OUT.mkdir(parents=True, exist_ok=True)
     build()
-    targets = options.targets or list(seeds.SEEDS)
     with ThreadPoolExecutor(options.jobs) as pool:
-        results = list(pool.map(lambda target: run(target, options.seconds), targets))
-    figures: dict[str, int | float | str] = {
-        "inputs": sum(result.inputs for result in results),
-        "minutes": round(sum(result.seconds for result in results) / 60),
-    }
-    for result in results:
-        figures[f"({result.target})"] = f"{result.inputs} inputs to {result.edges} edges"
-    return record.record("fuzz", f"scripts/fuzz --seconds {options.seconds}", figures,
-                         sum(len(result.finds) for result in results))
+        results = list(pool.map(lambda target: run(target, options.seconds), options.targets or list(seeds.SEEDS)))
+    return ["--seconds", str(options.seconds), *options.targets], results
+
+
+def main() -> int:
+    _, results = fuzz_all(sys.argv[1:])
+    finds = sum(len(result.finds) for result in results)
+    print(f"{sum(result.inputs for result in results)} inputs, {finds} finds")
+    return 1 if finds else 0
 
 
 if __name__ == "__main__":
