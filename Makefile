@@ -96,11 +96,12 @@ GALLERY   = $(patsubst scenes/gallery/%.yaml,%,$(wildcard scenes/gallery/*.yaml)
 
 # What `make format` and `make lint` look at. The yardsticks in bench/limits are compiled by themselves.
 C_FILES   = $(wildcard include/*.h src/*/*.[ch] examples/*.c python/*.[ch] tests/support/*.h tests/unit/*/*.[ch] \
-                       tests/random/*.c bench/limits/*.c)
+                       tests/fuzz/*.[ch] tests/random/*.c bench/limits/*.c)
 TIDY      = $(filter-out bench/limits/% $(if $(filter yes,$(VIEW)),,src/view/%),$(filter %.c,$(C_FILES)))
 
 .PHONY: all render bench speed readme reference accept counts test unit-tests program-tests programs sanitize format
 .PHONY: dist docs lint tidy same python wheel install install-files uninstall clean help bootstrap FORCE
+.PHONY: fuzz fuzz-program fuzz-replay
 all: bootstrap
 	@$(MAKE) --no-print-directory $(JOBS) programs
 
@@ -121,6 +122,7 @@ help:
 	@echo 'make counts     count the instructions of eight renders again, and keep them for the test'
 	@echo 'make reference  render stale reference pictures with POV-Ray, into reference/'
 	@echo 'make sanitize   unit tests, and some program tests, under ASan, UBSan and TSan'
+	@echo 'make fuzz       fuzz the targets of tests/fuzz, FUZZ_SECONDS=30 each; make fuzz-replay runs its finds'
 	@echo 'make lint       check style, likely mistakes and types; make format applies the style'
 	@echo 'make same       compare all pictures with another commit, REV=COMMIT, ONLY=TEXT in their names'
 	@echo 'make dist       the source archive of HEAD, out/kage-$(VERSION).tar.gz; scripts/deb: Debian packages'
@@ -266,9 +268,10 @@ $(BUILD)/unit/api/test_memory: private override LDFLAGS += $(WRAPPED:%=-Wl,--wra
 
 # ---- fuzzing ----
 
-# All targets in one program, which runs that of its name: with libFuzzer (clang), or over files with plain main.
-FUZZ      = $(patsubst tests/%.c,%,$(wildcard tests/fuzz/*.c))
-FUZZED    = $(filter-out fuzz/engine fuzz/replay fuzz/letters,$(FUZZ))
+# All targets in one program, which runs that of its name: with libFuzzer (clang), or over files with a plain main.
+FUZZED    = $(filter-out fuzz/engine fuzz/replay fuzz/letters,$(patsubst tests/%.c,%,$(wildcard tests/fuzz/*.c)))
+FUZZ_CC  ?= clang
+FUZZ_INPUTS = tests/fuzz/finds
 
 $(BUILD)/fuzz/kage-fuzz: $(FUZZED:%=$(BUILD)/%.o) $(BUILD)/fuzz/engine.o $(BUILD)/internal.a | $(BUILD)/fuzz/letters
 	@echo '  LD  $@'
@@ -283,6 +286,22 @@ $(BUILD)/fuzz/letters: tests/fuzz/letters.c src/mesh/letter.h
 	@echo '  LD  $@'
 	@mkdir -p $(@D)
 	$(Q)$(CC) -Iinclude -Isrc $(STANDARD) -O1 -o $@ $<
+
+fuzz-program:
+	@scripts/bootstrap build fuzz
+	@$(MAKE) --no-print-directory $(JOBS) $(SANE) CC='$(FUZZ_CC)' OPENMP=no BUILD=build/fuzz \
+	    SANITIZE=fuzzer-no-link,address,undefined CFLAGS=-DFUZZING_BUILD_MODE_UNSAFE_FOR_PRODUCTION \
+	    build/fuzz/fuzz/kage-fuzz
+
+# Each target for so long; scripts/fuzz has more options.
+FUZZ_SECONDS = 30
+fuzz:
+	scripts/fuzz --seconds $(FUZZ_SECONDS)
+
+# The finds that are kept as tests; or FUZZ_INPUTS='TARGET FILE...'
+fuzz-replay: bootstrap
+	@$(MAKE) --no-print-directory $(JOBS) $(BUILD)/fuzz/replay
+	$(BUILD)/fuzz/replay $(FUZZ_INPUTS)
 
 # ---- the Python package ----
 
@@ -343,7 +362,7 @@ unit-tests: $(UNITS:%=$(BUILD)/%)
 $(UNITS:%=run-%): run-%: $(BUILD)/% $(BUILD)/kage-import
 	@KAGE_IMPORT=$(BUILD)/kage-import $< >$<.log 2>&1 && echo '  OK  $<' || { cat $<.log; echo '  FAILED  $<'; exit 1; }
 
-program-tests: programs python
+program-tests: programs python $(BUILD)/fuzz/replay
 	@$(MAKE) --no-print-directory $(JOBS) REAL=double build/double/kage
 	scripts/venv python -m pytest -q -n auto --dist loadfile tests # a file's tests share what they make
 
@@ -382,7 +401,7 @@ counts: all
 # The clones' resolvers run before a sanitizer is ready; and stages in AVX2 have no other accesses than those in SSE2.
 SANE      = CLONES=no OPTIMISE='-O1 -fno-math-errno -fno-trapping-math -ffp-contract=off'
 # Those that read every kind of input, right and wrong, and run every command.
-SANE_TESTS = $(addprefix tests/program/test_,cli.py input.py mesh.py import.py)
+SANE_TESTS = $(addprefix tests/program/test_,cli.py input.py mesh.py import.py fuzz.py)
 
 # Threads of one process on libkage, without OpenMP, whose barriers ThreadSanitizer does not see (see tsan.supp).
 TSAN      = $(SANE) OPENMP=no BUILD=build/tsan SANITIZE=thread
@@ -390,10 +409,11 @@ TSAN      = $(SANE) OPENMP=no BUILD=build/tsan SANITIZE=thread
 sanitize: all
 	@CC='$(CC)' scripts/bootstrap test python
 	@LSAN_OPTIONS=suppressions=tests/support/lsan.supp:print_suppressions=0 $(MAKE) --no-print-directory $(JOBS) \
-	    $(SANE) BUILD=build/asan SANITIZE=address,undefined unit-tests build/asan/kage
+	    $(SANE) BUILD=build/asan SANITIZE=address,undefined unit-tests build/asan/kage build/asan/fuzz/replay
 	@TSAN_OPTIONS=suppressions=tests/support/tsan.supp \
 	    $(MAKE) --no-print-directory $(JOBS) $(TSAN) run-unit/api/test_threads
 	KAGE=build/asan/kage scripts/venv python -m pytest -q -n auto --dist loadfile $(SANE_TESTS)
+	@$(MAKE) --no-print-directory fuzz
 
 # ---- style ----
 
