@@ -258,6 +258,8 @@ class BumpSurvey:
     fell_back: NDArray[np.float64]
     step: float
     step_slope: float
+    #: of the samples from the eye, in the median
+    distance: float
 
 
 @dataclass(frozen=True, eq=False)
