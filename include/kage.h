@@ -454,7 +454,8 @@ typedef struct kage_probe {
     double slab[2];   /* tau where the ray enters and leaves the slab between Pmin and Pmax */
     int row_count;
     const kage_probe_row *rows;
-    int sends; /* the material has secondary rays, whose light is in no row */
+    int sends;     /* the material has secondary rays, whose light is in no row */
+    int undefined; /* P, n' or the surface has no value here: P is 0, n' is n, and no method shifts */
 } kage_probe;
 
 /* Trace the ray of pixel x, y by each method, on the smooth surfaces. */
@@ -470,7 +471,8 @@ typedef struct kage_bump_survey {
     /* A step from one value of a map's samples to the next: as a height in scene units, and the median of the slope
      * that it makes where two neighbours differ by it. 0: no map, or one of floats. */
     double step, step_slope;
-    double distance; /* of the samples from the eye, in the median */
+    double distance;  /* of the samples from the eye, in the median */
+    double undefined; /* P has no value there, in per cent of the samples; slopes and fell_back are of the others */
 } kage_bump_survey;
 
 typedef enum kage_warning_code {
@@ -480,8 +482,9 @@ typedef enum kage_warning_code {
     KAGE_WARN_FALLS_BACK,     /* value: of fell_back, above bound: the view is flat against the bumps for its order */
     KAGE_WARN_STEPS,          /* value: step_slope, above bound: the steps of a map's few bits are seen */
     KAGE_WARN_SCALE,          /* value: a scale that would be usual; bound: what slope_95 is above, or below */
-    KAGE_WARN_ZERO            /* all of P is farther than bound from 0. value: a usual `zero` of the map; without a map
+    KAGE_WARN_ZERO,           /* all of P is farther than bound from 0. value: a usual `zero` of the map; without a map
                                * what a usual function would be lower by */
+    KAGE_WARN_UNDEFINED       /* value: kage_bump_survey.undefined, above 0 */
 } kage_warning_code;
 
 typedef struct kage_warning {
