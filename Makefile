@@ -100,7 +100,7 @@ C_FILES   = $(wildcard include/*.h src/*/*.[ch] examples/*.c python/*.[ch] tests
 TIDY      = $(filter-out bench/limits/% $(if $(filter yes,$(VIEW)),,src/view/%),$(filter %.c,$(C_FILES)))
 
 .PHONY: all render bench speed readme reference accept counts test unit-tests program-tests programs sanitize format
-.PHONY: lint tidy same python wheel install install-files uninstall clean help bootstrap FORCE
+.PHONY: dist docs lint tidy same python wheel install install-files uninstall clean help bootstrap FORCE
 all: bootstrap
 	@$(MAKE) --no-print-directory $(JOBS) programs
 
@@ -123,6 +123,8 @@ help:
 	@echo 'make sanitize   unit tests, and some program tests, under ASan, UBSan and TSan'
 	@echo 'make lint       check style, likely mistakes and types; make format applies the style'
 	@echo 'make same       compare all pictures with another commit, REV=COMMIT, ONLY=TEXT in their names'
+	@echo 'make dist       the source archive of HEAD, out/kage-$(VERSION).tar.gz; scripts/deb: Debian packages'
+	@echo 'make docs       the documentation as pages, into out/docs/index.html'
 	@echo 'make install    install program, library and headers to PREFIX ($(PREFIX)), under DESTDIR'
 	@echo 'make uninstall  remove what install has put there'
 	@echo 'make clean      remove build/ and out/'
@@ -189,8 +191,9 @@ out/gallery/index.html: $(GALLERY:%=out/gallery/%-none.png) $(GALLERY:%=out/gall
 
 # ---- the program ----
 
-# It knows the library by kage.h alone. Models are read by kage-import, which it finds beside itself.
-$(BUILD)/kage: $(PROGRAM:%=$(BUILD)/%.o) $(BUILD)/libkage.a | $(BUILD)/kage-import
+# It knows the library by kage.h alone, and how words are spelled. Models are read by kage-import, which it finds beside
+# itself.
+$(BUILD)/kage: $(PROGRAM:%=$(BUILD)/%.o) $(BUILD)/base/spelling.o $(BUILD)/libkage.a | $(BUILD)/kage-import
 	@echo '  LD  $@'
 	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(LIBS)
 
@@ -260,6 +263,26 @@ $(filter $(BUILD)/unit/look/%,$(UNITS:%=$(BUILD)/%)): $(patsubst %,$(BUILD)/%.o,
 # A test in which memory runs out: our own objects ask its functions.
 WRAPPED   = malloc calloc realloc posix_memalign strdup free fy_node_build_from_malloc_string
 $(BUILD)/unit/api/test_memory: private override LDFLAGS += $(WRAPPED:%=-Wl,--wrap=%)
+
+# ---- fuzzing ----
+
+# All targets in one program, which runs that of its name: with libFuzzer (clang), or over files with plain main.
+FUZZ      = $(patsubst tests/%.c,%,$(wildcard tests/fuzz/*.c))
+FUZZED    = $(filter-out fuzz/engine fuzz/replay fuzz/letters,$(FUZZ))
+
+$(BUILD)/fuzz/kage-fuzz: $(FUZZED:%=$(BUILD)/%.o) $(BUILD)/fuzz/engine.o $(BUILD)/internal.a | $(BUILD)/fuzz/letters
+	@echo '  LD  $@'
+	$(Q)$(CC) $(LDFLAGS) -fsanitize=fuzzer -o $@ $^ $(LIBS)
+
+$(BUILD)/fuzz/replay: $(FUZZED:%=$(BUILD)/%.o) $(BUILD)/fuzz/replay.o $(BUILD)/internal.a | $(BUILD)/fuzz/letters
+	@echo '  LD  $@'
+	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(LIBS)
+
+# It is started anew for each input, so without what a sanitizer does first.
+$(BUILD)/fuzz/letters: tests/fuzz/letters.c src/mesh/letter.h
+	@echo '  LD  $@'
+	@mkdir -p $(@D)
+	$(Q)$(CC) -Iinclude -Isrc $(STANDARD) -O1 -o $@ $<
 
 # ---- the Python package ----
 
@@ -398,6 +421,15 @@ $(TIDY:%=tidy-%): tidy-%: %
 same: all
 	@CC='$(CC)' scripts/bootstrap python valgrind
 	scripts/venv python -m scripts.same $(or $(REV),HEAD) --real $(REAL) $(ONLY:%=--only %)
+
+# ---- to give away ----
+
+dist:
+	@python3 -m scripts.dist
+
+docs:
+	@CC='$(CC)' scripts/bootstrap python
+	scripts/venv python -m scripts.docs
 
 # LIBDIR, LIBEXEC: of the library, and of kage-import, where they are not in PREFIX/lib and PREFIX/libexec/kage.
 install: all
