@@ -140,10 +140,11 @@ bootstrap:
 
 render: all
 	@CC='$(CC)' scripts/bootstrap python
-	@$(MAKE) --no-print-directory $(PICTURES) out/figures.png out/gallery.png out/gallery/index.html
-	@$(MAKE) --no-print-directory out/relief.png # when nothing else runs, as it is timed
+	@$(MAKE) --no-print-directory $(PICTURES) out/figures.png out/gallery.png $(GALLERY:%=out/gallery/%.png)
+	@$(MAKE) --no-print-directory -j1 out/gallery/index.html out/relief.png # when nothing else runs, as they are timed
+	@scripts/venv python -m scripts.start_page
 	@echo 'The pictures are in out/, those of the paper side by side in out/figures.png, with the truth in out/relief.png,'
-	@echo 'the gallery in out/gallery/index.html and out/gallery.png:'
+	@echo 'the gallery in out/gallery/index.html and out/gallery.png; out/index.html leads to all:'
 	@ls $(PICTURES) $(PICTURES:.png=.exr) out/figures.png $(GALLERY:%=out/gallery/%.png)
 
 # A picture is a scene and a method; its EXR is written along with it.
@@ -173,7 +174,7 @@ out/figures.png: $(PICTURES) scripts/contact_sheet.py
 out/relief.png: $(BUILD)/kage $(wildcard scenes/*.yaml scenes/data/*) scripts/relief_sheet.py scripts/contact_sheet.py
 	scripts/venv python -m scripts.relief_sheet --kage $(BUILD)/kage -o $@
 
-# Each scene of the gallery by none, and by the method that it says itself.
+# Each scene of the gallery by bump mapping only, and by the method that it says itself.
 out/gallery/%-none.png: scenes/gallery/%.yaml $(BUILD)/kage
 	@mkdir -p out/gallery
 	$(BUILD)/kage render $< --shadow none --shade smooth --bump-shadow none --aa 3 -o $@
@@ -184,12 +185,13 @@ out/gallery/%.png: scenes/gallery/%.yaml $(BUILD)/kage
 
 out/gallery.png: $(SHOWN:%=out/gallery/%-none.png) $(SHOWN:%=out/gallery/%.png) scripts/contact_sheet.py
 	scripts/venv python scripts/contact_sheet.py -o $@ --columns 3 \
-	    --title "Above, bump mapping alone; below, the same scenes by their best method" \
-	    $(foreach s,$(SHOWN),out/gallery/$(s)-none.png="$(s): none") \
+	    --title "Above, bump mapping only; below, the same scenes by their best method" \
+	    $(foreach s,$(SHOWN),out/gallery/$(s)-none.png="$(s): bump mapping only") \
 	    $(foreach s,$(SHOWN),out/gallery/$(s).png="$(s): kage")
 
 out/gallery/index.html: $(GALLERY:%=out/gallery/%-none.png) $(GALLERY:%=out/gallery/%.png) scripts/gallery.py
-	scripts/venv python scripts/gallery.py -o $@ $(GALLERY:%=scenes/gallery/%.yaml)
+out/gallery/index.html: scripts/page_of.py $(wildcard bench/templates/*)
+	scripts/venv python -m scripts.gallery --kage $(BUILD)/kage -o $@ $(GALLERY:%=scenes/gallery/%.yaml)
 
 # ---- the program ----
 
@@ -372,11 +374,13 @@ bench: all
 	@$(MAKE) --no-print-directory $(JOBS) python || echo 'bench: going on without the package, which is slower' >&2
 	@python=.venv/bin/python; scripts/venv || python=python3; \
 	    $$python -m bench --level $(BENCH) --kage $(BUILD)/kage $(SCHEDULER:%=--scheduler %) || [ $$? -eq 3 ]
+	@scripts/venv python -m scripts.start_page || echo "bench: out/index.html is left out" >&2
 
 # Each bound of docs/performance.md, with the peers, in one table; SPEED=quick|normal|full.
 speed: all
 	@CC='$(CC)' scripts/bootstrap python povray valgrind || echo 'speed: going on without what is missing' >&2
 	scripts/venv python -m bench.speed --level $(SPEED) --kage $(BUILD)/kage || [ $$? -eq 3 ]
+	@scripts/venv python -m scripts.start_page
 
 # The README's tables and pictures, and those of docs/.
 readme: render bench
