@@ -22,6 +22,7 @@ OBJCOPY  ?= objcopy
 PREFIX   ?= /usr/local
 LIBDIR   ?= $(PREFIX)/lib
 LIBEXEC  ?= $(PREFIX)/libexec/kage
+SHARE    ?= $(PREFIX)/share
 PYTHON   ?= scripts/venv python
 Q         = $(if $(V),,@)
 comma    := ,
@@ -397,9 +398,15 @@ same: all
 	@CC='$(CC)' scripts/bootstrap python valgrind
 	scripts/venv python -m scripts.same $(or $(REV),HEAD) --real $(REAL) $(ONLY:%=--only %)
 
-# LIBDIR, LIBEXEC: of the library, and of kage-import, where they are not in PREFIX/lib and PREFIX/libexec/kage.
+# LIBDIR, LIBEXEC, SHARE: of the library, of kage-import, and of manuals and completions, where they are not in
+# PREFIX/lib, PREFIX/libexec/kage and PREFIX/share.
 install: all
 	@$(MAKE) --no-print-directory install-files
+
+# Manuals, and the completions of shells: a file, and where it goes below SHARE.
+MANUALS   = man1/kage.1 man3/kage.3 man3/bumpshadow.3 man5/kage-scene.5
+SHELLS    = kage.bash:bash-completion/completions/kage _kage:zsh/site-functions/_kage \
+            kage.fish:fish/vendor_completions.d/kage.fish
 
 # The same of what is built already.
 install-files: $(BUILD)/kage.pc
@@ -412,8 +419,11 @@ install-files: $(BUILD)/kage.pc
 	install -m 755 $(BUILD)/$(SONAME) $(DESTDIR)$(LIBDIR)/$(SONAME)
 	ln -sf $(SONAME) $(DESTDIR)$(LIBDIR)/libkage.so
 	install -m 644 $(BUILD)/kage.pc $(DESTDIR)$(LIBDIR)/pkgconfig/kage.pc
+	$(foreach m,$(MANUALS),install -D -m 644 man/$(notdir $(m)) $(DESTDIR)$(SHARE)/man/$(m) &&) true
+	$(foreach s,$(SHELLS),install -D -m 644 completions/$(subst :, $(DESTDIR)$(SHARE)/,$(s)) &&) true
 
 uninstall:
+	rm -f $(MANUALS:%=$(DESTDIR)$(SHARE)/man/%) $(foreach s,$(SHELLS),$(DESTDIR)$(SHARE)/$(lastword $(subst :, ,$(s))))
 	rm -f $(DESTDIR)$(PREFIX)/bin/kage $(DESTDIR)$(LIBEXEC)/kage-import $(DESTDIR)$(LIBEXEC)/kage-view \
 	    $(DESTDIR)$(PREFIX)/include/kage.h \
 	    $(DESTDIR)$(PREFIX)/include/bumpshadow.h $(DESTDIR)$(PREFIX)/include/bumpshadow.glsl \

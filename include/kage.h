@@ -236,6 +236,15 @@ KAGE_API kage_status kage_scene_write(const kage_scene *scene, const char *path,
 /* Whether the file at `path`, links followed, was read for the scene, so that no output should replace it. */
 KAGE_API int kage_scene_uses_file(const kage_scene *scene, const char *path);
 
+/* Called by kage_file_paths. path: as before the `=` of a change; value: the text of a scalar, NULL for a map or a
+ * list.
+ */
+typedef void kage_path_call(void *user, const char *path, const char *value);
+
+/* Tell every path that a change of the scene in the file can have, in the order of the file: for shells and editors.
+ * The file is read as YAML alone, so this is quick and it need not be a good scene. call: in the caller's thread. */
+KAGE_API kage_status kage_file_paths(const char *path, kage_path_call *call, void *user, kage_errors **errors);
+
 /* Whether `word` is "color", the name of a plane of the scene's films, or what stands before its dot ("N", "uw",
  * "visibility"): what kage_write_options.layers has. */
 KAGE_API int kage_scene_has_layer(const kage_scene *scene, const char *word);
@@ -550,8 +559,8 @@ typedef struct kage_method {
 KAGE_API int kage_method_count(void);
 KAGE_API kage_method kage_method_get(int index); /* NULL fields: no such method */
 
-/* Whether `name` is a method for kage_render_options.method, such as "2+" or "iter:4". "bump", for bump mapping only, is
- * another name for "none". */
+/* Whether `name` is a method for kage_render_options.method, such as "2+" or "iter:4". "bump", for bump mapping only,
+ * is another name for "none". */
 KAGE_API int kage_method_is_known(const char *name);
 
 /* The same for the shadows of bumps on their own surface: none march:N horizon exact. */
