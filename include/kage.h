@@ -415,6 +415,8 @@ typedef struct kage_stats {
     int stage_count, order_count;
     const kage_stage *stages; /* all seconds are 0 without kage_render_options.timing */
     const kage_order_count *orders;
+    int64_t undefined; /* samples where P, n', the shift or the light had no value (docs/scene.md, "Without a value") */
+    int undefined_object; /* the first object with such a sample, index into kage_scene_info.objects; -1: none */
 } kage_stats;
 
 /* What rendering the film counted. */

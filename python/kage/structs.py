@@ -174,6 +174,10 @@ class Stats:
     #: all seconds are 0 without RenderOptions.timing
     stages: tuple[Stage, ...]
     orders: tuple[OrderCount, ...]
+    #: samples where P, n', the shift or the light had no value (docs/scene.md, "Without a value")
+    undefined: int
+    #: the first object with such a sample, index into SceneInfo.objects; -1: none
+    undefined_object: int
 
 
 @dataclass(frozen=True, eq=False)

@@ -516,6 +516,28 @@ def test_full_disk(kage: Kage, ending: str) -> None:
     assert kage.files() == before
 
 
+@pytest.mark.parametrize("name", ["none/a.png", "none/a.exr", "folder.png", "folder.exr"])
+def test_output_that_cannot_be_written(kage: Kage, name: str) -> None:
+    (kage.folder / "folder.png").mkdir()
+    (kage.folder / "folder.exr").mkdir()
+    before = kage.files()
+    done = kage("render", CUBE, *SMALL, "-o", name)
+    assert (done.returncode, done.stdout) == (1, "")
+    why = "Is a directory" if name.startswith("folder") else "No such file or directory"
+    assert done.stderr == f"{name}: cannot be written: {why}\n"
+    assert kage.files() == before
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no /dev/full on this system")
+@pytest.mark.parametrize("ending", ["png", "exr"])
+def test_full_disk(kage: Kage, ending: str) -> None:
+    (kage.folder / f"full.{ending}").symlink_to("/dev/full")
+    before = kage.files()
+    done = kage("render", CUBE, *SMALL, "-o", f"full.{ending}")
+    assert (done.returncode, done.stderr) == (1, f"full.{ending}: cannot be written: No space left on device\n")
+    assert kage.files() == before
+
+
 @pytest.mark.parametrize("wait", [0.05, 0.3, 0.6, 0.9, 1.2])
 def test_interrupt_leaves_no_half_file(kage: Kage, wait: float) -> None:
     """Ctrl-C at several times, some of them while files are written."""
@@ -607,7 +629,8 @@ def test_an_interrupted_picture_is_resumed(kage: Kage, whole: bytes) -> None:
     process.send_signal(signal.SIGINT)
     said = process.communicate(timeout=60)[1]
     assert process.returncode == -signal.SIGINT
-    assert said == "cube.yaml: interrupted; --resume goes on with a.exr.part\n"
+    assert re.fullmatch(r"cube.yaml: stopped while (rendering|writing), after \d+ %; "
+                        r"--resume goes on with a.exr.part\n", said)
     assert kage.files() == {"a.exr.part"}
     another = kage("render", CUBE, *BANDS, "--shadow", "1", "--resume", "-o", "a.exr")
     assert another.returncode == 1
