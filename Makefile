@@ -428,6 +428,11 @@ same: all
 dist:
 	@python3 -m scripts.dist
 
+# Manual pages and docs/kage.md, after a change of options, docs/scene.md or the headers.
+manuals: all
+	@CC='$(CC)' scripts/bootstrap python
+	scripts/venv python -m scripts.man --kage $(BUILD)/kage
+
 docs:
 	@CC='$(CC)' scripts/bootstrap python
 	scripts/venv python -m scripts.docs
