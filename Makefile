@@ -101,7 +101,7 @@ C_FILES   = $(wildcard include/*.h src/*/*.[ch] examples/*.c python/*.[ch] tests
 TIDY      = $(filter-out bench/limits/% $(if $(filter yes,$(VIEW)),,src/view/%),$(filter %.c,$(C_FILES)))
 
 .PHONY: all render bench speed readme reference accept counts test unit-tests program-tests programs sanitize format
-.PHONY: dist docs lint tidy same python wheel install install-files uninstall clean help bootstrap FORCE
+.PHONY: dist docs manuals lint tidy same python wheel install install-files uninstall clean help bootstrap FORCE
 all: bootstrap
 	@$(MAKE) --no-print-directory $(JOBS) programs
 
@@ -126,6 +126,7 @@ help:
 	@echo 'make same       compare all pictures with another commit, REV=COMMIT, ONLY=TEXT in their names'
 	@echo 'make dist       the source archive of HEAD, out/kage-$(VERSION).tar.gz; scripts/deb: Debian packages'
 	@echo 'make docs       the documentation as pages, into out/docs/index.html'
+	@echo 'make manuals    the manual pages and docs/kage.md again, from what they are made from'
 	@echo 'make install    install program, library and headers to PREFIX ($(PREFIX)), under DESTDIR'
 	@echo 'make uninstall  remove what install has put there'
 	@echo 'make clean      remove build/ and out/'
