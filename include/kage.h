@@ -49,8 +49,9 @@
 extern "C" {
 #endif
 
-/* The largest values of some options: pixels along a side of a picture, samples along a side of a pixel, threads. */
-enum { KAGE_MAX_SIDE = 32768, KAGE_MAX_AA = 16, KAGE_MAX_THREADS = 1024 };
+/* The largest values of some options: pixels along a side of a picture, samples along a side of a pixel, threads, K of
+ * iter:K and N of march:N. */
+enum { KAGE_MAX_SIDE = 32768, KAGE_MAX_AA = 16, KAGE_MAX_THREADS = 1024, KAGE_MAX_STEPS = 1024 };
 
 /* The version of the library; KAGE_VERSION is that of this header. */
 KAGE_API const char *kage_version(void);
