@@ -24,6 +24,7 @@ OBJCOPY  ?= objcopy
 PREFIX   ?= /usr/local
 LIBDIR   ?= $(PREFIX)/lib
 LIBEXEC  ?= $(PREFIX)/libexec/kage
+SHARE    ?= $(PREFIX)/share
 PYTHON   ?= scripts/venv python
 Q         = $(if $(V),,@)
 comma    := ,
@@ -100,7 +101,7 @@ C_FILES   = $(wildcard include/*.h src/*/*.[ch] examples/*.c python/*.[ch] tests
 TIDY      = $(filter-out bench/limits/% $(if $(filter yes,$(VIEW)),,src/view/%),$(filter %.c,$(C_FILES)))
 
 .PHONY: all render bench speed readme reference accept counts test unit-tests program-tests programs sanitize format
-.PHONY: dist docs lint tidy same python wheel install install-files uninstall clean help bootstrap FORCE
+.PHONY: dist docs manuals lint tidy same python wheel install install-files uninstall clean help bootstrap FORCE
 .PHONY: fuzz fuzz-program fuzz-replay
 all: bootstrap
 	@$(MAKE) --no-print-directory $(JOBS) programs
@@ -127,6 +128,7 @@ help:
 	@echo 'make same       compare all pictures with another commit, REV=COMMIT, ONLY=TEXT in their names'
 	@echo 'make dist       the source archive of HEAD, out/kage-$(VERSION).tar.gz; scripts/deb: Debian packages'
 	@echo 'make docs       the documentation as pages, into out/docs/index.html'
+	@echo 'make manuals    the manual pages and docs/kage.md again, from what they are made from'
 	@echo 'make install    install program, library and headers to PREFIX ($(PREFIX)), under DESTDIR'
 	@echo 'make uninstall  remove what install has put there'
 	@echo 'make clean      remove build/ and out/'
@@ -451,13 +453,24 @@ same: all
 dist:
 	@python3 -m scripts.dist
 
+# Manual pages and docs/kage.md, after a change of options, docs/scene.md or the headers.
+manuals: all
+	@CC='$(CC)' scripts/bootstrap python
+	scripts/venv python -m scripts.man --kage $(BUILD)/kage
+
 docs:
 	@CC='$(CC)' scripts/bootstrap python
 	scripts/venv python -m scripts.docs
 
-# LIBDIR, LIBEXEC: of the library, and of kage-import, where they are not in PREFIX/lib and PREFIX/libexec/kage.
+# LIBDIR, LIBEXEC, SHARE: of the library, of kage-import, and of manuals and completions, where they are not in
+# PREFIX/lib, PREFIX/libexec/kage and PREFIX/share.
 install: all
 	@$(MAKE) --no-print-directory install-files
+
+# Manuals, and the completions of shells: a file, and where it goes below SHARE.
+MANUALS   = man1/kage.1 man3/kage.3 man3/bumpshadow.3 man5/kage-scene.5
+SHELLS    = kage.bash:bash-completion/completions/kage _kage:zsh/site-functions/_kage \
+            kage.fish:fish/vendor_completions.d/kage.fish
 
 # The same of what is built already.
 install-files: $(BUILD)/kage.pc
@@ -470,8 +483,11 @@ install-files: $(BUILD)/kage.pc
 	install -m 755 $(BUILD)/$(SONAME) $(DESTDIR)$(LIBDIR)/$(SONAME)
 	ln -sf $(SONAME) $(DESTDIR)$(LIBDIR)/libkage.so
 	install -m 644 $(BUILD)/kage.pc $(DESTDIR)$(LIBDIR)/pkgconfig/kage.pc
+	$(foreach m,$(MANUALS),install -D -m 644 man/$(notdir $(m)) $(DESTDIR)$(SHARE)/man/$(m) &&) true
+	$(foreach s,$(SHELLS),install -D -m 644 completions/$(subst :, $(DESTDIR)$(SHARE)/,$(s)) &&) true
 
 uninstall:
+	rm -f $(MANUALS:%=$(DESTDIR)$(SHARE)/man/%) $(foreach s,$(SHELLS),$(DESTDIR)$(SHARE)/$(lastword $(subst :, ,$(s))))
 	rm -f $(DESTDIR)$(PREFIX)/bin/kage $(DESTDIR)$(LIBEXEC)/kage-import $(DESTDIR)$(LIBEXEC)/kage-view \
 	    $(DESTDIR)$(PREFIX)/include/kage.h \
 	    $(DESTDIR)$(PREFIX)/include/bumpshadow.h $(DESTDIR)$(PREFIX)/include/bumpshadow.glsl \

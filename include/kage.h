@@ -49,8 +49,9 @@
 extern "C" {
 #endif
 
-/* The largest values of some options: pixels along a side of a picture, samples along a side of a pixel, threads. */
-enum { KAGE_MAX_SIDE = 32768, KAGE_MAX_AA = 16, KAGE_MAX_THREADS = 1024 };
+/* The largest values of some options: pixels along a side of a picture, samples along a side of a pixel, threads, K of
+ * iter:K and N of march:N. */
+enum { KAGE_MAX_SIDE = 32768, KAGE_MAX_AA = 16, KAGE_MAX_THREADS = 1024, KAGE_MAX_STEPS = 1024 };
 
 /* The version of the library; KAGE_VERSION is that of this header. */
 KAGE_API const char *kage_version(void);
@@ -247,6 +248,15 @@ KAGE_API kage_status kage_scene_write(const kage_scene *scene, const char *path,
 
 /* Whether the file at `path`, links followed, was read for the scene, so that no output should replace it. */
 KAGE_API int kage_scene_uses_file(const kage_scene *scene, const char *path);
+
+/* Called by kage_file_paths. path: as before the `=` of a change; value: the text of a scalar, NULL for a map or a
+ * list.
+ */
+typedef void kage_path_call(void *user, const char *path, const char *value);
+
+/* Tell every path that a change of the scene in the file can have, in the order of the file: for shells and editors.
+ * The file is read as YAML alone, so this is quick and it need not be a good scene. call: in the caller's thread. */
+KAGE_API kage_status kage_file_paths(const char *path, kage_path_call *call, void *user, kage_errors **errors);
 
 /* Whether `word` is "color", the name of a plane of the scene's films, or what stands before its dot ("N", "uw",
  * "visibility"): what kage_write_options.layers has. */
