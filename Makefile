@@ -406,7 +406,8 @@ dist:
 
 docs:
 	@CC='$(CC)' scripts/bootstrap python
-	scripts/venv python -m scripts.docs
+	scripts/venv python -m mkdocs build --strict --quiet
+	@echo "the pages are in out/docs/index.html"
 
 # LIBDIR, LIBEXEC: of the library, and of kage-import, where they are not in PREFIX/lib and PREFIX/libexec/kage.
 install: all
