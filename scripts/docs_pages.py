@@ -29,12 +29,22 @@ def slug(text: str, separator: str = "-") -> str:
     return re.sub(r"[^\w\- ]", "", text.strip().lower()).replace(" ", separator)
 
 
+#: A fenced block, or an indented one after an empty line.
+BLOCK = re.compile(r"^```[^\0]*?^```|(?<=\n\n) {4}.*(?:\n+ {4}.*)*", re.MULTILINE)
+
+
+def blank(found: re.Match[str]) -> str:
+    return re.sub(r"[^\n]", " ", found[0])
+
+
+def without_blocks(text: str) -> str:
+    """With blanks for blocks of code."""
+    return BLOCK.sub(blank, text)
+
+
 def without_code(text: str) -> str:
     """With blanks for blocks and spans of code, in which nothing is a link."""
-    blank = lambda found: re.sub(r"[^\n]", " ", found[0])  # noqa: E731
-    text = re.sub(r"^(```|~~~).*?^\1", blank, text, flags=re.DOTALL | re.MULTILINE)
-    text = re.sub(r"(?:\A|(?<=\n\n))(?: {4}.*\n+)+", blank, text)
-    return re.sub(r"(`+)(?!`).+?(?<!`)\1(?!`)", blank, text)
+    return re.sub(r"(`+)(?!`).+?(?<!`)\1(?!`)", blank, without_blocks(text))
 
 
 def in_tree(page: str, link: str) -> str:

@@ -25,7 +25,8 @@ def test_readme_and_docs_agree_with_the_result(data: dict[str, Any]) -> None:
 
 
 @pytest.mark.parametrize("path, wrong", [
-    (("quality", "scenes", "cube", "0", "mask", "wrong"), {"docs/accuracy.md", "docs/method.md", "docs/cost-error.svg"}),
+    (("quality", "scenes", "cube", "0", "mask", "wrong"),
+     {"docs/accuracy.md", "docs/method.md", "docs/cost-error.svg"}),
     (("quality", "scenes", "waves", "iter:2", "mask", "wrong"), {"docs/method.md"}),
     (("cost", "scenes", "cube", "methods", "0", "ns", "median"), {"docs/accuracy.md", "docs/design.md"}),
     (("cost", "scenes", "cube", "methods", "1", "added", "median"),
