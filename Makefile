@@ -6,6 +6,7 @@
 #   CLONES=no             without the AVX2 copies of the stages
 #   OPENMP=no             one thread a render, without OpenMP: for SANITIZE=thread, which does not see the barriers of
 #                         its library (CLONES=no, too: functions that choose their copy run before it is ready)
+#   BVH=brute             every ray is tested with every box, which is slow: for tests/random
 #   VIEW=yes|no           kage view, the window; it needs SDL2, SDL2_ttf and fontconfig (yes where they are here)
 #   BUILD=DIR             where the objects and the program go
 #   PYTHON=PROGRAM        the Python for which the package is built (with cffi and numpy)
@@ -16,6 +17,7 @@ SANITIZE ?=
 CLONES   ?= yes
 OPENMP   ?= yes
 BUILD    ?= build/$(REAL)
+BVH      ?= embree
 BENCH    ?= normal
 SPEED    ?= normal
 OBJCOPY  ?= objcopy
@@ -81,7 +83,8 @@ SOURCES   = $(patsubst src/%.c,%,$(wildcard src/*/*.c))
 PROGRAM   = $(filter cli/%,$(SOURCES))
 IMPORT    = $(filter import/%,$(SOURCES)) # kage-import, which alone links assimp and libjpeg
 WINDOW    = $(filter view/% look/%,$(SOURCES)) # kage-view, which alone links SDL2; look/ does without
-LIBRARY   = $(filter-out cli/% import/% view/% look/%,$(SOURCES))
+LIBRARY   = $(filter-out cli/% import/% view/% look/% $(if $(BRUTE),bvh/embree bvh/wide%),$(SOURCES)) $(BRUTE)
+BRUTE     = $(if $(filter brute,$(BVH)),random/brute)
 VERSION  := $(shell sed -n 's/.*define KAGE_VERSION "\(.*\)".*/\1/p' include/kage.h)
 SONAME    = libkage.so.$(firstword $(subst ., ,$(VERSION)))
 UNITS     = $(patsubst tests/%.c,%,$(wildcard tests/unit/*/test_*.c))
@@ -93,7 +96,7 @@ GALLERY   = $(patsubst scenes/gallery/%.yaml,%,$(wildcard scenes/gallery/*.yaml)
 
 # What `make format` and `make lint` look at. The yardsticks in bench/limits are compiled by themselves.
 C_FILES   = $(wildcard include/*.h src/*/*.[ch] examples/*.c python/*.[ch] tests/support/*.h tests/unit/*/*.[ch] \
-                       bench/limits/*.c)
+                       tests/random/*.c bench/limits/*.c)
 TIDY      = $(filter-out bench/limits/% $(if $(filter yes,$(VIEW)),,src/view/%),$(filter %.c,$(C_FILES)))
 
 .PHONY: all render bench speed readme reference accept counts test unit-tests program-tests programs sanitize format
@@ -260,6 +263,26 @@ $(filter $(BUILD)/unit/look/%,$(UNITS:%=$(BUILD)/%)): $(patsubst %,$(BUILD)/%.o,
 # A test in which memory runs out: our own objects ask its functions.
 WRAPPED   = malloc calloc realloc posix_memalign strdup free fy_node_build_from_malloc_string
 $(BUILD)/unit/api/test_memory: private override LDFLAGS += $(WRAPPED:%=-Wl,--wrap=%)
+
+# ---- fuzzing ----
+
+# All targets in one program, which runs that of its name: with libFuzzer (clang), or over files with plain main.
+FUZZ      = $(patsubst tests/%.c,%,$(wildcard tests/fuzz/*.c))
+FUZZED    = $(filter-out fuzz/engine fuzz/replay fuzz/letters,$(FUZZ))
+
+$(BUILD)/fuzz/kage-fuzz: $(FUZZED:%=$(BUILD)/%.o) $(BUILD)/fuzz/engine.o $(BUILD)/internal.a | $(BUILD)/fuzz/letters
+	@echo '  LD  $@'
+	$(Q)$(CC) $(LDFLAGS) -fsanitize=fuzzer -o $@ $^ $(LIBS)
+
+$(BUILD)/fuzz/replay: $(FUZZED:%=$(BUILD)/%.o) $(BUILD)/fuzz/replay.o $(BUILD)/internal.a | $(BUILD)/fuzz/letters
+	@echo '  LD  $@'
+	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(LIBS)
+
+# It is started anew for each input, so without what a sanitizer does first.
+$(BUILD)/fuzz/letters: tests/fuzz/letters.c src/mesh/letter.h
+	@echo '  LD  $@'
+	@mkdir -p $(@D)
+	$(Q)$(CC) -Iinclude -Isrc $(STANDARD) -O1 -o $@ $<
 
 # ---- the Python package ----
 

@@ -231,7 +231,6 @@ def sections(report: Report, sheets: list[Sheet]) -> list[tuple[str, str]]:
         ("table", "All methods", True),
         ("cost-error", "Cost against error", True),
         ("auto", "What auto costs and needs", "auto" in report["methods"]),
-        ("compare", "Compare two pictures", sheets),
         ("sheets", "Contact sheets", sheets),
         ("sweeps", "Where which method is enough", report.get("sweeps")),
         ("slopes", "How fast the error shrinks", report.get("slopes")),

@@ -56,7 +56,8 @@ CELL_DARK, CELL_LIGHT = "#010203", "#fafbfc"  # text in a cell
 
 # Of the stages' bars, the same on both pages too. Each differs by one from the colours above, which the page's CSS may
 # change.
-STAGES = ("#c8c8c8", "#e69f01", "#f0e443", "#8c6d46", "#56b4ea", "#cc79a8", "#d55e01", "#0072b3", "#009e74", "#6b6b6b")
+STAGES = ("#c8c8c8", "#e69f01", "#f0e443", "#8c6d46", "#56b4ea", "#cc79a8", "#d55e01", "#0072b3", "#009e74", "#6b6b6b",
+          "#8b5fbf")
 
 SETTINGS: dict[Any, object] = {  # the keys are matplotlib's
     "svg.fonttype": "none", "svg.hashsalt": "kage", "font.family": "DejaVu Sans", "font.size": 9.5, "text.color": INK,
@@ -414,7 +415,7 @@ def stage_bars(report: Report, scene: str) -> str | None:
         if median > end:
             text, at, gap = f"▸ {median:.0f}", end, 3
         else:
-            text, at, gap = f"{median:.1f}", high, 6
+            text, at, gap = f"{median:.1f}", min(high, end), 6
             axes.errorbar(median, row, xerr=[[median - low], [high - median]], color=INK, capsize=2.5, linewidth=1.1)
         axes.annotate(text, (at, row), xytext=(gap, 0), textcoords="offset points", va="center_baseline", ha="left",
                       fontsize=9)

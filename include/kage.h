@@ -406,6 +406,8 @@ typedef struct kage_stats {
     int stage_count, order_count;
     const kage_stage *stages; /* all seconds are 0 without kage_render_options.timing */
     const kage_order_count *orders;
+    int64_t undefined; /* samples where P, n', the shift or the light had no value (docs/scene.md, "Without a value") */
+    int undefined_object; /* the first object with such a sample, index into kage_scene_info.objects; -1: none */
 } kage_stats;
 
 /* What rendering the film counted. */
@@ -454,14 +456,18 @@ typedef struct kage_bump_survey {
     /* A step from one value of a map's samples to the next: as a height in scene units, and the median of the slope
      * that it makes where two neighbours differ by it. 0: no map, or one of floats. */
     double step, step_slope;
+    double distance; /* of the samples from the eye, in the median */
 } kage_bump_survey;
 
 typedef enum kage_warning_code {
     KAGE_WARN_FLAT_TRIANGLES, /* value: triangles of a model without an area, which are left out */
     KAGE_WARN_UNBOUNDED,      /* P has no bounds, so the guard has no slab and march:N falls back to order 0 */
-    KAGE_WARN_STEEP,          /* value: slope_95, above bound: too steep for orders 0, 1 and 2 */
-    KAGE_WARN_FALLS_BACK,     /* value: the larger of fell_back, above bound: the view is flat against the bumps */
-    KAGE_WARN_STEPS           /* value: step_slope, above bound: the steps of a map's few bits are seen */
+    KAGE_WARN_STEEP,          /* value: slope_95, above bound: too steep for the scene's method, an order */
+    KAGE_WARN_FALLS_BACK,     /* value: of fell_back, above bound: the view is flat against the bumps for its order */
+    KAGE_WARN_STEPS,          /* value: step_slope, above bound: the steps of a map's few bits are seen */
+    KAGE_WARN_SCALE,          /* value: a scale that would be usual; bound: what slope_95 is above, or below */
+    KAGE_WARN_ZERO            /* all of P is farther than bound from 0. value: a usual `zero` of the map; without a map
+                               * what a usual function would be lower by */
 } kage_warning_code;
 
 typedef struct kage_warning {

@@ -51,6 +51,8 @@ static int help_command(const arguments *a)
 
 static int run(const arguments *a)
 {
+    if (a->operands && a->command != COMMAND_VIEW && a->command != COMMAND_HELP)
+        stop_begin(base_name(a->operand[0]), a->quiet);
     switch (a->command) {
     case COMMAND_RENDER:
         return command_render(a);
@@ -101,5 +103,6 @@ int main(int argc, char **argv)
     arguments a;
     const int status = arguments_read(&a, argc, argv, c) ? run(&a) : EXIT_INPUT;
     arguments_free(&a);
+    stop_end();
     return finish(status);
 }
