@@ -460,7 +460,8 @@ manuals: all
 
 docs:
 	@CC='$(CC)' scripts/bootstrap python
-	scripts/venv python -m scripts.docs
+	scripts/venv python -m mkdocs build --strict --quiet
+	@echo "the pages are in out/docs/index.html"
 
 # LIBDIR, LIBEXEC, SHARE: of the library, of kage-import, and of manuals and completions, where they are not in
 # PREFIX/lib, PREFIX/libexec/kage and PREFIX/share.
