@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "image/exr_join.h"
 #include "image/image.h"
 #include "image/srgb.h"
@@ -29,7 +30,7 @@ static bool never(void *user, const char *what, double share)
     return true;
 }
 
-static const progress show = {never, NULL};
+static const progress show = {.show = never};
 
 static void good(bool holds, errors *e, const char *what) { HOLDS(holds && !e->text, "%s: %s", what, e->text); }
 
@@ -143,7 +144,7 @@ static void read_png(const picture *p, const char *path)
                   c, (double)i.v[4 * k + c]);
     }
     free(codes);
-    free(i.v);
+    memory_free(i.v);
 }
 
 /* ---- what is done with a picture ---- */
