@@ -115,8 +115,8 @@ def mirrored_bump(made: Scene, bump: Tree, shape: str) -> None:
     one = 1 if shape in ("rectangle", "box") else 0
     if "function" in bump:
         bump["function"] = variables(bump["function"], f"{one} - u", "w")
-    elif shape in ("parametric", "patches", "mesh") or bump["wrap"] == "clamp" and "size" in bump:
-        raise Cannot("where a map begins on the other side")
+    elif shape != "plane" and bump["wrap"] != "repeat":
+        raise Cannot("where a map begins that comes from the other end")
     else:
         name = bump["map"]["file"]
         made.files[f"mirrored_{name}"] = mirror_file(made.files[name], name)
@@ -189,6 +189,8 @@ def exchanged(scene: Scene) -> Scene:
             continue
         if any(thing is made.tree["objects"].get(other.get("copy")) for other in made.tree["objects"].values()):
             continue  # a copy may have a bump or a material of its own
+        if any(step.get("scale") == [-1, 1, 1] for step in thing.get("transform", [])):
+            continue  # u, whichever it is, runs the other way there
         exchanged_shape(thing, kind)
         if "bump" in thing:
             exchanged_bump(made, thing["bump"])
@@ -253,13 +255,14 @@ QUARTER = Move(1, [0.0, 90.0, 0.0], [0.0, 0.0, 0.0])
 
 
 def symmetric(scene: Scene) -> Scene:
-    """Up to two things of the scene, each four times, on a ground that is the same after a quarter turn; from above."""
+    """Up to two things of the scene, each four times, on a ground that is the same after a quarter turn; from above.
+    They are tilted, as faces of two copies in one plane would be met in any order."""
     made = scene.copy()
     old = made.tree["objects"]
     things = {name: thing for name, thing in old.items() if name.startswith("thing") and "copy" not in thing}
     objects: Tree = {}
     for name, thing in list(things.items())[:2]:
-        objects[name] = thing
+        objects[name] = thing | {"transform": [{"rotate": [11, 3, 7]}, *thing.get("transform", [])]}
         for k in (1, 2, 3):
             objects[f"{name}_{k}"] = {"copy": name, "transform": [{"rotate": [0, 90 * k, 0]}]}
     f = "sin(3*u + 1)*cos(2*w) + 0.5*sin(u)"

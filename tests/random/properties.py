@@ -125,9 +125,10 @@ def far_objects(lab: Lab, scene: Scene, _: Draw) -> str:
     if str(scene.tree["render"].get("shadow")).startswith("auto"):
         raise Cannot("auto asks the hierarchy by three rays only, as method.md says")
     made = scene.copy()
+    made.tree["materials"]["dull"] = {"color": [0, 0, 0]}  # with glass in it light is summed in another order
     for k in range(14):
         made.tree["objects"][f"speck{k}"] = {"sphere": {"center": [2e4 + 3e3 * k, 7e4, -9e4 + 5e3 * k], "radius": 1e-3},
-                                             "material": next(iter(made.tree["materials"]))}
+                                             "material": "dull"}
     return same(lab.picture(made), lab.picture(scene))
 
 
