@@ -1,4 +1,4 @@
-"""Changes of a whole scene after which its picture is known: moved, turned, scaled, mirrored, with u and w exchanged."""
+"""Changes of a whole scene after which its picture is known: moved, turned, mirrored, with u and w exchanged."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tests.random.draw import Draw, Scene, Tree, shape_of, variables
 Steps = list[Tree]
 
 
-class Cannot(Exception):
+class CannotError(Exception):
     """The change is not defined for this scene."""
 
 
@@ -116,7 +116,7 @@ def mirrored_bump(made: Scene, bump: Tree, shape: str) -> None:
     if "function" in bump:
         bump["function"] = variables(bump["function"], f"{one} - u", "w")
     elif shape != "plane" and bump["wrap"] != "repeat":
-        raise Cannot("where a map begins that comes from the other end")
+        raise CannotError("where a map begins that comes from the other end")
     else:
         name = bump["map"]["file"]
         made.files[f"mirrored_{name}"] = mirror_file(made.files[name], name)
@@ -136,13 +136,13 @@ def mirrored(scene: Scene) -> Scene:
     made = moved(scene, Move(1, [0.0, 0.0, 0.0], [0.0, 0.0, 0.0], mirrors=True))
     shape = shapes(made)
     if any(isinstance(material["color"], dict) for material in made.tree["materials"].values()):
-        raise Cannot("one material's pattern on several shapes")
+        raise CannotError("one material's pattern on several shapes")
     if any("copies" in thing for thing in made.tree["objects"].values()):
-        raise Cannot("heights of a list of copies are those of the hidden original")
+        raise CannotError("heights of a list of copies are those of the hidden original")
     for name, thing in made.tree["objects"].items():
         if "bump" in thing:
             if shape[name] in ("parametric", "patches", "mesh"):
-                raise Cannot("no rule for where u goes there")
+                raise CannotError("no rule for where u goes there")
             mirrored_bump(made, thing["bump"], shape[name])
     return made
 
@@ -196,9 +196,9 @@ def exchanged(scene: Scene) -> Scene:
             exchanged_bump(made, thing["bump"])
         done = True
     if not done:
-        raise Cannot("no such shape")
+        raise CannotError("no such shape")
     if made.tree["render"].get("bump_shadow") == "horizon":
-        raise Cannot("surfaces seen from behind have the march in place of the table")
+        raise CannotError("surfaces seen from behind have the march in place of the table")
     return made
 
 
@@ -219,7 +219,7 @@ def written_out(scene: Scene) -> Scene:
             objects[f"{name}{k}"] = {"copy": thing["copies"]["of"], **({"material": material} if material else {}),
                                      "transform": [{"scale": scale}, {"rotate": [a, b, c]}, {"translate": [x, y, z]}]}
     if len(objects) == len(made.tree["objects"]):
-        raise Cannot("no list of copies with several copies")
+        raise CannotError("no list of copies with several copies")
     made.tree["objects"] = objects
     return made
 
