@@ -367,7 +367,7 @@ $(UNITS:%=run-%): run-%: $(BUILD)/% $(BUILD)/kage-import
 	@KAGE_IMPORT=$(BUILD)/kage-import $< >$<.log 2>&1 && echo '  OK  $<' || { cat $<.log; echo '  FAILED  $<'; exit 1; }
 
 program-tests: programs python $(BUILD)/fuzz/replay
-	@$(MAKE) --no-print-directory $(JOBS) REAL=double build/double/kage
+	@$(MAKE) --no-print-directory $(JOBS) REAL=double build/double/kage python
 	scripts/venv python -m pytest -q -n auto --dist loadfile tests # a file's tests share what they make
 
 # What POV-Ray, valgrind or a Python package would tell is left out where they are missing and can't be installed.
