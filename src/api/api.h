@@ -68,7 +68,7 @@ typedef struct reading {
 } reading;
 
 /* The reading for these, read now if needed; locks. It lives as long as k. NULL: errors in *e. */
-const scene *scene_reading(kage_scene *k, reading r, errors *e);
+const scene *scene_reading(kage_scene *k, reading r, const progress *show, errors *e);
 
 /* Fill in, and free, k->info. False: out of memory. */
 bool scene_describe(kage_scene *k);

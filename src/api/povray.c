@@ -14,7 +14,7 @@ kage_status kage_scene_write_povray(kage_scene *k, const char *path, const kage_
     c_locale l = c_locale_begin();
     watch w = {.call = o.progress, .user = o.user, .locale = &l};
     const progress show = watch_progress(&w);
-    const scene *s = scene_reading(k, (reading){displaced, k->first->shadow, k->first->bump_shadow}, &e);
+    const scene *s = scene_reading(k, (reading){displaced, k->first->shadow, k->first->bump_shadow}, &show, &e);
     bool good = s && pov_possible(s, &e);
     if (good) {
         const pov_options how = {

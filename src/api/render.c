@@ -72,7 +72,7 @@ static bool set_crop(const int crop[4], job *j, errors *e)
 }
 
 /* Apply the options. Not KAGE_OK: an error is in *e. */
-static kage_status settle(kage_scene *k, const kage_render_options *o, job *j, errors *e)
+static kage_status settle(kage_scene *k, const kage_render_options *o, job *j, const progress *show, errors *e)
 {
     const scene *first = k->first;
     reading r = {chosen(o->displaced, first->displaced), first->shadow, first->bump_shadow};
@@ -82,7 +82,7 @@ static kage_status settle(kage_scene *k, const kage_render_options *o, job *j, e
         method_parse(o->method, &r.shadow);
     if (o->bump_shadow)
         bump_shadow_parse(o->bump_shadow, &r.bump_shadow);
-    const scene *s = scene_reading(k, r, e);
+    const scene *s = scene_reading(k, r, show, e);
     if (!s)
         return KAGE_BAD_INPUT;
     j->view = *s;
@@ -243,7 +243,7 @@ kage_status kage_render(kage_scene *k, const kage_render_options *given, kage_fi
     c_locale l = c_locale_begin();
     watch w = {o.progress, o.user, &l, false};
     const progress p = watch_progress(&w);
-    kage_status status = settle(k, &o, &j, &e);
+    kage_status status = settle(k, &o, &j, &p, &e);
     if (status == KAGE_OK && !fits_film(j.part, &e))
         status = KAGE_BAD_OPTION;
     if (status == KAGE_OK)
@@ -314,7 +314,7 @@ kage_status kage_render_file(kage_scene *k, const kage_render_options *given, co
     c_locale l = c_locale_begin();
     watch w = {o.progress, o.user, &l, false};
     const progress p = watch_progress(&w);
-    kage_status status = settle(k, &o, &j, &e);
+    kage_status status = settle(k, &o, &j, &p, &e);
     if (status == KAGE_OK && (write.band < 0 || write.band % IMAGE_ROWS != 0)) {
         errors_add(&e, "a band of %d rows, expected a multiple of %d", write.band, IMAGE_ROWS);
         status = KAGE_BAD_OPTION;

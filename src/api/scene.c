@@ -37,7 +37,15 @@ static bool keep(kage_scene *k, const kage_scene *before, const char *folder, co
 static kage_scene *new_scene(void)
 {
     kage_scene *k = calloc(1, sizeof *k);
-    if (!k || pthread_mutex_init(&k->lock, NULL) == 0)
+    pthread_mutexattr_t again; /* a callback of progress may call the library with the scene that is read again */
+    if (!k || pthread_mutexattr_init(&again) != 0) {
+        free(k);
+        return NULL;
+    }
+    const bool good =
+        pthread_mutexattr_settype(&again, PTHREAD_MUTEX_RECURSIVE) == 0 && pthread_mutex_init(&k->lock, &again) == 0;
+    pthread_mutexattr_destroy(&again);
+    if (good)
         return k;
     free(k);
     return NULL;
@@ -162,7 +170,7 @@ void kage_scene_free(kage_scene *k)
 }
 
 /* Read the scene's text again, with more changes. */
-static scene *read_again(kage_scene *k, reading r, errors *e)
+static scene *read_again(kage_scene *k, reading r, const progress *show, errors *e)
 {
     enum { MORE = 3 };
     char shadow[METHOD_NAME_SIZE + sizeof "render.shadow="] = "render.shadow=";
@@ -188,6 +196,7 @@ static scene *read_again(kage_scene *k, reading r, errors *e)
         .set = set,
         .threads = k->threads,
         .model_reader = k->model_reader,
+        .progress = show,
         .arrays = &k->arrays,
         .shelves = shelves_of(k, all),
         .shelf = all,
@@ -198,14 +207,18 @@ static scene *read_again(kage_scene *k, reading r, errors *e)
 }
 
 /* Who finds it need not wait for others, who may be reading for long. */
-const scene *scene_reading(kage_scene *k, reading r, errors *e)
+const scene *scene_reading(kage_scene *k, reading r, const progress *show, errors *e)
 {
     scene **at = &k->reading[reading_index(r)], *s = __atomic_load_n(at, __ATOMIC_ACQUIRE);
     if (s)
         return s;
     pthread_mutex_lock(&k->lock);
     s = __atomic_load_n(at, __ATOMIC_ACQUIRE);
-    if (!s && (s = read_again(k, r, e)))
+    scene *made = s ? NULL : read_again(k, r, show, e);
+    s = __atomic_load_n(at, __ATOMIC_ACQUIRE);
+    if (s) /* a call by the callback of this one was sooner */
+        scene_free(made);
+    else if ((s = made))
         __atomic_store_n(at, s, __ATOMIC_RELEASE);
     pthread_mutex_unlock(&k->lock);
     return s;

@@ -30,6 +30,8 @@ typedef struct image_taker {
     /* Called with n samples of row y, from column x on, for each sample once, in any order, by several threads at once.
      */
     void (*take)(void *user, int x, int y, int n, const float *v);
+
+    const progress *show; /* asked now and then in the caller's thread, with the share that is decoded; NULL: none */
 } image_taker;
 
 /* Read one channel of a file, on the given number of threads (0: one for each processor; PNG takes two at
@@ -56,7 +58,8 @@ typedef enum image_encoding { IMAGE_BY_KIND, IMAGE_SRGB, IMAGE_LINEAR } image_en
  * PNG: any kind; sRGB unless IMAGE_LINEAR is asked for. Its other statements about gamma are ignored.
  * OpenEXR: as above; R, G and B, or Y as a grey. Always linear; IMAGE_SRGB is an error.
  * An image that is transparent anywhere is refused. exr: whether the file is one. */
-bool image_read_color(const char *path, image_encoding encoding, int threads, image *out, bool *exr, errors *e);
+bool image_read_color(const char *path, image_encoding encoding, int threads, const progress *show, image *out,
+                      bool *exr, errors *e);
 
 /* A named text to write into the file. */
 typedef struct image_text {

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/files.h"
 #include "image/srgb.h"
 
 static bool read_any(FILE *file, const char *channel, int threads, image_stream *to, bool *is_exr, char *why)
@@ -33,9 +34,10 @@ static bool read_any(FILE *file, const char *channel, int threads, image_stream 
 
 static bool read_file(const char *path, const char *channel, int threads, image_stream *to, bool *is_exr, errors *e)
 {
-    FILE *file = fopen(path, "rb");
+    const char *reason;
+    FILE *file = files_open_input(path, &reason);
     if (!file)
-        return errors_add(e, "%s", strerror(errno));
+        return errors_add(e, "%s", reason);
     char why[IMAGE_WHY] = "";
     bool ok = read_any(file, channel, threads, to, is_exr, why);
     fclose(file);
@@ -45,7 +47,8 @@ static bool read_file(const char *path, const char *channel, int threads, image_
 int image_png_bits(const char *path)
 {
     unsigned char head[25]; /* the signature, then the chunk IHDR: its size, its name, the image's size, the bits */
-    FILE *file = fopen(path, "rb");
+    const char *why;
+    FILE *file = files_open_input(path, &why);
     const bool good = file && fread(head, 1, sizeof head, file) == sizeof head && memcmp(head + 1, "PNG", 3) == 0 &&
                       memcmp(head + 12, "IHDR", 4) == 0;
     if (file)
@@ -125,9 +128,10 @@ static bool finish_color(image_encoding encoding, bool linear, const char *wrong
            errors_add(e, "there is not enough memory for the image");
 }
 
-bool image_read_color(const char *path, image_encoding encoding, int threads, image *out, bool *is_exr, errors *e)
+bool image_read_color(const char *path, image_encoding encoding, int threads, const progress *show, image *out,
+                      bool *is_exr, errors *e)
 {
-    const image_taker to = {out, begin_pixels, take_pixels};
+    const image_taker to = {out, begin_pixels, take_pixels, show};
     image_stream s = {.to = &to, .values = 4};
     *out = (image){0};
     return keep_if(read_file(path, NULL, threads, &s, is_exr, e) &&
@@ -137,7 +141,7 @@ bool image_read_color(const char *path, image_encoding encoding, int threads, im
 
 bool image_array_read_color(const image_array *a, image_encoding encoding, image *out, bool *is_float, errors *e)
 {
-    const image_taker to = {out, begin_pixels, take_pixels};
+    const image_taker to = {out, begin_pixels, take_pixels, NULL};
     image_stream s = {.to = &to, .values = 4};
     *out = (image){0};
     *is_float = a->type >= IMAGE_F32;

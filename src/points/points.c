@@ -1,6 +1,8 @@
 /* Reads a list of points, of either kind. */
 #include "points/parts.h"
 
+#include "base/files.h"
+
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -18,15 +20,11 @@ bool points_error(const points *p, const char *name, int32_t row, const char *me
 
 static char *read_all(const char *path, const char *name, size_t *size, errors *e)
 {
-    struct stat about;
-    if (stat(path, &about) == 0 && !S_ISREG(about.st_mode)) { /* a pipe could wait forever, a device never end */
-        errors_add(e, "%s: can't read the list: no regular file", name);
-        return NULL;
-    }
-    FILE *f = fopen(path, "rb");
+    const char *why;
+    FILE *f = files_open_input(path, &why);
     char *text = NULL;
     size_t n = 0, room = 0;
-    errno = f ? 0 : errno;
+    errno = 0;
     while (f && !ferror(f) && !feof(f)) {
         if (n + 1 >= room) {
             char *more = realloc(text, room = room ? 2 * room : 1 << 16);
@@ -38,7 +36,8 @@ static char *read_all(const char *path, const char *name, size_t *size, errors *
         }
         n += fread(text + n, 1, room - n - 1, f);
     }
-    const char *why = f && !ferror(f) && feof(f) ? NULL : strerror(errno ? errno : ENOMEM);
+    if (f && (ferror(f) || !feof(f)))
+        why = strerror(errno ? errno : ENOMEM);
     if (f)
         fclose(f);
     if (why) {

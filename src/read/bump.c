@@ -79,7 +79,7 @@ static void take_kept(void *user, int x, int y, int n, const float *v)
 static kept_samples *read_kept(reader *r, const source *from, const char *layer, errors *e)
 {
     kept_samples *k = NULL;
-    const image_taker to = {&k, begin_kept, take_kept};
+    const image_taker to = {&k, begin_kept, take_kept, r->from->progress};
     float range[2];
     if (image_read(from->path, layer, r->from->threads, &to, range, e))
         return k;
@@ -113,7 +113,7 @@ static const image_array *kept_of(reader *r, const source *from, const char *lay
 
 static bool read_all(reader *r, const source *from, const char *layer, map_reading *m, float range[2], errors *e)
 {
-    const image_taker to = {m, begin_samples, take_samples};
+    const image_taker to = {m, begin_samples, take_samples, r->from->progress};
     if (from->array)
         return image_array_read(&from->array->image, layer, &to, range, e);
     const image_array *kept = kept_of(r, from, layer, e);

@@ -35,8 +35,9 @@ static made_image *make_image(reader *r, node *file, const source *from, image_e
     image pixels = {0};
     errors e = {0};
     bool linear = false;
-    const bool was_read = from->array ? image_array_read_color(&from->array->image, encoding, &pixels, &linear, &e)
-                                      : image_read_color(from->path, encoding, r->from->threads, &pixels, &linear, &e);
+    const bool was_read =
+        from->array ? image_array_read_color(&from->array->image, encoding, &pixels, &linear, &e)
+                    : image_read_color(from->path, encoding, r->from->threads, r->from->progress, &pixels, &linear, &e);
     texels *t = NULL;
     if (reader_usable(r, file, from->name, was_read, pixels.width, pixels.height, "pixels", &e))
         t = reader_made(r, texels_new(&pixels, l));

@@ -38,7 +38,7 @@ scene *scene_read(const scene_source *from, errors *e)
                 bool good = true;
                 r.s->object_bvh = object_bvh_new(r.s, from->threads, &good);
                 if (scene_wants_horizons(r.s))
-                    good = (r.s->horizons = horizons_new(r.s, from->threads)) && good;
+                    good = (r.s->horizons = horizons_new(r.s, from->threads, from->progress)) && good;
                 if (!good)
                     errors_add(e, "out of memory");
             }

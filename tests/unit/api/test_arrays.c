@@ -46,7 +46,7 @@ static samples samples_of(const char *path, const char *channel)
     samples s;
     float range[2];
     errors e = {0};
-    assert_true(image_read(path, channel, 1, &(image_taker){&s, begin, take}, range, &e));
+    assert_true(image_read(path, channel, 1, &(image_taker){&s, begin, take, NULL}, range, &e));
     return s;
 }
 
