@@ -91,6 +91,12 @@ static double seconds_now(void)
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
+static bool stop_waiting(reader_pipe *p, const char *why)
+{
+    p->stopped = true;
+    return reader_fails(p, why);
+}
+
 /* Wait until there is something to read. Its processor time is limited, but a program may also sleep, or wait for a
  * file. False: the time is over, or the caller has ended the call. */
 static bool wait_for_bytes(reader_pipe *p)
@@ -100,15 +106,15 @@ static bool wait_for_bytes(reader_pipe *p)
     for (int n = 0; n <= 0;) {
         n = poll(&ready, 1, (int)(1e3 * between));
         if (n < 0 && errno != EINTR)
-            return reader_fails(p, strerror(errno));
+            return stop_waiting(p, strerror(errno));
         const double now = seconds_now();
         if (n <= 0 && now > p->end)
-            return reader_fails(p, "its reader waits for too long, expected a file that can be read at once");
+            return stop_waiting(p, "its reader waits for too long, expected a file that can be read at once");
         if (now - p->asked < between)
             continue;
         p->asked = now;
         if (!progress_show(p->show, p->share < 1 ? "reading" : "unpacking", p->share))
-            return reader_fails(p, "cancelled");
+            return stop_waiting(p, "cancelled");
     }
     return true;
 }
@@ -129,7 +135,7 @@ static bool receive(reader_pipe *p, void *to, size_t size)
 
 bool reader_receive(reader_pipe *p, void *to, size_t size)
 {
-    return receive(p, to, size) || (p->letter.is != LETTER_WRONG && reader_fails(p, "its reader ended too soon"));
+    return receive(p, to, size) || (!p->stopped && reader_fails(p, "its reader ended too soon"));
 }
 
 bool reader_fails(reader_pipe *p, const char *why)
@@ -139,11 +145,20 @@ bool reader_fails(reader_pipe *p, const char *why)
     return false;
 }
 
+/* The next letter. The program has read a file that may have broken it, so what it sends need not make sense. False:
+ * there is none that does. */
+static bool receive_letter(reader_pipe *p, letter *l)
+{
+    return receive(p, l, sizeof *l) && l->magic == LETTER_MAGIC && l->is >= LETTER_OPENED && l->is <= LETTER_DONE &&
+           memchr(l->why, 0, sizeof l->why) && l->share >= 0 && l->share <= 1;
+}
+
 /* Take letters until the last one. True: it has come, and all was taken. */
 static bool receive_all(const reader_call *c, reader_pipe *p)
 {
     letter *l = &p->letter;
-    while (receive(p, l, sizeof *l) && l->magic == LETTER_MAGIC && l->is != LETTER_WRONG) {
+    bool good;
+    while ((good = receive_letter(p, l)) && l->is != LETTER_WRONG) {
         if (l->is == LETTER_OPENED) {
             if (!files_add(c->opened, l->opened))
                 return reader_fails(p, "out of memory");
@@ -156,7 +171,7 @@ static bool receive_all(const reader_call *c, reader_pipe *p)
         else if (l->is == LETTER_DONE)
             return true;
     }
-    l->is = l->is == LETTER_WRONG ? LETTER_WRONG : LETTER_READ;
+    l->is = good || p->stopped ? LETTER_WRONG : LETTER_READ;
     return false;
 }
 

@@ -102,7 +102,7 @@ static horizon *over_extent(const object *o, int part, const double u[2], const 
     table_grid g;
     lay_extent(o, u, w, &g);
     const size_t row = (size_t)g.columns + 1, size = row * ((size_t)g.rows + 1);
-    real *all = malloc(3 * size * sizeof *all);
+    real *all = memory_new(progress_memory(show), 3 * size * sizeof *all);
     if (!all)
         return NULL;
     real *const L = all, *const M = L + size, *const N = M + size;
@@ -110,7 +110,7 @@ static horizon *over_extent(const object *o, int part, const double u[2], const 
         curvature_of_row(f, part, &g, j, L + (size_t)j * row, M + (size_t)j * row, N + (size_t)j * row);
     const horizon_curvature c = {L, M, N};
     horizon *h = horizon_new(o->bump, &g, f->ops->flat, &c, threads, show);
-    free(all);
+    memory_free(all);
     return h;
 }
 
@@ -136,7 +136,7 @@ static bool build(const object *o, horizon **of, int threads, const progress *sh
     return true;
 }
 
-horizons *horizons_new(const scene *s, int threads, const progress *show)
+horizons *horizons_new(const scene *s, int threads, const progress *w)
 {
     horizons *h = calloc(1, sizeof *h);
     if (!h)
@@ -145,7 +145,7 @@ horizons *horizons_new(const scene *s, int threads, const progress *show)
     h->of = calloc((size_t)s->objects + 1, sizeof *h->of);
     bool good = h->of != NULL;
     for (int k = 0; good && k < s->objects; k++)
-        good = build(&s->object[k], h->of[k], threads, show);
+        good = build(&s->object[k], h->of[k], threads, w);
     if (good)
         return h;
     horizons_free(h);

@@ -4,7 +4,6 @@
 #ifndef KAGE_TEXTURE_HORIZON_H
 #define KAGE_TEXTURE_HORIZON_H
 
-#include "base/progress.h"
 #include "texture/bump.h"
 
 enum { HORIZON_DIRECTIONS = 32 }; /* 8, 16 and 32 had 10, 4 and 1.2 % wrong pixels under a light 10 degrees high */
@@ -17,10 +16,9 @@ typedef struct horizon_curvature {
 } horizon_curvature;
 
 /* The horizon of P at the samples of a grid. ends: there is nothing beyond the grid. c: of the surface under P; NULL:
- * it is flat. show: asked now and then; NULL: none. The result does not depend on the threads. NULL: out of memory,
- * more than 2^31 entries, or ended by show. */
+ * it is flat. The result does not depend on the threads. NULL: out of memory, or more than 2^31 entries. */
 horizon *horizon_new(const bump *P, const table_grid *grid, bool ends, const horizon_curvature *c, int threads,
-                     const progress *show);
+                     const progress *w);
 
 /* NULL is allowed. */
 void horizon_free(horizon *h);

@@ -26,7 +26,7 @@ static uint8_t *png_bytes(const kage_film *f)
     uint8_t *bytes = malloc(4 * pixels_of(f));
     for (size_t k = 0; k < 4 * pixels_of(f); k++)
         bytes[k] = (uint8_t)(m.v[k] * 255 + 0.5f);
-    free(m.v);
+    memory_free(m.v);
     return bytes;
 }
 
