@@ -203,7 +203,7 @@ $(BUILD)/kage: $(PROGRAM:%=$(BUILD)/%.o) $(BUILD)/base/spelling.o $(BUILD)/libka
 	@echo '  LD  $@'
 	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(LIBS)
 
-$(BUILD)/kage-import: $(IMPORT:%=$(BUILD)/%.o)
+$(BUILD)/kage-import: $(IMPORT:%=$(BUILD)/%.o) $(BUILD)/base/files.o
 	@echo '  LD  $@'
 	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(IMPORT_LIBS)
 
