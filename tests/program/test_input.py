@@ -352,6 +352,8 @@ REPLACED = [
     ("no-light-at", "at: [-4, 5, -2], ", "", "5:9: a light lacks its 'at'"),
     ("no-lights", "lights:\n  lamp: {at: [-4, 5, -2], color: [1, 1, 1]}\n", "",
      "1:1: the scene lacks its 'lights'"),
+    ("v-for-w", "u: [1, 0, 0], w: [0, -1, 0]}", "u: [1, 0, 0], v: [0, -1, 0]}",
+     "15:50: rectangle has no 'v', did you mean 'w'?"),
     ("no-origin", "origin: [0, 0, 0], ", "", "10:12: plane lacks its 'origin'"),
     ("no-to", ", to: [0, 1.5, 0]", "", "19:10: box lacks its 'to'"),
     ("no-radius", ", radius: 0.5", "", "22:13: sphere lacks its 'radius'"),
@@ -584,6 +586,13 @@ def test_replaced(bench: Kage, old: str, new: str, message: str) -> None:
     check_caret(lines, text)
     count = len(errors_in(lines))
     assert len(lines) == 3 * count + (count > 1)
+
+
+def test_the_errors_of_a_bump_come_with_its_shapes(bench: Kage) -> None:
+    lines = refused_scene(bench, SCENE.replace("box: {", "bump: {function: sin(q)}\n    box: {far: 1, "))
+    assert [line for line in lines if line.startswith("scene.yaml:")] == [
+        "scene.yaml:20:11: box has no 'far', expected one of: from to",
+        "scene.yaml:19:26: unknown name 'q', expected u, w, pi or a function"]
 
 
 # ---- the file as a whole ----
@@ -851,11 +860,14 @@ COMMAND = [
     *[(f"lacks{name}", ["render", "scene.yaml", name], f"{name} lacks its value; see kage render --help")
       for name in ("-o", "--shadow", "--size", "--aa", "--aa-threshold", "--crop", "--threads", "--bits", "--set")],
     ("ending", ["render", "scene.yaml", "-o", "out.jpg"],
-     "-o out.jpg: no such kind of picture, expected a name that ends in .png or .exr"),
+     "-o out.jpg: no such kind of picture, expected a name that ends in .png or .exr, or - for a PNG to standard "
+     "output"),
     ("ending-none", ["render", "scene.yaml", "-o", "out"],
-     "-o out: no such kind of picture, expected a name that ends in .png or .exr"),
+     "-o out: no such kind of picture, expected a name that ends in .png or .exr, or - for a PNG to standard "
+     "output"),
     ("ending-alone", ["render", "scene.yaml", "-o", ".png"],
-     "-o .png: no such kind of picture, expected a name that ends in .png or .exr"),
+     "-o .png: no such kind of picture, expected a name that ends in .png or .exr, or - for a PNG to standard "
+     "output"),
     ("shadow", ["render", "scene.yaml", "--shadow", "3"],
      "--shadow 3: no such method, expected none, 0, 1, 2, 2+, iter:K, march:N, exact or auto[:E]"),
     ("shadow-steps", ["render", "scene.yaml", "--shadow", "march:0"],
