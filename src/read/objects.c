@@ -69,6 +69,7 @@ static void read_own_bump(reader *r, node *at, object *o)
     o->bump_of = NULL;
     o->map = (map_note){0};
     o->bump_spec = (bump_spec){0};
+    r->now = at;
     o->bump = reader_bump(r, at, o);
     if (o->bump && scene_wants_truth(r->s) && !displaced_has_bounds(o->bump))
         yaml_error(r->y, at,
@@ -115,6 +116,7 @@ static void read_object(reader *r, const queue *q, int i)
     node *v = q->at[i], *m, *at_bump, *copy;
     int k;
     q->state[i] = BEGUN;
+    r->now = v;
     o->placed = affine_identity();
     if (yaml_map(r->y, v, "an object", READER_SHAPES " material bump transform copy copies hidden")) {
         node *hidden = yaml_get(v, "hidden");
@@ -146,6 +148,7 @@ static void read_object(reader *r, const queue *q, int i)
             o->displaced = reader_made(r, reader_displaced(r, o));
     }
     q->state[i] = DONE;
+    r->now = NULL;
 }
 
 /* Copy object i and those that its list adds to `to`, the first of which is to[at]. Returns how many. */

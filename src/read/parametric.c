@@ -49,11 +49,11 @@ static surface *search(reader *r, node *at, patch *q, const char *what, const ch
     if (q)
         q->threads = r->from->threads;
     bool bounded = true;
-    surface *f = q ? patch_surface_new_bounded(q, &bounded) : NULL;
+    surface *f = q ? patch_surface_new_bounded(q, r->from->progress, &bounded) : NULL;
     if (!bounded)
         yaml_error(r->y, at, "%s", what);
     else if (!f)
-        errors_add(r->e, "out of memory");
+        reader_made(r, NULL);
     return reader_keep_surface(r, key, f);
 }
 

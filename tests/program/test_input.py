@@ -10,7 +10,6 @@ import itertools
 import re
 import struct
 import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -911,16 +910,6 @@ def test_command_line(bench: Kage, command: list[str], message: str) -> None:
 def test_no_arguments_give_the_help(kage: Kage) -> None:
     lines = refused(kage)
     assert any("Usage: kage COMMAND" in line for line in lines)
-
-
-# ---- anything at all ----
-
-
-def test_fuzz(tmp_path: Path) -> None:
-    """A short run of scripts/fuzz.py; `scripts/venv python scripts/fuzz.py --count 100000` is a long one."""
-    command = [sys.executable, TOP / "scripts" / "fuzz.py", "--program", PROGRAM, "--count", "150", "--keep", tmp_path]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stdout + done.stderr
 
 
 # ---- the reference page ----
