@@ -62,7 +62,7 @@ static bool read_triangles(reader *r, const model *m, mesh_data *d)
     d->part = NULL;
     if (!good)
         return yaml_error(r->y, m->part ? m->part : m->file, "'%s' can't be used: %s", m->from.name, why);
-    return is_large(d) || yaml_error(r->y, m->file, "'%s' can't be used: it is smaller than %g, expected some size",
+    return is_large(d) || yaml_error(r->y, m->file, "'%s' can't be used: the model is smaller than %g, expected some size",
                                      m->from.name, SMALL);
 }
 

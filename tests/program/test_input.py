@@ -62,7 +62,7 @@ REPLACED = [
      "5:37: a single value, expected one side of the area, [x, y, z]"),
     ("area-parallel", "color: [1, 1, 1]",
      "parallel: {to: [0, 0, 0]}, area: {u: [1, 0, 0], w: [0, 0, 1], samples: [4, 4]}",
-     "5:60: an area of a parallel light, expected a point light or a spot"),
+     "5:60: a parallel light has no area, expected 'area' only in a point light or a spot"),
     ("material-key", "diffuse: 0.8", "difuse: 0.8", "7:48: a material has no 'difuse', did you mean 'diffuse'?"),
     ("object-key", "    box: {", "    brick: {",
      "19:5: an object has no 'brick', expected one of: plane rectangle disc box sphere cylinder cone torus ellipsoid "
@@ -384,7 +384,8 @@ REPLACED = [
      "17:24: 'scene.yaml' can't be used: its first bytes are those of neither a PNG nor an OpenEXR file"),
     ("map-empty", "file: map.png", "file: empty.png", "17:24: 'empty.png' can't be used: the file is empty"),
     ("map-color", "file: map.png", "file: color.png",
-     "17:24: 'color.png' can't be used: the PNG is in colour; a grey one is expected, of 8 or 16 bits"),
+     "17:24: 'color.png' can't be used: the PNG is in colour; a grey one is expected, of 8 or 16 bits: "
+     "save it in grey, if bright means high"),
     ("map-normals", "file: map.png", "file: normals.png",
      "17:24: 'normals.png' can't be used: the PNG is a normal map, which has slopes but no heights; a grey height map "
      "is expected, and docs/models.md tells how to make one"),
