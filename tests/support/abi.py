@@ -129,7 +129,8 @@ def major() -> int:
 
 def present() -> dict[str, Any]:
     """What this tree has, and its major version."""
-    return {"major": major(), "kage.h": of_header(HEADER.read_text()), "bumpshadow.h": of_formulas(), "python": of_package()}
+    return {"major": major(), "kage.h": of_header(HEADER.read_text()), "bumpshadow.h": of_formulas(),
+            "python": of_package()}
 
 
 def main() -> None:
