@@ -6,6 +6,7 @@
 #   CLONES=no             without the AVX2 copies of the stages
 #   OPENMP=no             one thread a render, without OpenMP: for SANITIZE=thread, which does not see the barriers of
 #                         its library (CLONES=no, too: functions that choose their copy run before it is ready)
+#   BVH=brute             every ray is tested with every box, which is slow: for tests/random
 #   VIEW=yes|no           kage view, the window; it needs SDL2, SDL2_ttf and fontconfig (yes where they are here)
 #   BUILD=DIR             where the objects and the program go
 #   PYTHON=PROGRAM        the Python for which the package is built (with cffi and numpy)
@@ -16,6 +17,7 @@ SANITIZE ?=
 CLONES   ?= yes
 OPENMP   ?= yes
 BUILD    ?= build/$(REAL)
+BVH      ?= embree
 BENCH    ?= normal
 SPEED    ?= normal
 OBJCOPY  ?= objcopy
@@ -81,7 +83,8 @@ SOURCES   = $(patsubst src/%.c,%,$(wildcard src/*/*.c))
 PROGRAM   = $(filter cli/%,$(SOURCES))
 IMPORT    = $(filter import/%,$(SOURCES)) # kage-import, which alone links assimp and libjpeg
 WINDOW    = $(filter view/% look/%,$(SOURCES)) # kage-view, which alone links SDL2; look/ does without
-LIBRARY   = $(filter-out cli/% import/% view/% look/%,$(SOURCES))
+LIBRARY   = $(filter-out cli/% import/% view/% look/% $(if $(BRUTE),bvh/embree bvh/wide%),$(SOURCES)) $(BRUTE)
+BRUTE     = $(if $(filter brute,$(BVH)),random/brute)
 VERSION  := $(shell sed -n 's/.*define KAGE_VERSION "\(.*\)".*/\1/p' include/kage.h)
 SONAME    = libkage.so.$(firstword $(subst ., ,$(VERSION)))
 UNITS     = $(patsubst tests/%.c,%,$(wildcard tests/unit/*/test_*.c))
@@ -93,11 +96,11 @@ GALLERY   = $(patsubst scenes/gallery/%.yaml,%,$(wildcard scenes/gallery/*.yaml)
 
 # What `make format` and `make lint` look at. The yardsticks in bench/limits are compiled by themselves.
 C_FILES   = $(wildcard include/*.h src/*/*.[ch] examples/*.c python/*.[ch] tests/support/*.h tests/unit/*/*.[ch] \
-                       bench/limits/*.c)
+                       tests/random/*.c bench/limits/*.c)
 TIDY      = $(filter-out bench/limits/% $(if $(filter yes,$(VIEW)),,src/view/%),$(filter %.c,$(C_FILES)))
 
 .PHONY: all render bench speed readme reference accept counts test unit-tests program-tests programs sanitize format
-.PHONY: lint tidy same python wheel install install-files uninstall clean help bootstrap FORCE
+.PHONY: dist docs lint tidy same python wheel install install-files uninstall clean help bootstrap FORCE
 all: bootstrap
 	@$(MAKE) --no-print-directory $(JOBS) programs
 
@@ -120,6 +123,8 @@ help:
 	@echo 'make sanitize   unit tests, and some program tests, under ASan, UBSan and TSan'
 	@echo 'make lint       check style, likely mistakes and types; make format applies the style'
 	@echo 'make same       compare all pictures with another commit, REV=COMMIT, ONLY=TEXT in their names'
+	@echo 'make dist       the source archive of HEAD, out/kage-$(VERSION).tar.gz; scripts/deb: Debian packages'
+	@echo 'make docs       the documentation as pages, into out/docs/index.html'
 	@echo 'make install    install program, library and headers to PREFIX ($(PREFIX)), under DESTDIR'
 	@echo 'make uninstall  remove what install has put there'
 	@echo 'make clean      remove build/ and out/'
@@ -186,8 +191,9 @@ out/gallery/index.html: $(GALLERY:%=out/gallery/%-none.png) $(GALLERY:%=out/gall
 
 # ---- the program ----
 
-# It knows the library by kage.h alone. Models are read by kage-import, which it finds beside itself.
-$(BUILD)/kage: $(PROGRAM:%=$(BUILD)/%.o) $(BUILD)/libkage.a | $(BUILD)/kage-import
+# It knows the library by kage.h alone, and how words are spelled. Models are read by kage-import, which it finds beside
+# itself.
+$(BUILD)/kage: $(PROGRAM:%=$(BUILD)/%.o) $(BUILD)/base/spelling.o $(BUILD)/libkage.a | $(BUILD)/kage-import
 	@echo '  LD  $@'
 	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(LIBS)
 
@@ -257,6 +263,26 @@ $(filter $(BUILD)/unit/look/%,$(UNITS:%=$(BUILD)/%)): $(patsubst %,$(BUILD)/%.o,
 # A test in which memory runs out: our own objects ask its functions.
 WRAPPED   = malloc calloc realloc posix_memalign strdup free fy_node_build_from_malloc_string
 $(BUILD)/unit/api/test_memory: private override LDFLAGS += $(WRAPPED:%=-Wl,--wrap=%)
+
+# ---- fuzzing ----
+
+# All targets in one program, which runs that of its name: with libFuzzer (clang), or over files with plain main.
+FUZZ      = $(patsubst tests/%.c,%,$(wildcard tests/fuzz/*.c))
+FUZZED    = $(filter-out fuzz/engine fuzz/replay fuzz/letters,$(FUZZ))
+
+$(BUILD)/fuzz/kage-fuzz: $(FUZZED:%=$(BUILD)/%.o) $(BUILD)/fuzz/engine.o $(BUILD)/internal.a | $(BUILD)/fuzz/letters
+	@echo '  LD  $@'
+	$(Q)$(CC) $(LDFLAGS) -fsanitize=fuzzer -o $@ $^ $(LIBS)
+
+$(BUILD)/fuzz/replay: $(FUZZED:%=$(BUILD)/%.o) $(BUILD)/fuzz/replay.o $(BUILD)/internal.a | $(BUILD)/fuzz/letters
+	@echo '  LD  $@'
+	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(LIBS)
+
+# It is started anew for each input, so without what a sanitizer does first.
+$(BUILD)/fuzz/letters: tests/fuzz/letters.c src/mesh/letter.h
+	@echo '  LD  $@'
+	@mkdir -p $(@D)
+	$(Q)$(CC) -Iinclude -Isrc $(STANDARD) -O1 -o $@ $<
 
 # ---- the Python package ----
 
@@ -395,6 +421,15 @@ $(TIDY:%=tidy-%): tidy-%: %
 same: all
 	@CC='$(CC)' scripts/bootstrap python valgrind
 	scripts/venv python -m scripts.same $(or $(REV),HEAD) --real $(REAL) $(ONLY:%=--only %)
+
+# ---- to give away ----
+
+dist:
+	@python3 -m scripts.dist
+
+docs:
+	@CC='$(CC)' scripts/bootstrap python
+	scripts/venv python -m scripts.docs
 
 # LIBDIR, LIBEXEC: of the library, and of kage-import, where they are not in PREFIX/lib and PREFIX/libexec/kage.
 install: all

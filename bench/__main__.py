@@ -42,11 +42,13 @@ def parse_arguments(arguments: Sequence[str] | None) -> argparse.Namespace:
                         help=f"measure only this scene; may be given again: {', '.join(TITLES)}")
     parser.add_argument("--out", type=Path, default=TOP / "out" / "bench", metavar="DIR", help="(out/bench)")
     parser.add_argument("--kage", type=Path, default=KAGE, metavar="FILE", help="the program (build/float/kage)")
+    parser.add_argument("--again", action="store_true",
+                        help="measure nothing: judge OUT/report.json again, and write the report from it")
     parser.add_argument("--scheduler", metavar="ADDRESS",
                         help="measure all but times on a Dask cluster: tcp://HOST:PORT, or local:N processes")
     options = parser.parse_args(arguments)
     options.kage, options.out = options.kage.resolve(), options.out.resolve()
-    if not os.access(options.kage, os.X_OK):
+    if not options.again and not os.access(options.kage, os.X_OK):
         parser.error(f"{options.kage} is missing or is not a program: `make` builds it")
     return options
 
@@ -97,8 +99,7 @@ def judge(found: Report) -> list[Claim]:
     return claims.claims(found) + bounds.bounds(found)
 
 
-def bench(options: argparse.Namespace) -> int:
-    """Measure, write the report, and name all that is missing. The exit status."""
+def measured(options: argparse.Namespace) -> Report:
     names = options.scene or TITLES
     facts = {name: plan.facts(options.kage, name) for name in TITLES if name in names}
     about = Bench(options.kage, programs.file_digest(options.kage), options.out, LEVELS[options.level], facts)
@@ -109,7 +110,22 @@ def bench(options: argparse.Namespace) -> int:
         runner.run(jobs)
         data = summary.summarise(about, store, jobs, runner.failed, judge)
     data["incomplete"] += faults + more
-    data["incomplete"] += report.write(data, options.out)
+    return data
+
+
+def stored(options: argparse.Namespace) -> Report:
+    """As it was measured, but judged by today's claims and told in today's words."""
+    data: Report = json.loads((options.out / "report.json").read_text())
+    data["claims"] = judge(data)
+    data["answer"] = summary.answer(data)
+    return data
+
+
+def bench(options: argparse.Namespace) -> int:
+    """Measure, write the report, and name all that is missing. The exit status."""
+    data = stored(options) if options.again else measured(options)
+    missing = report.write(data, options.out)
+    data["incomplete"] += [line for line in missing if line not in data["incomplete"]]
     data["complete"] = not data["incomplete"]
     report.write_all(options.out, {"report.json": json.dumps(data, indent=1) + "\n"})
     for line in data["incomplete"] + data["notes"]:
@@ -125,7 +141,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:
         return bench(options)
-    except (MeasureError, StoreError, OSError) as error:
+    except (MeasureError, StoreError, OSError, ValueError) as error:
         print(f"bench: {error}", file=sys.stderr)
         return 1
     except KeyboardInterrupt:

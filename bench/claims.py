@@ -20,7 +20,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import TypeVar
 
 from bench import data
-from bench.data import Case, Claim, Cost, MaskMetric, Parity, Peer, Quality, Report, Shares, Sweep, Truth
+from bench.data import BUMP_ONLY, Case, Claim, Cost, MaskMetric, Parity, Peer, Quality, Report, Shares, Sweep, Truth
 from bench.stats import Interval
 
 HOLDS = "holds"
@@ -40,15 +40,15 @@ FLAT_PEERS = (BUMP_MAP, "POV-Ray, smooth, no bumps")  # without displacement; th
 
 # An edge that is off by a pixel on average is seen; one off by less is about as good as pixels can draw it.
 SEEN = 1.0  # pixels
-# `none` should not move the edge at all; this allows for the odd pixel that falls on the other side.
+# Bump mapping only should not move the edge at all; this allows for the odd pixel that falls on the other side.
 STAYS = 0.1  # pixels
 WIDTH = 640  # the two above are in pixels of a picture that is so wide; finer masks have smaller pixels
 # "Roughly" the shadow that fits the bumps: nearer to that shadow than to the one of the smooth surface.
-ROUGHLY = 0.5  # of none's distance
+ROUGHLY = 0.5  # of the distance by bump mapping only
 # "Not much different" in cost: at most a tenth.
-HARDLY = 10.0  # % over none
+HARDLY = 10.0  # % over bump only
 # "Clearly" cheaper: not by a difference that nobody would notice, however well it is measured.
-CLEARLY = 1.0  # % of none's time
+CLEARLY = 1.0  # % of the time by bump mapping only
 # "Enough", and "no great difference" between orders: three quarters of what there is to gain.
 MOST = 0.75
 # 1 % of a shadow of 200 x 200 pixels, as large as figure 5's at 640x480, is an edge off by half a pixel all around.
@@ -58,7 +58,7 @@ LARGE_SLOPE = 1.0  # 45 degrees; an order that is right up to here can be used f
 EXPENSIVE = 2.0  # times
 # kage's own, which the project demands of itself.
 FASTER = 40.0  # times
-ORDER_0_COST = 8.0  # % over none
+ORDER_0_COST = 8.0  # % over bump only
 LEAST_CLOSE = {"self": 99.5, "cast": 99.8}  # % of the pixels within 1/255
 MOST_DIFFERENT = 0.1  # % of the shadow's pixels
 
@@ -110,6 +110,42 @@ def unmeasured(name: str, what: str) -> Case:
     return {"case": name, "verdict": UNMEASURED, "detail": f"{what} not measured"}
 
 
+# What a headline may say of a time ------------------------------------------------------------------
+
+
+def measured_span(value: Interval | None, form: str, unit: str, same: float) -> str:
+    """All that the runs bear: the interval, not its middle. `same`: the value that means no difference."""
+    if value is None:
+        return "not measured"
+    if value["n"] < LEAST_RUNS:
+        return f"not measured often enough ({value['n']} run{'s' * (value['n'] > 1)})"
+    text = f"{span_text(value, form)} {unit}"
+    return f"no difference seen ({text})" if value["low"] <= same <= value["high"] else text
+
+
+def span_text(value: Interval, form: str) -> str:
+    low, high = (f"{end:{form}}" for end in (value["low"], value["high"]))
+    return low if low == high else f"{low} to {high}"
+
+
+def over_all(values: Iterable[Interval | None]) -> Interval | None:
+    """From the lowest end to the highest of what was measured in several scenes."""
+    known = [value for value in values if value is not None]
+    if not known:
+        return None
+    low, high = min(value["low"] for value in known), max(value["high"] for value in known)
+    return {"median": (low + high) / 2, "low": low, "high": high, "n": min(value["n"] for value in known)}
+
+
+def not_told_apart(costs: Mapping[str, Interval | None]) -> set[str]:
+    """The cheapest, and all whose intervals do not show that they are dearer."""
+    known = {name: value for name, value in costs.items() if value is not None}
+    if not known:
+        return set()
+    least = min(known.values(), key=lambda value: value["median"])
+    return {name for name, value in known.items() if value["low"] <= least["high"]}
+
+
 # Reading the report ---------------------------------------------------------------------------------
 
 
@@ -141,7 +177,7 @@ def shadow_error(scene: Methods, methods: Sequence[str], metric: MaskMetric) -> 
 
 
 def added_times(scene: Costs, *methods: str) -> list[Interval] | None:
-    """% over none of each method; None where one is missing."""
+    """% over bump only, of each method; None where one is missing."""
     return complete([data.added_cost(scene.get(method)) for method in methods])
 
 
@@ -188,11 +224,11 @@ def detached_case(name: str, scene: Methods, grain: float) -> Case:
     none = scene.get("none")
     edge, error = none and none["edge_moved"], shadow_error(scene, ("none",), "edge_mean")
     if edge is None or error is None:
-        return unmeasured(name, "the edge of none")
+        return unmeasured(name, "the edge by bump only")
     truth, (away,) = error
     moved, away = edge["mean"] / grain, away / grain
     return {"case": name, "verdict": decided(moved <= STAYS and away >= SEEN),
-            "detail": f"none: edge {moved:.2f} px from that without bumps, {away:.2f} px from that of {truth}"}
+            "detail": f"{BUMP_ONLY}: edge {moved:.2f} px from that without bumps, {away:.2f} px from that of {truth}"}
 
 
 def detached(report: Report) -> Claim:
@@ -201,8 +237,8 @@ def detached(report: Report) -> Claim:
         "With bump mapping alone the bumps do not change the shadow: it seems to float above the surface, and looks "
         "unnatural.",
         "abstract, sections 1, 2 and 5, figure 4",
-        f"The edge of none's shadow is on average at most {STAYS:g} px from the edge on the surface without bumps, and "
-        f"at least {SEEN:g} px from the true one, in pixels of a picture {WIDTH} pixels wide.",
+        f"The edge of the shadow by {BUMP_ONLY} is on average at most {STAYS:g} px from the edge on the surface "
+        f"without bumps, and at least {SEEN:g} px from the true one, in pixels of a picture {WIDTH} pixels wide.",
         [detached_case(name, scene, grain_of(report, name)) for name, scene in data.qualities(report).items()])
 
 
@@ -212,7 +248,8 @@ def follows_case(name: str, scene: Methods, order: str) -> Case:
         return unmeasured(f"{name}, {order}", "the edges' distance")
     truth, (none, ours) = found
     return {"case": f"{name}, {order}", "verdict": decided(ours <= ROUGHLY * none),
-            "detail": f"{ours / none:.2f} times as far from that of {truth}" if none else f"none has {truth}'s edge"}
+            "detail": (f"{ours / none:.2f} times as far from that of {truth}" if none
+                       else f"{BUMP_ONLY} has {truth}'s edge")}
 
 
 def follows(report: Report) -> Claim:
@@ -221,7 +258,8 @@ def follows(report: Report) -> Claim:
         "With orders 0, 1 and 2 the shadow roughly fits the bumps, and the positions of object and shadow hardly look "
         "wrong.",
         "section 5, figures 5 to 7",
-        f"The edge of the order's shadow is on average at most {ROUGHLY:g} times as far from the true one as none's.",
+        f"The edge of the order's shadow is on average at most {ROUGHLY:g} times as far from the true one as that by "
+        f"{BUMP_ONLY}.",
         [follows_case(name, scene, order) for name, scene in data.qualities(report).items() for order in ORDERS])
 
 
@@ -240,8 +278,8 @@ def cheap(report: Report) -> Claim:
         "cheap", "paper",
         "The cost is not much higher than without the shape of the surface.",
         "abstract, section 3",
-        f"The order's time in kage is at most {HARDLY:g} % over none's, by the interval of the rounds' differences. In "
-        "a renderer whose other work takes longer, the same time is a smaller share.",
+        f"The order's time in kage is at most {HARDLY:g} % over {BUMP_ONLY}, by the interval of the rounds' "
+        "differences. In a renderer whose other work takes longer, the same time is a smaller share.",
         [cheap_case(name, scene, order) for name, scene in data.costs(report).items() for order in ORDERS])
 
 
@@ -251,14 +289,14 @@ def cheapest_case(name: str, scene: Costs, other: str) -> Case:
         return unmeasured(f"{name}, 0 and {other}", "the time")
     zero, higher = times
     return {"case": f"{name}, 0 and {other}", "verdict": at_least(difference(higher, zero), CLEARLY),
-            "detail": f"over none: 0 {added_text(zero)}, {other} {added_text(higher)}"}
+            "detail": f"over {BUMP_ONLY}: 0 {added_text(zero)}, {other} {added_text(higher)}"}
 
 
 def cheapest(report: Report) -> Claim:
     return made(
         "cheapest", "paper", "Order 0 is clearly the cheapest.", "section 5",
-        f"Order 0 takes less time than 1 and than 2, by at least {CLEARLY:g} % of none's time for all values in the "
-        "intervals.",
+        f"Order 0 takes less time than 1 and than 2, by at least {CLEARLY:g} % of the time by {BUMP_ONLY}, for all "
+        "values in the intervals.",
         [cheapest_case(name, scene, other) for name, scene in data.costs(report).items() for other in ORDERS[1:]])
 
 
@@ -267,7 +305,7 @@ def second_case(name: str, errors: Sequence[float], unit: str) -> Case:
     none, zero, two = errors
     slightly = none - zero >= MOST * (none - two)
     why = "2 is no better" if two >= zero else "" if slightly else "2 is much better"
-    detail = f"none {none:.3g}{unit}, 0 {zero:.3g}{unit}, 2 {two:.3g}{unit}"
+    detail = f"{BUMP_ONLY} {none:.3g}{unit}, 0 {zero:.3g}{unit}, 2 {two:.3g}{unit}"
     return {"case": name, "verdict": decided(not why), "detail": f"{detail}: {why}" if why else detail}
 
 
@@ -300,10 +338,11 @@ def enough_wrong_case(name: str, scene: Methods) -> Case:
         return unmeasured(name, "wrong pixels")
     truth, (none, zero) = found
     if none == 0:
-        return {"case": name, "verdict": UNMEASURED, "detail": f"none has no wrong pixel against {truth}"}
+        return {"case": name, "verdict": UNMEASURED, "detail": f"{BUMP_ONLY} has no wrong pixel against {truth}"}
     gone = 1 - zero / none
     return {"case": name, "verdict": decided(gone >= MOST),
-            "detail": f"none {none:.2f} %, 0 {zero:.2f} %, so {100 * gone:.1f} % of them are gone; against {truth}"}
+            "detail": f"{BUMP_ONLY} {none:.2f} %, 0 {zero:.2f} %, so {100 * gone:.1f} % of them are gone; "
+                      f"against {truth}"}
 
 
 def enough_edge_case(name: str, scene: Methods, grain: float) -> Case:
@@ -318,8 +357,8 @@ def enough_edge_case(name: str, scene: Methods, grain: float) -> Case:
 def enough(report: Report) -> Claim:
     return made(
         "enough", "paper", "Order 0 is enough.", "section 5",
-        f"0 corrects at least {MOST:g} of none's wrong pixels, and its edge is on average less than {SEEN:g} px from "
-        f"the true one, in pixels of a picture {WIDTH} pixels wide.",
+        f"0 corrects at least {MOST:g} of the wrong pixels of {BUMP_ONLY}, and its edge is on average less than "
+        f"{SEEN:g} px from the true one, in pixels of a picture {WIDTH} pixels wide.",
         [case for name, scene in data.qualities(report).items()
          for case in (enough_wrong_case(name, scene), enough_edge_case(name, scene, grain_of(report, name)))])
 
@@ -408,18 +447,20 @@ def intersection(report: Report) -> Claim:
 
 
 def speed_case(report: Report, method: str) -> Case:
+    name = BUMP_ONLY if method == "none" else f"order {method}"
     entry, theirs = data.cost(report, PAPER_SCENE, method), peer_ns(report, BUMP_MAP, PAPER_SCENE)
     ours = entry and entry["ns"]
     if ours is None or theirs is None:
-        return unmeasured(method, "POV-Ray's time" if theirs is None else "the time")
+        return unmeasured(name, "POV-Ray's time" if theirs is None else "the time")
     found = peer_times(peer_of(report, BUMP_MAP, PAPER_SCENE), method) or ratio(theirs, ours)
-    return {"case": method, "verdict": at_least(found, FASTER), "detail": interval_text(found, ".1f", "times as fast")}
+    return {"case": name, "verdict": at_least(found, FASTER), "detail": interval_text(found, ".1f", "times as fast")}
 
 
 def speed(report: Report) -> Claim:
     return made(
         "speed", "kage",
-        f"On figure 5's scene none and order 0 are at least {FASTER:g} times as fast as POV-Ray's bump_map.",
+        f"On figure 5's scene kage by {BUMP_ONLY}, and by order 0, is at least {FASTER:g} times as fast as POV-Ray's "
+        "bump_map.",
         "README.md, docs/design.md",
         f"POV-Ray's time is at least {FASTER:g} times kage's, by the interval of the rounds' ratios; one thread each.",
         [speed_case(report, method) for method in ("none", "0")])
@@ -429,9 +470,10 @@ def order_0(report: Report) -> Claim:
     added = data.added_cost(data.cost(report, PAPER_SCENE, "0"))
     case: Case = (unmeasured(PAPER_SCENE, "the time") if added is None else
                   {"case": PAPER_SCENE, "verdict": at_most(added, ORDER_0_COST), "detail": added_text(added)})
-    return made("order-0", "kage", f"On figure 5's scene order 0 costs at most {ORDER_0_COST:g} % over none.",
+    return made("order-0", "kage", f"On figure 5's scene order 0 costs at most {ORDER_0_COST:g} % over {BUMP_ONLY}.",
                 "README.md, docs/design.md",
-                f"At most {ORDER_0_COST:g} % over none's time, by the interval of the rounds' differences.", [case])
+                f"At most {ORDER_0_COST:g} % over the time by {BUMP_ONLY}, by the interval of the rounds' differences.",
+                [case])
 
 
 def merit_case(report: Report, truth: Truth) -> Case:
@@ -441,14 +483,15 @@ def merit_case(report: Report, truth: Truth) -> Case:
         return unmeasured(name, "wrong pixels")
     shares = zip(MERIT, wrong, strict=True)
     return {"case": name, "verdict": decided(all(a > b for a, b in itertools.pairwise(wrong))),
-            "detail": ", ".join(f"{method} {share:.3f} %" for method, share in shares)}
+            "detail": ", ".join(f"{data.label(method)} {share:.3f} %" for method, share in shares)}
 
 
 def merit(report: Report) -> Claim:
+    names = ", ".join(map(data.label, MERIT))
     return made(
         "merit", "kage",
-        f"On function data ({MERIT_SCENE}) each method is better than the one before: {', '.join(MERIT)}.",
-        "docs/method.md", f"Each of {', '.join(MERIT)} has fewer wrong pixels on {MERIT_SCENE} than the one before.",
+        f"On function data ({MERIT_SCENE}) each method is better than the one before: {names}.", "docs/method.md",
+        f"Each of {names} has fewer wrong pixels on {MERIT_SCENE} than the one before.",
         [merit_case(report, truth) for truth in TRUTHS])
 
 

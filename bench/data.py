@@ -13,6 +13,8 @@ from typing import Any, Literal, TypedDict
 from bench import images, masks
 from bench.stats import Interval
 
+BUMP_ONLY = "bump only"  # what a text calls the method `none`, whose name reads as a word
+
 Truth = Literal["mask", "exact"]  # the true shadow: POV-Ray's mask, or kage's exact
 MaskMetric = Literal["wrong", "iou", "edge_mean", "edge_95", "edge_hausdorff"]
 
@@ -372,3 +374,8 @@ def times_none(cost: Cost | None) -> Interval | None:
 
 def median(interval: Interval | None) -> float | None:
     return interval and interval["median"]
+
+
+def label(method: str) -> str:
+    """As `--shadow` has it, but for bump mapping only."""
+    return BUMP_ONLY if method == "none" else method

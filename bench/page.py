@@ -14,8 +14,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
-from bench import data, plots, tables, whole_tables
+from bench import claims, data, plots, tables, whole_tables
 from bench.data import MethodPicture, Report, Sweep, dig
+from bench.stats import Interval
 from bench.tables import method_name
 
 if TYPE_CHECKING:
@@ -107,21 +108,26 @@ def embed_orders(path: Path) -> tuple[str, tuple[int, int]]:
     return embed_levels(path, {level: colour for level, (_, colour) in ORDER_COLOURS.items()})
 
 
+def time_over(value: Interval | None, form: str, unit: str, same: float) -> str | None:
+    return value and claims.measured_span(value, form, unit, same)
+
+
 def method_caption(report: Report, scene: str, method: str) -> str:
     """The method's wrong pixels and added time, where they are known."""
     wrong = tables.wrong_pixels(report, scene, method)
-    added = data.median(tables.added_cost(report, scene, method))
+    added = time_over(tables.added_cost(report, scene, method), "+.0f", "%", 0.0)
     parts = [f"{tables.share(wrong)} % wrong"] if wrong is not None else []
-    parts += [f"{tables.added(added)} % time"] if added is not None else []
+    parts += [f"time {added}"] if added is not None else []
     return ", ".join(parts).replace(" %", "\N{NO-BREAK SPACE}%")
 
 
 def variant_caption(report: Report, scene: str, variant: str) -> str:
     """What is off, and the cost, where they are known."""
-    off, cost = whole_tables.off(report, scene, variant), whole_tables.cost_times(report, scene, variant)
+    off = whole_tables.off(report, scene, variant)
+    cost = time_over(data.times_none(data.cost(report, scene, variant)), ".1f", "times", 1.0)
     parts = [f"{tables.share(off)} % off"] if off is not None else []
-    parts += [f"{tables.short(cost)} × none"] if cost is not None else []
-    return ", ".join(parts).replace(" %", "\N{NO-BREAK SPACE}%").replace(" ×", "\N{NO-BREAK SPACE}×")
+    parts += [f"time {cost}"] if cost is not None else []
+    return ", ".join(parts).replace(" %", "\N{NO-BREAK SPACE}%")
 
 
 def all_shadows(variant: str) -> str:
@@ -199,7 +205,7 @@ def map_legend(sweep: Sweep) -> list[tuple[str, str, str]]:
     """The colour, sign and meaning of each kind of cell in a sweep's maps."""
     cells = [cell for row in sweep["wrong"] for cell in row if cell is not None]
     used = {tables.cheapest(cell, sweep["by_cost"], bound) for cell in cells for bound in tables.BOUNDS}
-    legend = [(plots.cell_colour(m), m, tables.method_about(m)) for m in sweep["by_cost"] if m in used]
+    legend = [(plots.cell_colour(m), data.label(m), tables.method_about(m)) for m in sweep["by_cost"] if m in used]
     if None in used:
         legend.append((plots.cell_colour(None), "×", "none of these is good enough"))
     return legend
@@ -225,7 +231,6 @@ def sections(report: Report, sheets: list[Sheet]) -> list[tuple[str, str]]:
         ("table", "All methods", True),
         ("cost-error", "Cost against error", True),
         ("auto", "What auto costs and needs", "auto" in report["methods"]),
-        ("compare", "Compare two pictures", sheets),
         ("sheets", "Contact sheets", sheets),
         ("sweeps", "Where which method is enough", report.get("sweeps")),
         ("slopes", "How fast the error shrinks", report.get("slopes")),

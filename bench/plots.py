@@ -56,7 +56,8 @@ CELL_DARK, CELL_LIGHT = "#010203", "#fafbfc"  # text in a cell
 
 # Of the stages' bars, the same on both pages too. Each differs by one from the colours above, which the page's CSS may
 # change.
-STAGES = ("#c8c8c8", "#e69f01", "#f0e443", "#8c6d46", "#56b4ea", "#cc79a8", "#d55e01", "#0072b3", "#009e74", "#6b6b6b")
+STAGES = ("#c8c8c8", "#e69f01", "#f0e443", "#8c6d46", "#56b4ea", "#cc79a8", "#d55e01", "#0072b3", "#009e74", "#6b6b6b",
+          "#8b5fbf")
 
 SETTINGS: dict[Any, object] = {  # the keys are matplotlib's
     "svg.fonttype": "none", "svg.hashsalt": "kage", "font.family": "DejaVu Sans", "font.size": 9.5, "text.color": INK,
@@ -82,6 +83,11 @@ def look(method: str) -> tuple[str, str, bool]:
     """Colour, marker, and whether it is filled: bare orders and `displaced` are not."""
     colour, marker, _ = FAMILIES.get(family(method), (GREY, "o", ""))
     return colour, marker, not (method.endswith(" bare") or method == "displaced")
+
+
+def cell_name(method: str) -> str:
+    """As short as a cell of a map needs it: the other name of `none`."""
+    return "bump" if method == "none" else method
 
 
 def cell_colour(method: str | None) -> str:
@@ -309,7 +315,7 @@ def cost_error(report: Report, scene: str) -> str | None:
     axes.set_xticks([t for t in COST_TICKS if t < axes.get_xlim()[1]],
                     [f"+{t}" if t else "0" for t in COST_TICKS if t < axes.get_xlim()[1]])
     axes.xaxis.set_minor_locator(_no_ticks())
-    axes.set_xlabel(f"added time, % of none's  (log; linear below {LINEAR_COST:g})")
+    axes.set_xlabel(f"added time, % over {data.BUMP_ONLY}  (log; linear below {LINEAR_COST:g})")
     axes.set_ylabel("wrong pixels of the cast shadow", rotation=90, rotation_mode="anchor", labelpad=6)
     axes.grid(True)
 
@@ -326,6 +332,9 @@ def cost_error(report: Report, scene: str) -> str | None:
                   markerfacecolor=colour if filled else PAGE, markeredgewidth=1.2, zorder=3)
     corners = [_pixels(axes, corner) for corner in zip(stairs_x, stairs_y, strict=True)]
     lines = [(*a, *b) for a, b in itertools.pairwise(corners)]
+    for method, (_, y) in at.items():
+        if bar := tables.added_cost(report, scene, method):
+            lines.append((*_pixels(axes, (bar["low"], y)), *_pixels(axes, (bar["high"], y))))
     if scale.has_zero:
         left, right = ((x, scale.border) for x in axes.get_xlim())
         lines.append((*_pixels(axes, left), *_pixels(axes, right)))
@@ -376,7 +385,7 @@ def _label_points(axes: Axes, at: dict[str, tuple[float, float]], bold: Sequence
 # Stages -------------------------------------------------------------------------------------------------------
 
 LEGEND_COLUMNS = 5
-LONGEST_BAR = 4.0  # times none: longer bars are cut off, or the others would be too short to see
+LONGEST_BAR = 4.0  # times the shortest: longer bars are cut off, or the others would be too short to see
 
 
 @styled
@@ -406,7 +415,7 @@ def stage_bars(report: Report, scene: str) -> str | None:
         if median > end:
             text, at, gap = f"▸ {median:.0f}", end, 3
         else:
-            text, at, gap = f"{median:.1f}", high, 6
+            text, at, gap = f"{median:.1f}", min(high, end), 6
             axes.errorbar(median, row, xerr=[[median - low], [high - median]], color=INK, capsize=2.5, linewidth=1.1)
         axes.annotate(text, (at, row), xytext=(gap, 0), textcoords="offset points", va="center_baseline", ha="left",
                       fontsize=9)
@@ -454,7 +463,8 @@ def sweep_map(sweep: Sweep, bound: float) -> str:
         method = cheapest(wrong, sweep["by_cost"], bound)
         colour = cell_colour(method)
         axes.add_patch(_cell(column, row, facecolor=colour, edgecolor=PAGE, linewidth=1.2))
-        axes.text(column + 0.5, row + 0.5, method or "×", ha="center", va="center_baseline", fontsize=8.5,
+        text = "×" if method is None else cell_name(method)
+        axes.text(column + 0.5, row + 0.5, text, ha="center", va="center_baseline", fontsize=8.5,
                   color=CELL_LIGHT if _luminance(colour) < 0.18 else CELL_DARK)
     axes.set_xticks([i + 0.5 for i in range(len(xs))], [tables.short(x) for x in xs])
     axes.set_yticks([i + 0.5 for i in range(len(ys))], [tables.short(y) for y in ys])

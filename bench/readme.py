@@ -15,18 +15,20 @@ import hashlib
 import json
 import re
 import sys
+import textwrap
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, cast
 
 import numpy as np
 
-from bench import bounds, whole_tables
+from bench import bounds, claims, whole_tables
 from bench import data as reading
-from bench.data import Kept, Report
+from bench.data import BUMP_ONLY, Claim, Kept, Report
 from bench.plan import METHODS
 from bench.programs import TOP
 from bench.stats import Interval
+from bench.tables import FUSED_ABOUT, peer_name
 
 RESULT = TOP / "bench" / "result.json"
 SHEETS = ("figures.png", "gallery.png", "relief.png")  # in docs/, from `make render`, which makes them in out/
@@ -35,6 +37,7 @@ PLOTTED = "cube"
 README_METHODS = ("none", "0", "1", "2", "2+", "march:4", "auto", "exact")
 WHOLE_VARIANTS = ("none", "0", "march:8 shifted", "march:8 shifted, own 8", "auto shifted, own 8", "relief")
 AUTO_BESIDE = ("none", "0", "2", "march:8", "auto", "auto:1", "exact")
+PAPER = "https://doi.org/10.1007/BF01900827"
 NOT_YET = "Not measured yet: `make readme` measures it."
 DETAILS = tuple(method for method in METHODS if method != "displaced")
 
@@ -65,7 +68,7 @@ def kept(report: Report, sheets: dict[str, str]) -> Kept:
         "cost": {"size": report["cost"]["size"], "scenes": costs, "peers": peers},
         "quality": picked(report["quality"], "truth", "parity") | {"scenes": quality},
         "claims": [picked(claim, "id", "who", "sentence", "source", "verdict")
-                   | (picked(claim, "cases") if claim["who"] == bounds.WHO else {}) for claim in report["claims"]],
+                   | (picked(claim, "cases") if claim["who"] != "paper" else {}) for claim in report["claims"]],
         "sheets": sheets,
     })
 
@@ -97,11 +100,27 @@ def wrong_table(data: Kept, methods: Sequence[str]) -> str:
         about = data["scenes"][scene]
         name = f"{about['title']}; slopes {about['slope_median']:.2f}, {about['slope_95']:.2f}"
         rows.append([name, *(percent(reading.mask_metric(found[m], "mask", "wrong")) for m in methods if m in found)])
-    return table(["scene; slope: median, 95 % below", *(m for m in methods if m in data["methods"])], rows)
+    heads = [reading.label(method) for method in methods if method in data["methods"]]
+    return table(["scene; slope: median, 95 % below", *heads], rows)
+
+
+def coded(method: str) -> str:
+    """As code where it is what an option takes."""
+    return reading.label(method) if method == "none" else f"`{method}`"
+
+
+def cost_text(data: Kept, scene: str, method: str, form: str) -> str:
+    """The interval: its middle alone would tell more than the runs bear."""
+    cost = reading.times_none(reading.cost(data, scene, method))
+    if method == "none":
+        return "1×"
+    if cost is None:
+        return "–"
+    return f"{claims.span_text(cost, form)}×"
 
 
 def whole_table(data: Kept, variants: Sequence[str]) -> str:
-    """What is off, and below it the cost in times none."""
+    """What is off, and the cost in times that of bump mapping only, as an interval."""
     scenes = list(reading.wholes(data))
     if not scenes:
         return NOT_YET
@@ -110,11 +129,9 @@ def whole_table(data: Kept, variants: Sequence[str]) -> str:
         cells = []
         for scene in scenes:
             found = reading.whole(data, scene, variant)
-            cost = 1.0 if variant == "none" else reading.median(reading.times_none(reading.cost(data, scene, variant)))
-            times = "–" if cost is None else f"{cost:.1f}×"
-            cells.append(f"{percent(found['off_8'])}, {times}" if found else "–")
-        rows.append([f"`{variant}`", *cells])
-    return table(["off by more than 8/255, cost over `none`", *scenes], rows)
+            cells.append(f"{percent(found['off_8'])}, {cost_text(data, scene, variant, '.1f')}" if found else "–")
+        rows.append([coded(variant), *cells])
+    return table([f"off by more than 8/255, cost in times {BUMP_ONLY}", *scenes], rows)
 
 
 def own_table(data: Kept) -> str:
@@ -139,10 +156,9 @@ def auto_table(data: Kept) -> str:
         cells = []
         for method in AUTO_BESIDE:
             wrong = reading.mask_metric(reading.quality(data, scene, method), "exact", "wrong")
-            cost = 1.0 if method == "none" else reading.median(reading.times_none(reading.cost(data, scene, method)))
-            cells.append("–" if wrong is None or cost is None else f"{wrong:.3g} %, {cost:.2f}×")
+            cells.append("–" if wrong is None else f"{wrong:.3g} %, {cost_text(data, scene, method, '.2f')}")
         rows.append([scene, *cells, ", ".join(f"{name} {part:.1f} %" for name, part in needed.items())])
-    return table(["wrong pixels, cost over `none`", *(f"`{m}`" for m in AUTO_BESIDE), "what `auto` needed"], rows)
+    return table([f"wrong pixels, cost in times {BUMP_ONLY}", *map(coded, AUTO_BESIDE), "what `auto` needed"], rows)
 
 
 def parity_text(data: Kept) -> str:
@@ -165,13 +181,13 @@ def cost_rows(data: Kept, methods: Sequence[str]) -> list[list[str]]:
         cost = found.get(method)
         if cost and cost["ns"]:
             counted = cost["instructions_added"]
-            rows.append([f"kage, {method}", f"{cost['ns']['median']:.1f}", interval_text(cost["added"], "+.0f"),
-                         "" if counted is None else f"{counted:+.0f}"])
+            rows.append([f"kage, {reading.label(method)}", f"{cost['ns']['median']:.1f}",
+                         interval_text(cost["added"], "+.0f"), "" if counted is None else f"{counted:+.0f}"])
     return rows
 
 
 def peer_rows(data: Kept) -> list[list[str]]:
-    return [[peer["name"], f"{ns['median']:.0f}", "", ""] for peer in reading.peers(data)
+    return [[peer_name(peer["name"]), f"{ns['median']:.0f}", "", ""] for peer in reading.peers(data)
             if peer["scene"] == PLOTTED and (ns := peer["ns"])]
 
 
@@ -180,14 +196,26 @@ def cost_table(data: Kept, methods: Sequence[str]) -> str:
     about = data["circumstances"]
     where = (f"{width} x {height} pixels on one thread of {about['processor'].partition(',')[0]}, {about['date']}, "
              f"commit {about['commit']}.\nMedians; the bootstrap 95 % interval is in brackets.")
-    return where + "\n\n" + table(["figure 5's scene", "ns a pixel", "% over none", "instructions, % over none"],
-                                  cost_rows(data, methods) + peer_rows(data))
+    head = ["figure 5's scene", "ns a pixel", f"% over {BUMP_ONLY}", f"instructions, % over {BUMP_ONLY}"]
+    rows = cost_rows(data, methods) + peer_rows(data)
+    return "\n\n".join([where, table(head, rows), textwrap.fill(FUSED_ABOUT, 120)])
 
 
-def claims_table(data: Kept) -> str:
+def claims_text(data: Kept) -> str:
+    """The paper's claims with their verdicts; of kage's own those that hold, with their figures, and no others."""
     rows = [[f"{claim['sentence']} ({claim['source']})", claim["verdict"]] for claim in data["claims"]
-            if claim["who"] != bounds.WHO]
-    return table(["claim", "verdict"], rows)
+            if claim["who"] == "paper"]
+    held = [claim for claim in data["claims"] if claim["who"] == "kage" and claim["verdict"] == claims.HOLDS
+            and claim["id"] != "parity"]  # whose figures are in a place of their own
+    own = [textwrap.fill(f"- {claim['sentence']} Measured: {figures(claim)}.", 120, subsequent_indent="  ",
+                         break_on_hyphens=False)
+           for claim in held]
+    found = table([f"claim of [the paper]({PAPER})", "verdict"], rows)
+    return "\n".join([found, "", "Of kage itself:", "", *own]) if own else found
+
+
+def figures(claim: Claim) -> str:
+    return "; ".join(f"{case['case']}: {case['detail']}" for case in claim["cases"])
 
 
 def bounds_table(data: Kept) -> str:
@@ -205,7 +233,7 @@ REGIONS: dict[str, dict[str, Callable[[Kept], str]]] = {
         "quality": lambda data: wrong_table(data, README_METHODS),
         "parity": parity_text,
         "cost": lambda data: cost_table(data, README_METHODS),
-        "claims": claims_table,
+        "claims": claims_text,
     },
     "docs/method.md": {
         "quality": lambda data: wrong_table(data, DETAILS),

@@ -13,8 +13,9 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from datetime import UTC, datetime
 from typing import Any, cast
 
-from bench import cost, images, programs, quality, stats, sweep, tables, whole, whole_tables
+from bench import claims, cost, images, programs, quality, stats, sweep, tables, whole, whole_tables
 from bench.data import (
+    BUMP_ONLY,
     Circumstances,
     Claim,
     Cost,
@@ -37,6 +38,7 @@ from bench.data import (
     Whole,
     WholePart,
     added_cost,
+    times_none,
 )
 from bench.data import cost as cost_of
 from bench.plan import OWN, TITLES, Bench
@@ -379,22 +381,33 @@ def answer(data: Report) -> list[str]:
         removed = [100 * (1 - after / before) for before, after in known.values()]
         lines.append(f"Quality: order 0 corrects {min(removed):.0f} to {max(removed):.0f} % of the wrong pixels: "
                      + ", ".join(f"{scene} {a:.2g} to {b:.2g} %" for scene, (a, b) in known.items()) + ".")
-    best = {}
-    for scene in data["scenes"]:
-        ranked = [(value, m) for m in ("0", "1", "2", "2+")
-                  if (value := tables.wrong_pixels(data, scene, m)) is not None]
-        if ranked:
-            best[scene] = min(ranked)[1]
-    if best:
-        lines.append("Orders: of 0, 1, 2 and 2+ these have the fewest wrong pixels: "
-                     + ", ".join(f"{m} on {scene}" for scene, m in best.items())
-                     + ". On steep samples a higher order is no better, but a few steps of march are.")
-    lines += [*auto_line(data), *relief_line(data), rule(data["sweeps"])]
-    times = displaced_times(data)
-    lines.append("Direct intersection: to render the displaced surface takes "
-                 + ", ".join(f"{many:.0f} times as long as none on {scene}" for scene, many in times.items()) + "."
-                 if times else "Direct intersection: not measured.")
-    return lines
+    return [*lines, *order_line(data), *auto_line(data), *relief_line(data), rule(data["sweeps"]), displaced_line(data)]
+
+
+ORDERS = ("0", "1", "2", "2+")
+
+
+def joined(words: Sequence[str]) -> str:
+    return " and ".join([", ".join(words[:-1]), words[-1]] if len(words) > 1 else words)
+
+
+def order_line(data: Report) -> list[str]:
+    """The best order of each scene, and where a higher one is no better than order 0."""
+    wrong = {scene: {m: value for m in (*ORDERS, "march:4")
+                     if (value := tables.wrong_pixels(data, scene, m)) is not None} for scene in data["scenes"]}
+    best: dict[str, list[str]] = {}
+    for scene, found in wrong.items():
+        if known := [(found[m], m) for m in ORDERS if m in found]:
+            best.setdefault(min(known)[1], []).append(f"the {scene}")
+    if not best:
+        return []
+    line = "Best: " + "; ".join(f"{tables.method_name(m)} on {joined(scenes)}" for m, scenes in best.items()) + "."
+    for scene, found in wrong.items():
+        if all(m in found for m in (*ORDERS, "march:4")) and found["march:4"] < min(found[m] for m in ORDERS) \
+                and found["0"] <= min(found[m] for m in ORDERS):
+            line += (f" On the {scene} no higher order is better than order 0 ({found['0']:.2g} % wrong), but a few "
+                     f"steps are: march:4 ({found['march:4']:.2g} %).")
+    return [line]
 
 
 def span(values: Iterable[float | None], form: str = ".2g") -> str | None:
@@ -408,38 +421,44 @@ def span(values: Iterable[float | None], form: str = ".2g") -> str | None:
 
 def auto_line(data: Report) -> list[str]:
     wrong = span(whole_tables.exact_wrong(data, scene, "auto") for scene in data["scenes"])
-    times = span((whole_tables.cost_times(data, scene, "auto") for scene in data["scenes"]), ".2f")
+    times = time_span(data, "auto")
     if wrong is None or times is None:
         return []
-    return [f"Good enough: auto leaves {wrong} % of the shadow's pixels wrong, at {times} times none's time."]
+    return [f"Good enough: auto leaves {wrong} % of the shadow's pixels wrong. It takes {times}."]
 
 
 def relief_line(data: Report) -> list[str]:
     before, after = (span(whole_tables.off(data, scene, v) for scene in data["scenes"]) for v in ("none", "relief"))
-    times = span((whole_tables.cost_times(data, scene, "relief") for scene in data["scenes"]), ".1f")
+    times = time_span(data, "relief")
     if before is None or after is None or times is None:
         return []
     return [f"Whole picture: by bump mapping alone {before} % of the receiver's pixels differ from true displacement "
-            f"by more than 8/255, by `--relief` {after} %, at {times} times none's time; silhouettes apart."]
+            f"by more than 8/255, by `--relief` {after} %, silhouettes apart. It takes {times}."]
+
+
+def time_span(data: Report, method: str) -> str | None:
+    """Over all scenes, with the intervals; None where nothing was measured."""
+    found = claims.over_all(times_none(cost_of(data, scene, method)) for scene in data["scenes"])
+    return found and f"{claims.span_text(found, '.1f')} times the time by {BUMP_ONLY}"
 
 
 def cost_line(data: Report) -> str:
+    """Time by its interval; beside it the count of instructions, which has no noise."""
     def added(method: str) -> str:
-        interval = added_cost(cost_of(data, "cube", method))
-        return f"{interval['median']:+.0f} %" if interval else "not measured"
+        cost = cost_of(data, "cube", method)
+        time = claims.measured_span(added_cost(cost), "+.0f", "%", 0.0)
+        counted = cost and cost["instructions_added"]
+        return f"{tables.method_name(method)} {time}" + ("" if counted is None else f" ({counted:+.0f} % instructions)")
 
-    return (f"Cost, over bump mapping alone in figure 5's scene: order 0 {added('0')}, order 1 {added('1')}, "
-            f"order 2 {added('2')}, march:4 {added('march:4')}, exact (the shadow ray starts at the true hit) "
-            f"{added('exact')}.")
+    costs = ", ".join(added(method) for method in ("0", "1", "2", "march:4", "exact"))
+    return f"Cost in figure 5's scene, over {BUMP_ONLY}, as 95 % intervals of the time: {costs}."
 
 
-def displaced_times(data: Report) -> dict[str, float]:
-    found = {}
-    for scene in data["scenes"]:
-        none, own = (cost_of(data, scene, m) for m in ("none", "displaced"))
-        if none and none["ns"] and own and own["ns"]:
-            found[scene] = own["ns"]["median"] / none["ns"]["median"]
-    return found
+def displaced_line(data: Report) -> str:
+    found = {scene: times for scene in data["scenes"] if (times := times_none(cost_of(data, scene, "displaced")))}
+    spans = ", ".join(f"{claims.span_text(times, '.0f')} on the {scene}" for scene, times in found.items())
+    return (f"Direct intersection: to render the displaced surface takes, in times {BUMP_ONLY}, {spans}." if found
+            else "Direct intersection: not measured.")
 
 
 def rule(sweeps: Sequence[Sweep], most: float = 1.0, least_view: float = 30) -> str:

@@ -1,4 +1,5 @@
 /* bumpshadow.h: shadows of other objects on a bump-mapped surface.
+ * SPDX-License-Identifier: MIT (the text is at the end)
  *
  * The formulas of K. Sumi and T. Noma, "A Shadowing Method for Bump-Mapped Surfaces", and kage's additions
  * (marked "ours"). One header without dependencies, C99 and C++17, to copy into any renderer. float; #define
@@ -448,5 +449,25 @@ static inline bs_real bs_horizon_share(bs_real above, bs_real u, bs_real w, bs_r
     bs_real share = (bs_mean_above(X + 1, E) - bs_mean_above(X - 1, E)) / 2;
     return share < 1 ? share : 1;
 }
+
+/* MIT License. Copyright (c) 2026 The kage authors
+ *
+ * Permission is hereby granted, free of charge, to any person obtaining a copy
+ * of this software and associated documentation files (the "Software"), to deal
+ * in the Software without restriction, including without limitation the rights
+ * to use, copy, modify, merge, publish, distribute, sublicense, and/or sell
+ * copies of the Software, and to permit persons to whom the Software is
+ * furnished to do so, subject to the following conditions:
+ *
+ * The above copyright notice and this permission notice shall be included in all
+ * copies or substantial portions of the Software.
+ *
+ * THE SOFTWARE IS PROVIDED "AS IS", WITHOUT WARRANTY OF ANY KIND, EXPRESS OR
+ * IMPLIED, INCLUDING BUT NOT LIMITED TO THE WARRANTIES OF MERCHANTABILITY,
+ * FITNESS FOR A PARTICULAR PURPOSE AND NONINFRINGEMENT. IN NO EVENT SHALL THE
+ * AUTHORS OR COPYRIGHT HOLDERS BE LIABLE FOR ANY CLAIM, DAMAGES OR OTHER
+ * LIABILITY, WHETHER IN AN ACTION OF CONTRACT, TORT OR OTHERWISE, ARISING FROM,
+ * OUT OF OR IN CONNECTION WITH THE SOFTWARE OR THE USE OR OTHER DEALINGS IN THE
+ * SOFTWARE. */
 
 #endif

@@ -1,4 +1,5 @@
 /* libkage: shadows on bump-mapped surfaces (Sumi and Noma's method), as a library. C99 and C++17.
+ * SPDX-License-Identifier: MIT
  *
  *     kage_scene *scene;
  *     kage_film *film;
@@ -338,14 +339,19 @@ typedef struct kage_write_options {
     int keep;                /* not 0: see kage_render_file */
     int resume;              /* not 0: see kage_render_file */
     int band;                /* of kage_render_file: rows of a band, a multiple of 16; 0: 64 MiB or more */
+    const char *format;      /* "png" or "exr"; NULL: what the path ends in */
     const kage_limits *limits; /* NULL: the film's memory, and any time. kage_render_file has those of `render` */
-    void *reserved[6];
+    void *reserved[5];
 } kage_write_options;
 
-/* Write a film. Where `path` ends in ".png": R, G and B in sRGB; in ".exr": planes as 32-bit floats, linear, ZIP. The
- * file appears whole or not at all, and replaces an older one only then: a call that is cancelled or fails changes
- * nothing. It contains the scene's text, the changes and options, but no path, time or host name. options: NULL for the
- * defaults. Another ending, or a layer that the film does not have, is KAGE_BAD_OPTION. */
+/* Write a film. Where `path` ends in ".png" or ".PNG": R, G and B in sRGB; in ".exr": planes as 32-bit floats, linear,
+ * ZIP. The file appears whole or not at all, and replaces an older one only then: a call that is cancelled or fails
+ * changes nothing, and of a process that is killed nothing is left (see kage_file_tidy). A link leads to the file that
+ * is written, also where that is not there yet. What is no regular file, and what stands for a descriptor of the
+ * process
+ * ("/dev/stdout", "/dev/fd/3"), gets the bytes at the end. The file contains the scene's text, the changes and options,
+ * but no path, time or host name. options: NULL for the defaults. Another ending, or a layer that the film does not
+ * have, is KAGE_BAD_OPTION. */
 KAGE_API kage_status kage_film_write(const kage_film *film, const char *path, const kage_write_options *options,
                                      kage_errors **errors);
 
@@ -353,10 +359,10 @@ KAGE_API kage_status kage_film_write(const kage_film *film, const char *path, co
  * written, and used again. So memory does not bound the picture, and a picture may have KAGE_MAX_SIDE pixels along both
  * sides. The bytes of the file are the same. The progress callback is that of `render`; its share is that of the whole.
  *
- * An EXR of which `write` says keep or resume has the name PATH.part until it is finished, and stays there when the
- * call is cancelled or fails, or the process is killed. resume: go on with the rows that are whole in PATH.part, to the
- * same bytes. Its header must be the same, else the call fails (KAGE_NOT_WRITTEN): the scene's text, options, size and
- * layers, and the version. Files that the scene names are not compared. keep alone: begin anew.
+ * An EXR of which `write` says keep or resume has the name PATH.part until it is finished (kage_file_part), and stays
+ * there when the call is cancelled or fails, or the process is killed. resume: go on with the rows that are whole in
+ * PATH.part, to the same bytes. Its header must be the same, else the call fails (KAGE_NOT_WRITTEN): the scene's text,
+ * options, size and layers, and the version. Files that the scene names are not compared. keep alone: begin anew.
  *
  * film: the last band, with the counts of all bands that this call has rendered; NULL: not wanted. */
 KAGE_API kage_status kage_render_file(kage_scene *scene, const kage_render_options *render, const char *path,
@@ -375,6 +381,16 @@ KAGE_API kage_status kage_file_join(const char *const *paths, int count, const c
 /* Whether a picture could be written at `path` now: its folder is there and may be written, and so may an older file.
  * Nothing is changed. */
 KAGE_API kage_status kage_file_probe(const char *path, kage_errors **errors);
+
+/* The name of an unfinished picture of kage_render_file: the file that `path` leads to, with ".part" behind it. Writes
+ * at most `size` bytes to `name`, with a 0 at the end. Returns the length of the whole name, as snprintf does; 0:
+ * `path` leads nowhere. */
+KAGE_API size_t kage_file_part(const char *path, char *name, size_t size);
+
+/* Remove what processes that were killed have left in the folder of `path`: whole or half-written files with names such
+ * as ".kage-123-0" that no process has open. There are few: on file systems that lack files without a name, and of one
+ * moment on others. *notes gets a line for each, NULL: there was none. */
+KAGE_API void kage_file_tidy(const char *path, kage_errors **notes);
 
 /* Whether the file is a PNG that kage has written, of any version. */
 KAGE_API int kage_file_is_picture(const char *path);
@@ -404,6 +420,8 @@ typedef struct kage_stats {
     int stage_count, order_count;
     const kage_stage *stages; /* all seconds are 0 without kage_render_options.timing */
     const kage_order_count *orders;
+    int64_t undefined; /* samples where P, n', the shift or the light had no value (docs/scene.md, "Without a value") */
+    int undefined_object; /* the first object with such a sample, index into kage_scene_info.objects; -1: none */
 } kage_stats;
 
 /* What rendering the film counted. */
@@ -452,14 +470,18 @@ typedef struct kage_bump_survey {
     /* A step from one value of a map's samples to the next: as a height in scene units, and the median of the slope
      * that it makes where two neighbours differ by it. 0: no map, or one of floats. */
     double step, step_slope;
+    double distance; /* of the samples from the eye, in the median */
 } kage_bump_survey;
 
 typedef enum kage_warning_code {
     KAGE_WARN_FLAT_TRIANGLES, /* value: triangles of a model without an area, which are left out */
     KAGE_WARN_UNBOUNDED,      /* P has no bounds, so the guard has no slab and march:N falls back to order 0 */
-    KAGE_WARN_STEEP,          /* value: slope_95, above bound: too steep for orders 0, 1 and 2 */
-    KAGE_WARN_FALLS_BACK,     /* value: the larger of fell_back, above bound: the view is flat against the bumps */
-    KAGE_WARN_STEPS           /* value: step_slope, above bound: the steps of a map's few bits are seen */
+    KAGE_WARN_STEEP,          /* value: slope_95, above bound: too steep for the scene's method, an order */
+    KAGE_WARN_FALLS_BACK,     /* value: of fell_back, above bound: the view is flat against the bumps for its order */
+    KAGE_WARN_STEPS,          /* value: step_slope, above bound: the steps of a map's few bits are seen */
+    KAGE_WARN_SCALE,          /* value: a scale that would be usual; bound: what slope_95 is above, or below */
+    KAGE_WARN_ZERO            /* all of P is farther than bound from 0. value: a usual `zero` of the map; without a map
+                               * what a usual function would be lower by */
 } kage_warning_code;
 
 typedef struct kage_warning {
@@ -546,7 +568,8 @@ typedef struct kage_method {
 KAGE_API int kage_method_count(void);
 KAGE_API kage_method kage_method_get(int index); /* NULL fields: no such method */
 
-/* Whether `name` is a method for kage_render_options.method, such as "2+" or "iter:4". */
+/* Whether `name` is a method for kage_render_options.method, such as "2+" or "iter:4". "bump", for bump mapping only, is
+ * another name for "none". */
 KAGE_API int kage_method_is_known(const char *name);
 
 /* The same for the shadows of bumps on their own surface: none march:N horizon exact. */

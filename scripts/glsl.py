@@ -36,6 +36,7 @@ WIDTH = 120
 
 HEAD = """\
 /* bumpshadow.glsl: shadows of other objects on a bump-mapped surface.
+ * SPDX-License-Identifier: MIT (the text is at the end)
  *
  * Made from bumpshadow.h by scripts/glsl.py: change that file, not this one. The formulas of K. Sumi and T. Noma, "A
  * Shadowing Method for Bump-Mapped Surfaces", and kage's additions (marked "ours"). For GLSL ES 3.00, GLSL 3.30 and

@@ -1,4 +1,3 @@
-"use strict";
 (() => {
   document.documentElement.classList.add("has-script");
   const all = [...document.querySelectorAll("#sheets figure, #whole figure")];
@@ -51,7 +50,7 @@
       form.querySelector(`.side.${side}`).replaceChildren(...images);
       form.querySelector(`[data-name=${side}]`).textContent = name;
       form.querySelector(`[data-caption=${side}]`).textContent = figure.dataset.caption;
-      if (side === "left") stage.style.setProperty("--aspect", `${images[0].getAttribute("width")} / ${images[0].getAttribute("height")}`);
+      if (side === "left") form.style.setProperty("--aspect", `${images[0].getAttribute("width")} / ${images[0].getAttribute("height")}`);
     }
 
     function update() {
@@ -63,21 +62,14 @@
     }
 
     function choose_scene() {
-      fill(left, ["none"]);
+      fill(left, ["bump only"]);
       fill(right, ["order 0", "exact"]);
       update();
     }
 
-    function move(percent) {
-      split.value = percent;
-      stage.style.setProperty("--split", `${split.value}%`);
-      split.setAttribute("aria-valuetext", `${split.value} % ${left.value}, ${100 - split.value} % ${right.value}`);
-    }
-
-    function drag(event) {
-      const box = stage.getBoundingClientRect();
-      move(100 * (event.clientX - box.left) / box.width);
-    }
+    // In a larger picture fingers move the picture, and the border is moved below it.
+    const move = slider(stage, split, () => [left.value, right.value],
+      (event) => event.pointerType !== "touch" || zoom.value === "1");
 
     function choose_zoom() {
       const [x, y] = [view.scrollLeft + view.clientWidth / 2, view.scrollTop + view.clientHeight / 2];
@@ -91,19 +83,7 @@
     scene.addEventListener("change", choose_scene);
     for (const control of [left, right, wrong]) control.addEventListener("change", update);
     zoom.addEventListener("change", choose_zoom);
-    split.addEventListener("input", () => move(split.value));
     form.addEventListener("submit", (event) => event.preventDefault());
-
-    // In a larger picture fingers move the picture, and the border is moved below it.
-    const drags = (event) => event.pointerType !== "touch" || zoom.value === "1";
-    stage.addEventListener("pointerdown", (event) => {
-      if (event.button !== 0 || !drags(event)) return;
-      stage.setPointerCapture(event.pointerId);
-      drag(event);
-    });
-    stage.addEventListener("pointermove", (event) => {
-      if (stage.hasPointerCapture(event.pointerId)) drag(event);
-    });
 
     for (const button of document.querySelectorAll("[data-show]")) {
       button.addEventListener("click", () => {

@@ -157,11 +157,11 @@ def correct(a: Layers, heights: Heights | Bump, method: str = "1", *, guard: boo
     """n', and where the shadow rays start.
 
     heights: a height map or function, or a Bump with the layers P, Pu, Pw, ... of each pixel; then iter, march and
-    `shifted` cannot look P up elsewhere. method: none, 0, 1, 2, 2+, iter:K or march:N, as kage's. bounds: the lowest
-    and the highest P, for the guard and march; those of `heights` if not given, and of the layer P of a Bump. shade: n'
-    is that at the smooth hit, or at the place under the origin, "shifted".
+    `shifted` cannot look P up elsewhere. method: none (or bump), 0, 1, 2, 2+, iter:K or march:N, as kage's. bounds:
+    the lowest and the highest P, for the guard and march; those of `heights` if not given, and of the layer P of a
+    Bump. shade: n' is that at the smooth hit, or at the place under the origin, "shifted".
     """
-    word, _, number = method.partition(":")
+    word, _, number = ("none" if method == "bump" else method).partition(":")
     if word not in ORDERS or bool(number) != (word in ("iter", "march")) or (number and not number.isdigit()):
         raise ValueError(f"method {method!r}: expected none, 0, 1, 2, 2+, iter:K or march:N")
     if shade not in ("smooth", "shifted"):

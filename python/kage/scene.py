@@ -78,7 +78,7 @@ class Scene:
         keep: leave PATH.part when this is interrupted (default: of an EXR). band: rows of a band, a multiple of 16.
         """
         check_names("render_file", options, FileOptions)
-        handle, film, exr = self._handle, ffi.new("kage_film **"), os.fspath(path).endswith(".exr")
+        handle, film, exr = self._handle, ffi.new("kage_film **"), os.fspath(path).lower().endswith(".exr")
         with watched(options.get("progress"), self.name, self._pixels(options)) as call:
             how = render_struct({"layers": exr, **options}, call)
             to = write_struct({"keep": exr, **options})

@@ -9,6 +9,19 @@ from numpy.typing import NDArray
 
 
 @dataclass(frozen=True, eq=False)
+class Limits:
+    """What a call may take (docs/limits.md). Zero: the default."""
+
+    #: bytes that a scene, those that are changed from it, and their films may take together while the call
+    #: runs. What would take more is refused before it is taken, with KAGE_NO_MEMORY and the figure that it
+    #: needs. 0: 7/8 of the machine's memory; below 0: no limit
+    memory: int
+    #: of the call, by the wall clock; then it ends as if it were cancelled, with KAGE_OUT_OF_TIME. 0: no
+    #: limit
+    seconds: float
+
+
+@dataclass(frozen=True, eq=False)
 class LightInfo:
     """kage_light_info of kage.h."""
 
@@ -174,6 +187,10 @@ class Stats:
     #: all seconds are 0 without RenderOptions.timing
     stages: tuple[Stage, ...]
     orders: tuple[OrderCount, ...]
+    #: samples where P, n', the shift or the light had no value (docs/scene.md, "Without a value")
+    undefined: int
+    #: the first object with such a sample, index into SceneInfo.objects; -1: none
+    undefined_object: int
 
 
 @dataclass(frozen=True, eq=False)
@@ -254,6 +271,8 @@ class BumpSurvey:
     fell_back: NDArray[np.float64]
     step: float
     step_slope: float
+    #: of the samples from the eye, in the median
+    distance: float
 
 
 @dataclass(frozen=True, eq=False)

@@ -130,7 +130,7 @@ bool film_has_layer(const film *f, const char *word, size_t n);
 void picture_texts(const kage_film *f, const char *crop, image_text to[PICTURE_TEXTS]);
 void picture_crop(window w, char text[PICTURE_CROP_SIZE]);
 
-/* Whether a file's name has something before this ending. */
+/* Whether a file's name has something before this ending, in capitals or not. */
 bool path_ends_in(const char *path, const char *ending);
 
 /* A picture's file that is being written, and the planes of films that go into it. */

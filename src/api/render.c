@@ -198,6 +198,8 @@ static void set_stats(kage_film *f, const stats *t, double seconds)
         .order_count = ORDER_CODES,
         .stages = f->stages,
         .orders = f->orders,
+        .undefined = t->undefined,
+        .undefined_object = t->undefined_object - 1,
     };
 }
 
@@ -247,7 +249,9 @@ kage_status kage_render(kage_scene *k, const kage_render_options *given, kage_fi
     kage_status status = settle(k, &o, &j, &p, &e);
     if (status == KAGE_OK && !fits_film(j.part, &e))
         status = KAGE_BAD_OPTION;
-    kage_film *f = status == KAGE_OK ? new_film(k, &o, &j, &w.memory, &e) : NULL;
+    if (status == KAGE_OK)
+        progress_show(&p, "rendering", 0); /* a large film takes its time */
+    kage_film *f = status == KAGE_OK && !watch_stopped(&w) ? new_film(k, &o, &j, &w.memory, &e) : NULL;
     kage_film_free(o.reuse);
     const bool good = f && fill(f, &j, &o, &p, &t, &seconds, &e) && !watch_stopped(&w);
     c_locale_end(&l);

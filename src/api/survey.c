@@ -8,14 +8,19 @@
 
 #include <stdlib.h>
 
-enum { SAMPLES = 200, MOST_WARNINGS = 5 }; /* SAMPLES x SAMPLES rays over the picture; warnings of one object */
+enum { SAMPLES = 200, MOST_WARNINGS = 7 }; /* SAMPLES x SAMPLES rays over the picture; warnings of one object */
 
-/* Above this slope (95th percentile) orders 0, 1 and 2 get more than about 1 % of a cast shadow's pixels wrong
- * (docs/method.md, "How far the orders go"). */
-#define SLOPE_BOUND 0.35
+/* Above this slope (95th percentile) the orders get more than about 1.5 % of a cast shadow's pixels wrong
+ * (docs/method.md, "Accuracy of the orders": 1.4 % at 0.58, 7 % and more at 1.14). */
+#define SLOPE_BOUND 0.6
 
-/* Warn where more samples than this fall back, in per cent. */
-#define FALL_BACK_BOUND 1.0
+/* Warn where more samples than this fall back, in per cent: there an order loses to order 0. */
+#define FALL_BACK_BOUND 10.0
+
+/* Slopes (95th percentile) of bumps that are meant are between these; advised is SLOPE_MEANT. */
+#define SLOPE_LEAST 0.01
+#define SLOPE_MOST 4.0
+#define SLOPE_MEANT 0.5
 
 /* Warn of steps whose slope is more than this share of the map's own, in the median, and more than this slope, which
  * changes a shade by some 1/255. */
@@ -24,7 +29,8 @@ enum { SAMPLES = 200, MOST_WARNINGS = 5 }; /* SAMPLES x SAMPLES rays over the pi
 
 /* What the rays have found on one object. */
 typedef struct seen {
-    float *slope, *cell; /* of each sample: the bump's slope, and the shorter side of a map's cell in scene units */
+    /* Of each sample: the bump's slope, the shorter side of a map's cell in scene units, the distance from the eye. */
+    float *slope, *cell, *distance;
     int n, room;
     long back[3]; /* samples where the orders 1 and 2 fell back */
 } seen;
@@ -64,11 +70,12 @@ static bool note_sample(seen *s, const object *o, const hit_group *g, int i)
 {
     if (s->n == s->room) {
         const int room = s->room ? 2 * s->room : 64;
-        if (!make_room(&s->slope, room) || !make_room(&s->cell, room))
+        if (!make_room(&s->slope, room) || !make_room(&s->cell, room) || !make_room(&s->distance, room))
             return false;
         s->room = room;
     }
     s->slope[s->n] = slope(g, i);
+    s->distance[s->n] = (float)g->t[i];
     s->cell[s->n++] = cell(o, g, i);
     return true;
 }
@@ -118,6 +125,8 @@ static kage_bump_survey summary(const object *o, seen *x)
         return b;
     find_step(o, x, &b);
     qsort(x->slope, (size_t)x->n, sizeof *x->slope, ascending);
+    qsort(x->distance, (size_t)x->n, sizeof *x->distance, ascending);
+    b.distance = (double)x->distance[x->n / 2];
     b.slope_median = (double)x->slope[x->n / 2];
     b.slope_95 = (double)x->slope[(int)(0.95 * x->n)];
     b.slope_max = (double)x->slope[x->n - 1];
@@ -131,18 +140,41 @@ static void warn(kage_warning *w, int *n, kage_warning_code code, int id, double
     w[(*n)++] = (kage_warning){code, id, value, bound};
 }
 
-static void warn_of(const kage_object_info *o, const kage_bump_survey *b, int id, kage_warning *w, int *n)
+/* Whether the scale, and what lies at height 0, can be meant. */
+static void warn_of_heights(const kage_object_info *o, const kage_bump_survey *b, int id, kage_warning *w, int *n)
 {
-    const double back = b->fell_back[1] > b->fell_back[2] ? b->fell_back[1] : b->fell_back[2];
-    if (o->model && o->model->flat)
-        warn(w, n, KAGE_WARN_FLAT_TRIANGLES, id, o->model->flat, 0);
-    if (o->bump && !o->bounded)
-        warn(w, n, KAGE_WARN_UNBOUNDED, id, 0, 0);
+    const double low = o->height[0], high = o->height[1], half = (high - low) / 2;
+    const double off = low > 0 ? low : high < 0 ? -high : 0; /* all of P is so far above the surface, or below it */
+    if (b->slope_95 > SLOPE_MOST || (b->slope_95 > 0 && b->slope_95 < SLOPE_LEAST))
+        warn(w, n, KAGE_WARN_SCALE, id, o->bump_scale * SLOPE_MEANT / b->slope_95,
+             b->slope_95 > SLOPE_MOST ? SLOPE_MOST : SLOPE_LEAST);
+    if (o->bounded && off > half)
+        warn(w, n, KAGE_WARN_ZERO, id, o->map ? (o->map_range[0] + o->map_range[1]) / 2 : (low + high) / 2, half);
+}
+
+/* Of orders 1, 2 and 2+ the share that falls back is known. */
+static void warn_of_method(const scene *s, const kage_bump_survey *b, int id, kage_warning *w, int *n)
+{
+    if (s->shadow.kind != METHOD_ORDER || s->displaced)
+        return;
+    const double back = b->fell_back[s->shadow.n < 2 ? s->shadow.n : 2];
     if (b->slope_95 > SLOPE_BOUND)
         warn(w, n, KAGE_WARN_STEEP, id, b->slope_95, SLOPE_BOUND);
     if (back > FALL_BACK_BOUND)
         warn(w, n, KAGE_WARN_FALLS_BACK, id, back, FALL_BACK_BOUND);
+}
+
+static void warn_of(const kage_scene *k, const kage_bump_survey *b, int id, kage_warning *w, int *n)
+{
+    const kage_object_info *o = &k->info.objects[id];
     const double least = fmax(STEP_SLOPE, STEP_SHARE * b->slope_median);
+    if (o->model && o->model->flat)
+        warn(w, n, KAGE_WARN_FLAT_TRIANGLES, id, o->model->flat, 0);
+    if (o->bump && !o->bounded)
+        warn(w, n, KAGE_WARN_UNBOUNDED, id, 0, 0);
+    if (o->bump)
+        warn_of_heights(o, b, id, w, n);
+    warn_of_method(k->first, b, id, w, n);
     if (b->step_slope > least && o->map_smooth <= 0)
         warn(w, n, KAGE_WARN_STEPS, id, b->step_slope, least);
 }
@@ -160,7 +192,7 @@ static kage_survey *report(const kage_scene *k, seen *all)
     *v = (kage_survey){.objects = b, .warnings = w};
     for (int i = 0; i < k->info.object_count; i++) {
         b[i] = summary(&k->first->object[i], &all[i]);
-        warn_of(&k->info.objects[i], &b[i], i, w, &v->warning_count);
+        warn_of(k, &b[i], i, w, &v->warning_count);
     }
     return v;
 }
@@ -180,6 +212,7 @@ kage_status kage_scene_survey(kage_scene *k, kage_survey **out, kage_errors **to
     for (int i = 0; all && i < s->objects; i++) {
         free(all[i].slope);
         free(all[i].cell);
+        free(all[i].distance);
     }
     free(all);
     workspace_free(v);

@@ -1,11 +1,10 @@
 /* Films to files: PNG and OpenEXR, whole or band by band. */
 #include "api/api.h"
 
-#include "base/file_writer.h"
-
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 /* ---- the options ---- */
 
@@ -27,16 +26,24 @@ static bool is_wanted(const char *layers, const char *plane)
 bool path_ends_in(const char *path, const char *ending)
 {
     const size_t n = strlen(path), m = strlen(ending);
-    return n > m && strcmp(path + n - m, ending) == 0;
+    return n > m && strcasecmp(path + n - m, ending) == 0;
+}
+
+/* Whether the file is a PNG, otherwise an EXR; or neither. */
+static bool is_kind(const char *path, const kage_write_options *o, const char *ending)
+{
+    return o->format ? strcmp(o->format, ending + 1) == 0 : path_ends_in(path, ending);
 }
 
 /* False: an error is in *e. */
 static bool options_are_good(const char *path, const kage_write_options *o, const film *f, errors *e)
 {
-    const bool png = path_ends_in(path, ".png");
+    const bool png = is_kind(path, o, ".png");
     bool good = true;
-    if (!png && !path_ends_in(path, ".exr"))
-        good = errors_add(e, "%s: no such kind of picture, expected a name that ends in .png or .exr", path);
+    if (!png && !is_kind(path, o, ".exr"))
+        good = o->format
+                   ? errors_add(e, "%s: no such format, expected png or exr", o->format)
+                   : errors_add(e, "%s: no such kind of picture, expected a name that ends in .png or .exr", path);
     if (o->bits != 0 && o->bits != 8 && o->bits != 16)
         good = errors_add(e, "%d bits, expected 8 or 16", o->bits);
     good = limits_are_good(o->limits, e) && good;
@@ -53,9 +60,10 @@ static bool options_are_good(const char *path, const kage_write_options *o, cons
 
 /* ---- writing ---- */
 
-static image_writer *begin(const picture *p, const film *f, const image_form *form, const char *path, errors *e)
+static image_writer *begin(const picture *p, const film *f, const image_form *form, const char *path, bool png,
+                           errors *e)
 {
-    if (path_ends_in(path, ".png"))
+    if (png)
         return image_writer_png(path, form, e);
     const char **name = malloc((size_t)p->planes * sizeof *name);
     image_form named = *form;
@@ -79,7 +87,8 @@ kage_status picture_begin(picture *p, const kage_film *f, window part, const cha
                           errors *e)
 {
     const film *planes = f->film;
-    const char *layers = path_ends_in(path, ".png") ? "color" : o->layers;
+    const bool png = is_kind(path, o, ".png");
+    const char *layers = png ? "color" : o->layers;
     image_text text[PICTURE_TEXTS];
     char crop[PICTURE_CROP_SIZE];
     *p = (picture){0};
@@ -106,7 +115,7 @@ kage_status picture_begin(picture *p, const kage_film *f, window part, const cha
                              .threads = o->threads,
                              .keep = o->keep != 0,
                              .resume = o->resume != 0};
-    p->writer = begin(p, planes, &form, path, e);
+    p->writer = begin(p, planes, &form, path, png, e);
     if (p->writer)
         return KAGE_OK;
     forget(p);
@@ -144,15 +153,3 @@ kage_status kage_film_write(const kage_film *f, const char *path, const kage_wri
     c_locale_end(&l);
     return errors_give(&e, status, &w, to);
 }
-
-kage_status kage_file_probe(const char *path, kage_errors **to)
-{
-    errors e = {0};
-    file_writer f;
-    const bool good = file_writer_open(&f, path, &e);
-    if (good)
-        file_writer_close(&f, "", &e);
-    return errors_give(&e, good ? KAGE_OK : KAGE_NOT_WRITTEN, NULL, to);
-}
-
-int kage_file_is_picture(const char *path) { return image_png_is_from(path, SOFTWARE); }

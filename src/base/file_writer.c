@@ -1,13 +1,17 @@
-/* Writes a file under a temporary name and renames it when it is complete. */
-#define _XOPEN_SOURCE 700 /* realpath */
+/* Writes a file without a name, or under a temporary one, and names it when it is complete. */
+#define _GNU_SOURCE /* flock */
 
 #include "base/file_writer.h"
 
+#include "base/aside.h"
+
 #include <errno.h>
 #include <fcntl.h>
+#include <poll.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -16,71 +20,86 @@ static bool fail(const char *path, const char *why, errors *e)
     return errors_add(e, "%s: cannot be written: %s", path, why);
 }
 
-/* Create a hidden file with a new name in `dir`, which ends with a slash ("": the current directory). Unlike mkstemp it
- * has a new file's usual permissions. The caller frees the name. NULL, with errno set, on failure. */
-static char *create_aside(const char *dir, size_t dir_length, int *fd)
+/* The descriptor that a path stands for; -1: it stands for a file. */
+static int descriptor_of(const char *path)
 {
-    const size_t room = dir_length + 64;
-    char *name = malloc(room);
-    *fd = -1;
-    for (int n = 0; name && *fd < 0 && n < 1000; n++) {
-        snprintf(name, room, "%.*s.kage-%ld-%d", (int)dir_length, dir, (long)getpid(), n);
-        *fd = open(name, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-        if (*fd < 0 && errno != EEXIST)
-            break; /* EEXIST: another thread's, or left by a process that was killed */
+    static const char *const folders[] = {"/dev/fd/", "/proc/self/fd/"};
+    if (strcmp(path, "/dev/stdout") == 0)
+        return STDOUT_FILENO;
+    if (strcmp(path, "/dev/stderr") == 0)
+        return STDERR_FILENO;
+    for (size_t k = 0; k < sizeof folders / sizeof *folders; k++) {
+        const char *number = path + strlen(folders[k]);
+        if (strncmp(path, folders[k], strlen(folders[k])) == 0 && *number && strlen(number) < 8 &&
+            strspn(number, "0123456789") == strlen(number))
+            return atoi(number);
     }
-    if (*fd < 0) {
-        int error = errno;
-        free(name);
-        errno = error;
-        return NULL;
-    }
-    return name;
+    return -1;
+}
+
+/* Prepare what is copied at the end, without a name. */
+static bool open_copy(file_writer *f, errors *e)
+{
+    static const char folder[] = "/tmp/";
+    char *name;
+    f->fd = aside_create(folder, &name);
+    if (f->fd < 0)
+        return errors_add(e, "%s: no room to prepare it in %s: %s", f->path, folder, strerror(errno));
+    if (name)
+        unlink(name); /* the open file suffices */
+    free(name);
+    return true;
+}
+
+/* Renaming needs no permission to write to the old file, but a read-only file must stay as it is. */
+static bool set_target(file_writer *f, errors *e)
+{
+    if (access(f->path, W_OK) != 0 && errno != ENOENT)
+        return fail(f->path, strerror(errno), e);
+    f->target = aside_target(f->path);
+    return f->target || fail(f->path, strerror(errno), e);
 }
 
 bool file_writer_open(file_writer *f, const char *path, errors *e)
 {
     struct stat st;
-    const bool exists = stat(path, &st) == 0;
+    const int number = descriptor_of(path);
     *f = (file_writer){.path = path, .fd = -1};
+    if (number >= 0 && fcntl(number, F_GETFL) < 0)
+        return fail(path, strerror(errno), e);
+    const bool exists = stat(path, &st) == 0;
     if (exists && S_ISDIR(st.st_mode))
         return fail(path, strerror(EISDIR), e);
-    if (exists && !S_ISREG(st.st_mode)) {
-        static const char dir[] = "/tmp/";
-        f->aside = create_aside(dir, sizeof dir - 1, &f->fd);
-        if (!f->aside)
-            return errors_add(e, "%s: no room to prepare it in %s: %s", path, dir, strerror(errno));
-        unlink(f->aside); /* the open file suffices for the copy */
-        free(f->aside);
-        f->aside = NULL;
-        return true;
-    }
-    /* Renaming needs no permission to write to the old file, but a read-only file must stay as it is. */
-    if (exists && access(path, W_OK) != 0)
-        return fail(path, strerror(errno), e);
-    f->target = exists ? realpath(path, NULL) : strdup(path);
-    if (!f->target)
-        return fail(path, strerror(errno), e);
-    const char *slash = strrchr(f->target, '/');
-    f->aside = create_aside(f->target, slash ? (size_t)(slash + 1 - f->target) : 0, &f->fd);
-    if (!f->aside) {
-        fail(path, strerror(errno), e);
-        free(f->target);
+    if (number >= 0 || (exists && !S_ISREG(st.st_mode)))
+        return open_copy(f, e);
+    if (!set_target(f, e))
         return false;
-    }
-    return true;
+    f->fd = aside_create(f->target, &f->aside);
+    if (f->fd >= 0)
+        return true;
+    fail(path, strerror(errno), e);
+    free(f->target);
+    return false;
+}
+
+/* A pipe that its reader set so may refuse bytes until it has room. */
+static bool wait_for_room(int fd)
+{
+    struct pollfd room = {.fd = fd, .events = POLLOUT};
+    return poll(&room, 1, -1) >= 0 || errno == EINTR;
 }
 
 static bool write_all(int fd, const char *data, size_t size)
 {
     while (size > 0) {
-        ssize_t n = write(fd, data, size);
-        if (n < 0 && errno != EINTR)
-            return false;
+        const ssize_t n = write(fd, data, size);
         if (n > 0) {
             data += n;
             size -= (size_t)n;
-        }
+        } else if (n == 0)
+            errno = EIO;
+        if (n == 0 || (n < 0 && errno != EINTR && !(errno == EAGAIN && wait_for_room(fd))))
+            return false;
     }
     return true;
 }
@@ -100,14 +119,29 @@ static bool begins_with(int fd, const char magic[4])
     return n == 0 || (n == sizeof found && memcmp(found, magic, sizeof found) == 0);
 }
 
-/* Lock the open file f->aside against other processes, and see how much is in it. False: f->error, or a message. */
+/* Open PATH.part and lock it against other processes. One that has just finished it may have renamed it meanwhile, so
+ * that what was opened is a good file. */
+static bool lock_part(file_writer *f, errors *e)
+{
+    struct stat opened, named;
+    f->fd = open(f->aside, O_RDWR | O_CREAT | O_CLOEXEC | O_NONBLOCK, 0666);
+    if (f->fd < 0)
+        return fail(f->aside, strerror(errno), e);
+    if (flock(f->fd, LOCK_EX | LOCK_NB) != 0)
+        return fail(f->aside, errno == EWOULDBLOCK ? "another process writes it" : strerror(errno), e);
+    if (fstat(f->fd, &opened) != 0)
+        return fail(f->aside, strerror(errno), e);
+    if (stat(f->aside, &named) != 0 || opened.st_dev != named.st_dev || opened.st_ino != named.st_ino)
+        return fail(f->aside, "another process has just finished it", e);
+    return true;
+}
+
+/* See how much is in it. */
 static bool take_part(file_writer *f, bool resume, const char magic[4], errors *e)
 {
-    struct flock lock = {.l_type = F_WRLCK, .l_whence = SEEK_SET};
     struct stat st;
-    if (fcntl(f->fd, F_SETLK, &lock) != 0)
-        return errno == EACCES || errno == EAGAIN ? fail(f->aside, "another process writes it", e)
-                                                  : fail(f->aside, strerror(errno), e);
+    if (!lock_part(f, e))
+        return false;
     if (!begins_with(f->fd, magic))
         return fail(f->aside, "there is a file that is no unfinished picture, expected none", e);
     if (fstat(f->fd, &st) != 0 || (!resume && ftruncate(f->fd, 0) != 0))
@@ -116,35 +150,33 @@ static bool take_part(file_writer *f, bool resume, const char magic[4], errors *
     return true;
 }
 
+char *file_writer_part(const char *path)
+{
+    char *target = aside_target(path);
+    const size_t room = target ? strlen(target) + sizeof ".part" : 0;
+    char *name = target ? malloc(room) : NULL;
+    if (name)
+        snprintf(name, room, "%s.part", target);
+    free(target);
+    return name;
+}
+
 bool file_writer_open_part(file_writer *f, const char *path, bool resume, const char magic[4], errors *e)
 {
     struct stat st;
-    const bool exists = stat(path, &st) == 0;
     *f = (file_writer){.path = path, .fd = -1, .keep = true};
-    if (exists && !S_ISREG(st.st_mode)) /* nothing stays of a pipe */
-        return resume && !S_ISDIR(st.st_mode) ? fail(path, "an unfinished picture needs a regular file", e)
-                                              : file_writer_open(f, path, e);
-    if (exists && access(path, W_OK) != 0)
-        return fail(path, strerror(errno), e);
-    f->target = exists ? realpath(path, NULL) : strdup(path);
-    const size_t room = f->target ? strlen(f->target) + sizeof ".part" : 0;
-    f->aside = f->target ? malloc(room) : NULL;
-    bool good = f->aside != NULL;
-    if (good) {
-        snprintf(f->aside, room, "%s.part", f->target);
-        f->fd = open(f->aside, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-    }
-    if (f->fd < 0)
-        good = fail(path, strerror(errno), e);
-    else if (!take_part(f, resume, magic, e)) {
+    if (descriptor_of(path) >= 0 || (stat(path, &st) == 0 && !S_ISREG(st.st_mode))) /* nothing stays of a pipe */
+        return resume ? fail(path, "an unfinished picture needs a regular file", e) : file_writer_open(f, path, e);
+    if (!set_target(f, e))
+        return false;
+    f->aside = file_writer_part(path);
+    if (f->aside ? take_part(f, resume, magic, e) : fail(path, strerror(errno), e))
+        return true;
+    if (f->fd >= 0)
         close(f->fd);
-        good = false;
-    }
-    if (!good) {
-        free(f->aside);
-        free(f->target);
-    }
-    return good;
+    free(f->aside);
+    free(f->target);
+    return false;
 }
 
 bool file_writer_read(const file_writer *f, void *data, size_t size, uint64_t offset)
@@ -170,33 +202,47 @@ bool file_writer_cut(file_writer *f, uint64_t size)
     return !f->error;
 }
 
-/* Copy all of `from` into `path`. 0, or errno. */
+/* Copy all of `from` to where `path` leads. 0, or errno. */
 static int copy_to(const char *path, int from)
 {
     char block[65536];
     ssize_t n = 0;
-    int to = open(path, O_WRONLY | O_CLOEXEC);
+    const int number = descriptor_of(path), to = number >= 0 ? dup(number) : open(path, O_WRONLY | O_CLOEXEC);
     if (to < 0)
         return errno;
     int error = lseek(from, 0, SEEK_SET) < 0 ? errno : 0;
     while (!error && (n = read(from, block, sizeof block)) != 0)
-        if (n < 0 || !write_all(to, block, (size_t)n))
+        if (n < 0 ? errno != EINTR : !write_all(to, block, (size_t)n))
             error = errno;
     if (close(to) != 0 && !error)
         error = errno;
     return error;
 }
 
+/* Some file systems report only when a file is closed that the disk is full. So close a second descriptor: the file
+ * itself stays open, and locked, until it has its name. 0, or errno. */
+static int flush(int fd)
+{
+    const int second = fcntl(fd, F_DUPFD_CLOEXEC, 0);
+    return second >= 0 && close(second) == 0 ? 0 : errno;
+}
+
+/* Bring a whole file to where it belongs. 0, or errno. */
+static int deliver(file_writer *f)
+{
+    if (!f->target)
+        return copy_to(f->path, f->fd);
+    const int error = flush(f->fd);
+    return error ? error : aside_rename(f->fd, f->aside, f->target);
+}
+
 bool file_writer_close(file_writer *f, const char *why, errors *e)
 {
-    if (!why && !f->error && !f->target)
-        f->error = copy_to(f->path, f->fd);
-    if (close(f->fd) != 0 && !f->error) /* some file systems only report here that the disk is full */
-        f->error = errno;
-    if (!why && !f->error && f->target && rename(f->aside, f->target) != 0)
-        f->error = errno;
+    if (!why && !f->error)
+        f->error = deliver(f);
     if ((why || f->error) && f->aside && !f->keep)
         unlink(f->aside);
+    close(f->fd);
     free(f->aside);
     free(f->target);
     if (f->error)

@@ -8,8 +8,9 @@
 
 #include "base/errors.h"
 
-/* A file being written. It has another name in the same directory and is renamed to `path` at the end. If `path` is
- * not a regular file (a terminal, a pipe, /dev/null), the bytes are copied there instead. One thread at a time. */
+/* A file being written. It has no name yet, or another one in the same directory (base/aside.h), and gets its own at
+ * the end. If `path` is not a regular file (a terminal, a pipe, /dev/null), the bytes are copied there instead; so they
+ * are for a descriptor of the process (/dev/stdout, /dev/fd/3), whatever it is. One thread at a time. */
 typedef struct file_writer {
     const char *path; /* the caller's, for messages */
     char *target;     /* path with all links followed; NULL: not a regular file */
@@ -23,9 +24,14 @@ typedef struct file_writer {
 /* Start. `path` must outlive f. False, with a message in *e: f need not be closed. */
 bool file_writer_open(file_writer *f, const char *path, errors *e);
 
-/* Start, or go on: the temporary name is PATH.part, and the file stays there until it is finished. resume: keep what is
- * in it, f->size bytes; else begin it anew, but only if there is nothing or a file that begins with these 4 bytes. No
- * two processes write it at a time. What is not a regular file is opened as by file_writer_open, and can't be resumed.
+/* The name of an unfinished file: where `path` leads, with .part behind it. The caller frees it. NULL, with errno set,
+ * on failure. */
+char *file_writer_part(const char *path);
+
+/* Start, or go on: the temporary name is file_writer_part(path), and the file stays there until it is finished. resume:
+ * keep what is in it, f->size bytes; else begin it anew, but only if there is nothing or a file that begins with these
+ * 4 bytes. No two processes write it at a time. What is not a regular file is opened as by file_writer_open, and can't
+ * be resumed.
  */
 bool file_writer_open_part(file_writer *f, const char *path, bool resume, const char magic[4], errors *e);
 

@@ -51,9 +51,11 @@ int command_import(const arguments *a)
     kage_errors *e;
     progress_bar p;
     if (!a->outputs) {
-        usage_error("'kage import' lacks -o SCENE.yaml; see kage --help");
+        usage_error("'kage import' lacks -o SCENE.yaml; see kage import --help");
         return EXIT_INPUT;
     }
+    stop_outcome("no scene written");
+    tidy(a, a->output[0]);
     progress_bar_start(&p, a->quiet, base_name(a->operand[0]), 0);
     const kage_import_options o = {.bumps = (const char *const *)a->bump,
                                    .bump_count = a->bumps,
@@ -63,12 +65,14 @@ int command_import(const arguments *a)
                                    .overwrite = a->overwrite,
                                    .threads = a->threads,
                                    .progress = progress_bar_show,
-                                   .user = &p};
+                                   .user = &p,
+                                   .limits = &a->limits};
     const kage_status status = kage_model_import(a->operand[0], a->output[0], &o, &r, &e);
     progress_bar_end(&p);
     if (status != KAGE_OK)
         return print_errors(e, status == KAGE_NOT_WRITTEN ? EXIT_OUTPUT : EXIT_INPUT);
     print_report(a, r);
+    stop_outcome("written: %s", a->output[0]);
     const int bumps = a->bumps ? look_at_bumps(r->scene) : 0;
     kage_import_report_free(r);
     return bumps;

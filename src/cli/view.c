@@ -79,6 +79,9 @@ int command_view(const arguments *a)
 
 int command_view_help(void)
 {
+    char path[PATH_MAX];
+    if (!find_view(path))
+        return 0;
     char *argv[] = {NULL, (char *)"--help", NULL};
     return start(argv);
 }

@@ -11,6 +11,17 @@ typedef struct taker {
     const progress *progress;
 } taker;
 
+/* Whether the parts have names and are parts of the triangles: their program may have been broken by the file. */
+static bool good_parts(const mesh_data *d)
+{
+    bool good = true;
+    for (int k = 0; k < d->parts; k++) {
+        const mesh_part *p = &d->part[k];
+        good = good && p->first >= 0 && p->n > 0 && p->first <= d->n - p->n && memchr(p->name, 0, sizeof p->name);
+    }
+    return good;
+}
+
 static bool take_triangles(void *user, reader_pipe *p)
 {
     const taker *to = user;
@@ -18,15 +29,17 @@ static bool take_triangles(void *user, reader_pipe *p)
     memory *m = progress_memory(to->progress);
     char why[MESH_WHY];
     const mesh_data come = p->letter.data;
-    if (p->letter.is != LETTER_DONE || come.n <= 0 || come.parts <= 0)
+    if (p->letter.is != LETTER_DONE || come.n <= 0 || come.n > MESH_MOST || come.parts <= 0 ||
+        come.parts > come.n)
         return reader_fails(p, "its reader failed, expected a valid file");
     const size_t n = (size_t)come.n, parts = (size_t)come.parts;
     *out = (mesh_data){come.n,     memory_new(m, sizeof *out->at * n),       memory_new(m, sizeof *out->skin * n),
                        come.notes, memory_new(m, sizeof *out->part * parts), come.parts};
-    return (out->at && out->skin && out->part) ? reader_receive(p, out->at, sizeof *out->at * n) &&
-                                                     reader_receive(p, out->skin, sizeof *out->skin * n) &&
-                                                     reader_receive(p, out->part, sizeof *out->part * parts)
-                                               : reader_fails(p, (mesh_refuse_memory(to->progress, why), why));
+    if (!out->at || !out->skin || !out->part)
+        return reader_fails(p, (mesh_refuse_memory(to->progress, why), why));
+    return reader_receive(p, out->at, sizeof *out->at * n) && reader_receive(p, out->skin, sizeof *out->skin * n) &&
+           reader_receive(p, out->part, sizeof *out->part * parts) &&
+           (good_parts(out) || reader_fails(p, "its reader failed, expected a valid file"));
 }
 
 bool mesh_file_read(const char *path, const char *reader, const progress *w, files *opened, mesh_data *out,

@@ -8,7 +8,7 @@
 const char method_expected[] = "none, 0, 1, 2, 2+, iter:K, march:N, exact or auto[:E]";
 
 const method_help method_helps[] = {
-    {"none", "the smooth hit: what renderers with bump mapping do"},
+    {"none", "the smooth hit: bump mapping only, as other renderers do it; also called bump"},
     {"0", "the paper's order 0: a plane at height P along the normal"},
     {"1", "the paper's order 1: the rough surface's tangent plane"},
     {"2", "the paper's order 2: with the pure second derivatives"},
@@ -68,8 +68,8 @@ static void name_auto(int error, char name[METHOD_NAME_SIZE])
 
 bool method_parse(const char *text, method *m)
 {
-    if (strcmp(text, "none") == 0 || strcmp(text, "exact") == 0) {
-        *m = (method){*text == 'n' ? METHOD_NONE : METHOD_EXACT, 0};
+    if (strcmp(text, "none") == 0 || strcmp(text, "bump") == 0 || strcmp(text, "exact") == 0) {
+        *m = (method){*text == 'e' ? METHOD_EXACT : METHOD_NONE, 0};
         return true;
     }
     for (int k = 0; k < 4; k++)

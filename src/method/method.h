@@ -24,7 +24,7 @@ enum { METHOD_STEPS_MAX = 1024, METHOD_NAME_SIZE = 24 };
 enum { METHOD_PIXEL = 1000000, METHOD_ERROR = METHOD_PIXEL / 4, METHOD_ERROR_MAX = 1000 * METHOD_PIXEL };
 
 /* Read a method's name: none 0 1 2 2+ iter:K march:N exact auto auto:E, with K and N in 1..METHOD_STEPS_MAX, and E in
- * pixels, above 0 and up to 1000, with six decimals at most. False: not a method. */
+ * pixels, above 0 and up to 1000, with six decimals at most; `bump` is another name for none. False: not a method. */
 bool method_parse(const char *text, method *m);
 
 /* Write its name. */

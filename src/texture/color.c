@@ -19,7 +19,7 @@ STAGE static void checker_eval(const color_texture *base, int n, const real *res
     const checker c = *(const checker *)base;
     for (int i = 0; i < n; i++) {
         real pair = R(0.5) * (real_floor(u[i] * c.ku + c.ou) + real_floor(w[i] * c.kw + c.ow));
-        real odd = 2 * (pair - real_floor(pair)); /* 0 or 1 */
+        real odd = real_max(2 * (pair - real_floor(pair)), 0); /* 0 or 1; 0, too, where pair is infinite */
         color->x[i] = c.even[0] + odd * (c.odd[0] - c.even[0]);
         color->y[i] = c.even[1] + odd * (c.odd[1] - c.even[1]);
         color->z[i] = c.even[2] + odd * (c.odd[2] - c.even[2]);

@@ -9,22 +9,10 @@
 
 enum { EXIT_OUTPUT = 1, EXIT_INPUT = 2, MOST_SETS = 256 };
 
-static const char help[] =
-    "kage view SCENE [options]: look at a scene and change it, in a window.\n"
-    "\n"
-    "  --set PATH=VALUE     change a value of the scene; also --size, --shadow, --shade, --bump-shadow, --relief,\n"
-    "                       --surface, --no-self-shadow, --no-guard, --aa and --aa-threshold, as for kage render\n"
-    "  --threads N          number of threads (as many as there are processors)\n"
-    "  --frames N           turn the eye for N frames, print how long they took, and end\n"
-    "  --report             print a line for each picture that is shown, and show no times: for tests\n"
-    "\n"
-    "The picture comes coarse at once, then full, then antialiased. The scene is read again when its file changes.\n"
-    "Its errors are shown in the window. Mouse and keys:\n"
-    "\n";
-
+/* `kage view --help` prints the options before this. */
 static int print_help(void)
 {
-    fputs(help, stdout);
+    fputs("\nMouse and keys:\n", stdout);
     for (int k = 0; k < view_key_count; k++)
         if (view_keys[k].name)
             printf("  %-11s %s\n", view_keys[k].name, view_keys[k].help);

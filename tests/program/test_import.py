@@ -305,7 +305,7 @@ def test_nothing_is_replaced_unasked(kage: Kage) -> None:
     (("corner.glb", "-o", "none/x.yaml"), "none/x.yaml: its folder does not exist"),
     (("corner.glb", "-o", "x.png"), "expected a name that ends in .yaml"),
     (("corner.glb",), "'kage import' lacks -o SCENE.yaml"),
-    (("-o", "x.yaml"), "'kage import' lacks a model"),
+    (("-o", "x.yaml"), "'kage import' lacks its MODEL"),
     (("corner.glb", "-o", "x.yaml", "--camera", "Kamera"), "no camera 'Kamera', expected one of these: 'Camera'"),
     (("corner.glb", "-o", "x.yaml", "--up", "x"), "--up x: expected y or z"),
     (("corner.glb", "-o", "x.yaml", "--brightness", "0"), "--brightness 0: expected a number above 0"),

@@ -831,17 +831,23 @@ def test_set_bytes(bench: Kage) -> None:
 
 COMMAND = [
     ("command", ["rendr"],
-     "no command 'rendr', expected render, check, pixel, pov, import, view or methods; see kage --help"),
-    ("no-scene", ["render"], "'kage render' lacks a scene; see kage --help"),
-    ("no-scene-check", ["check"], "'kage check' lacks a scene; see kage --help"),
-    ("no-pixel", ["pixel", "scene.yaml"], "'kage pixel' lacks the pixel X,Y; see kage --help"),
-    ("two-scenes", ["render", "scene.yaml", "b.yaml"], "b.yaml: one argument too many; see kage --help"),
-    ("option", ["render", "scene.yaml", "--fast"], "--fast: no option of 'kage render'; see kage --help"),
-    ("option-short", ["render", "scene.yaml", "-x"], "-x: no option of 'kage render'; see kage --help"),
+     "no command 'rendr', did you mean 'render'? See kage --help"),
+    ("command-far", ["draw"],
+     "no command 'draw', expected one of: render view check pixel pov import methods help; see kage --help"),
+    ("no-scene", ["render"], "'kage render' lacks its SCENE; see kage render --help"),
+    ("no-scene-check", ["check"], "'kage check' lacks its SCENE; see kage check --help"),
+    ("no-pixel", ["pixel", "scene.yaml"], "'kage pixel' lacks its X,Y; see kage pixel --help"),
+    ("two-scenes", ["render", "scene.yaml", "b.yaml"], "b.yaml: one argument too many; see kage render --help"),
+    ("option", ["render", "scene.yaml", "--fast"], "--fast: no option of 'kage render'; see kage render --help"),
+    ("option-short", ["render", "scene.yaml", "-x"], "-x: no option of 'kage render'; see kage render --help"),
+    ("option-near", ["render", "scene.yaml", "--shadows", "2"],
+     "--shadows: no option of 'kage render', did you mean '--shadow'? See kage render --help"),
+    ("option-near-value", ["render", "scene.yaml", "--treads=2"],
+     "--treads: no option of 'kage render', did you mean '--threads'? See kage render --help"),
     ("option-of-another", ["check", "scene.yaml", "--crop", "0,0,1,1"],
-     "--crop: no option of 'kage check'; see kage --help"),
-    ("flag-value", ["render", "scene.yaml", "--quiet=1"], "--quiet takes no value; see kage --help"),
-    *[(f"lacks{name}", ["render", "scene.yaml", name], f"{name} lacks its value; see kage --help")
+     "--crop: no option of 'kage check'; see kage check --help"),
+    ("flag-value", ["render", "scene.yaml", "--quiet=1"], "--quiet takes no value; see kage render --help"),
+    *[(f"lacks{name}", ["render", "scene.yaml", name], f"{name} lacks its value; see kage render --help")
       for name in ("-o", "--shadow", "--size", "--aa", "--aa-threshold", "--crop", "--threads", "--bits", "--set")],
     ("ending", ["render", "scene.yaml", "-o", "out.jpg"],
      "-o out.jpg: no such kind of picture, expected a name that ends in .png or .exr"),
@@ -878,7 +884,7 @@ COMMAND = [
     ("outputs-many", ["render", "scene.yaml", *["-o", "a.png"] * 17], "more than 16 outputs"),
     *[(f"pixel-{xy}", ["pixel", "scene.yaml", xy], f"{xy}: expected a pixel X,Y, from the top left")
       for xy in ("1", "1,", "1,2,3", "x,y", "1;2", "")],
-    ("pixel-negative", ["pixel", "scene.yaml", "-1,0"], "-1,0: no option of 'kage pixel'; see kage --help"),
+    ("pixel-negative", ["pixel", "scene.yaml", "-1,0"], "-1,0: no option of 'kage pixel'; see kage pixel --help"),
     ("pixel-outside", ["pixel", "scene.yaml", "40,0"], "40,0: the picture is 40 x 30 pixels, expected 0,0 to 39,29"),
 ]
 
@@ -891,7 +897,7 @@ def test_command_line(bench: Kage, command: list[str], message: str) -> None:
 
 def test_no_arguments_give_the_help(kage: Kage) -> None:
     lines = refused(kage)
-    assert any("kage render SCENE" in line for line in lines)
+    assert any("Usage: kage COMMAND" in line for line in lines)
 
 
 # ---- anything at all ----

@@ -198,14 +198,14 @@ def test_names(kage: Kage) -> None:
 @pytest.mark.parametrize(
     ("arguments", "message", "status"),
     [
-        (["pov", "rough.yaml"], "kage: 'kage pov' lacks -o FILE.pov; see kage --help\n", 2),
+        (["pov", "rough.yaml"], "kage: 'kage pov' lacks -o FILE.pov; see kage pov --help\n", 2),
         (["pov", "rough.yaml", "-o", "a.png"], "kage: -o a.png: expected a name that ends in .pov\n", 2),
         (["pov", "rough.yaml", "-o", "a.pov", "-o", "b.pov"], "kage: -o b.pov: a second output, expected one\n", 2),
         (["pov", "rough.yaml", "-o", "a.pov", "--surface", "rough"],
          "kage: --surface rough: expected smooth or displaced\n", 2),
-        (["pov", "rough.yaml", "-o", "a.pov", "--aa", "2"], "kage: --aa: no option of 'kage pov'; see kage --help\n",
-         2),
-        (["pov", "-o", "a.pov"], "kage: 'kage pov' lacks a scene; see kage --help\n", 2),
+        (["pov", "rough.yaml", "-o", "a.pov", "--aa", "2"],
+         "kage: --aa: no option of 'kage pov'; see kage pov --help\n", 2),
+        (["pov", "-o", "a.pov"], "kage: 'kage pov' lacks its SCENE; see kage pov --help\n", 2),
         (["pov", "rough.yaml", "-o", "none/a.pov"], "No such file or directory", 1),
         (["pov", "rough.yaml", "-o", "/dev/full/a.pov"], "Not a directory", 1),
         (["pov", "rough.yaml", "-o", "folder.pov"], "Is a directory", 1),

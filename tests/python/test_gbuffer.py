@@ -145,6 +145,12 @@ def test_differences_stay_within_a_part() -> None:
     assert (c.order == -1).all() and np.array_equal(c.origin, position)
 
 
+def test_bump_is_another_name_for_none(films: Any) -> None:
+    a = layers_of(films("cube", "0"), "cube")
+    one, other = (gbuffer.correct(a, bumps("cube"), method) for method in ("bump", "none"))
+    assert np.array_equal(one.tau, other.tau) and (one.order == -1).all()
+
+
 @pytest.mark.parametrize(("call", "message"), [
     (lambda a: gbuffer.correct(a, bumps("cube"), "3"), "method '3': expected none, 0, 1, 2, 2+, iter:K or march:N"),
     (lambda a: gbuffer.correct(a, bumps("cube"), "march"), "method 'march'"),

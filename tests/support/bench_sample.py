@@ -48,7 +48,7 @@ SENTENCES = (
     ("area", "paper", "The method extends to area lights.", "journal, abstract"),
     ("cheap", "paper", "The added cost is negligible.", "section 5"),
     ("march", "kage", "A few steps of march beat every order on steep ground.", "docs/method.md"),
-    ("relief", "bound", "`--relief` costs at most 4 times none.", "docs/method.md"),
+    ("relief", "bound", "`--relief` costs at most 4 times bump only.", "docs/method.md"),
     ("parity", "kage", "Displacement agrees with POV-Ray's to within 1/255 on 99.5 % of the pixels.", "README.md"),
 )
 

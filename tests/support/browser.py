@@ -171,7 +171,7 @@ def check_slider(driver: Chrome) -> None:
     assert form.find_element(By.CSS_SELECTOR, "[data-name=left]").text == Select(form.find_element(By.NAME, "left")
                                                                                   ).first_selected_option.text
     wrong = form.find_element(By.NAME, "wrong")
-    Select(form.find_element(By.NAME, "left")).select_by_visible_text("none")
+    Select(form.find_element(By.NAME, "left")).select_by_visible_text("bump only")
     for shown in (True, False):
         wrong.click()
         over = form.find_elements(By.CSS_SELECTOR, ".side.left .over")

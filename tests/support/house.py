@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from scripts import rooms
+from scripts import rooms, tree
 
 #: Rooms that the library has not: only these print, exit and install signal handlers.
 PROGRAMS = ("cli", "look", "view", "import")
@@ -74,11 +74,8 @@ def symbols(path: Path, *options: str) -> list[Symbol]:
 
 
 def load(top: Path, build: Path) -> House:
-    """What is under version control in `top`, and the objects made from it in `build`."""
-    listed = subprocess.run(
-        ["git", "ls-files", "-co", "--exclude-standard"], cwd=top, check=True, capture_output=True, text=True
-    )
-    names = [name for name in listed.stdout.splitlines() if (top / name).is_file() and is_text(name)]
+    """What is in the source tree `top`, and the objects made from it in `build`."""
+    names = [name for name in tree.names(top) if is_text(name)]
     texts = {name: (top / name).read_text() for name in names}
     made = {name[4:-2]: build / (name[4:-2] + ".o") for name in names if re.fullmatch(r"src/.*\.c", name)}
     objects = {name: symbols(path) for name, path in made.items() if path.exists() or not name.startswith("view/")}
@@ -89,6 +86,7 @@ def load(top: Path, build: Path) -> House:
 def is_text(name: str) -> bool:
     return name.endswith((".c", ".h", ".py", ".md", "Makefile")) or name in (
         "scripts/bootstrap",
+        "scripts/deb",
         "scripts/venv",
         ".ci/run",
     )
@@ -195,9 +193,12 @@ def exported_names_begin_with_kage(house: House) -> Iterator[str]:
 
 
 def the_program_uses_the_public_header(house: House) -> Iterator[str]:
+    """base/spelling.h alone is linked besides, as it is no part of a tracer."""
     for path, text in house.sources.items():
         for other in rooms.includes(text):
             room = rooms.room_of(path)
+            if other == "base/spelling.h":
+                continue
             if room in PROGRAMS[:3] and rooms.room_of(other) not in (room, "kage.h", "look" if room == "view" else ""):
                 yield f"src/{path} includes {other}; it knows the tracer by kage.h alone"
 

@@ -1,6 +1,6 @@
 """What a long check found, kept in out/verify/ for the table of docs/reliability.md.
 
-A check is a module of this folder that runs by `scripts/venv python -m tests.verify.NAME`. It ends by `record`, and with
+A check is a module of this folder, `scripts/venv python -m tests.verify.NAME`. It ends by `record`, and with
 exit status 1 where something failed.
 """
 
@@ -27,7 +27,8 @@ def record(name: str, command: str, figures: dict[str, int | float | str], failu
     command: what a person types to repeat it. figures: a label, as the table shows it, and its value.
     """
     KEPT.mkdir(parents=True, exist_ok=True)
-    told = {"name": name, "command": command, "date": datetime.date.today().isoformat(), "commit": commit(),
+    today = datetime.datetime.now(datetime.UTC).date().isoformat()
+    told = {"name": name, "command": command, "date": today, "commit": commit(),
             "figures": figures, "failures": failures}
     (KEPT / f"{name}.json").write_text(json.dumps(told, indent=1) + "\n", encoding="utf-8")
     print(f"{name}: " + ", ".join(f"{label} {value}" for label, value in figures.items()) + f"; {failures} failed")

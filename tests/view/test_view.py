@@ -271,7 +271,7 @@ def test_help_lists_mouse_and_keys(kage: Kage) -> None:
 
 @needs_window
 @pytest.mark.parametrize("arguments, message", [
-    ([], "lacks a scene"),
+    ([], "lacks its SCENE"),
     (["cube.yaml", "more"], "one argument too many"),
     (["cube.yaml", "--frames", "0"], "--frames 0: expected a number from 1 to 1000000"),
     (["cube.yaml", "--shadow", "3"], "no such method"),

@@ -261,6 +261,8 @@ static void the_methods_are_listed(void **state)
     assert_string_equal(kage_method_get(0).name, "none");
     assert_null(kage_method_get(kage_method_count()).name);
     assert_true(kage_method_is_known("iter:4"));
+    assert_true(kage_method_is_known("bump"));
+    assert_false(kage_method_is_known("bump:1"));
     assert_false(kage_method_is_known("iter:0"));
     assert_string_equal(kage_version(), KAGE_VERSION);
 }

@@ -1,0 +1,70 @@
+"""Run the whole suite again and again on a busy machine: what fails once is a defect.
+
+`stress-ng` keeps every processor, the memory and the disk busy beside it. The programs must be built.
+
+    scripts/venv python -m tests.verify.load --count 10
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import re
+import subprocess
+import sys
+from collections import Counter
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+from tests.verify import record
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+FAILED = re.compile(r"^(?:FAILED|ERROR) (\S+)|^  FAILED  (\S+)", re.MULTILINE)
+SUITES = (["make", "-j2", "BOOTSTRAP=no", "unit-tests", "REAL=float"],
+          ["make", "-j2", "BOOTSTRAP=no", "unit-tests", "REAL=double"],
+          [sys.executable, "-m", "pytest", "-q", "-n", "auto", "--dist", "loadfile", "tests"])
+
+
+@contextmanager
+def busy() -> Iterator[None]:
+    """Other work on the machine: as many busy loops as processors, one that fills memory, one that writes files."""
+    stress = subprocess.Popen(["stress-ng", "--quiet", "--cpu", "0", "--vm", "1", "--vm-bytes", "256M", "--hdd", "1",
+                               "--hdd-bytes", "64M", "--temp-path", str(record.KEPT)])
+    try:
+        yield
+    finally:
+        stress.terminate()
+        stress.wait()
+
+
+def run(suite: list[str]) -> list[str]:
+    """The tests that failed."""
+    done = subprocess.run(suite, cwd=record.TOP, capture_output=True, text=True, env={**os.environ, "CI": "1"})
+    found = [a or b for a, b in FAILED.findall(done.stdout)]
+    if done.returncode and not found:
+        print(done.stdout[-4000:], done.stderr[-4000:], sep="\n")
+        found = [" ".join(suite)]
+    return found
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--count", type=int, default=10, help="runs (10)")
+    count = parser.parse_args().count
+    record.KEPT.mkdir(parents=True, exist_ok=True)
+    failed: Counter[str] = Counter()
+    with busy():
+        for k in range(count):
+            found = [name for suite in SUITES for name in run(suite)]
+            failed.update(found)
+            print(f"run {k + 1} of {count}: {', '.join(found) or 'no failure'}", flush=True)
+    for name, times in failed.most_common():
+        print(f"{name} failed {times} times")
+    return record.record("load", f"scripts/venv python -m tests.verify.load --count {count}",
+                         {"runs of the whole suite beside stress-ng": count}, sum(failed.values()))
+
+
+if __name__ == "__main__":
+    sys.exit(main())

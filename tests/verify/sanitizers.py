@@ -1,0 +1,70 @@
+"""Everything under the sanitizers, and scenes under valgrind: what `make sanitize` has no time for.
+
+- The unit tests and the tests of the program under AddressSanitizer, UndefinedBehaviorSanitizer and LeakSanitizer.
+- Several renders at once in one process, under ThreadSanitizer.
+- Renders of all shipped scenes, by each method that reads other data, under valgrind's memcheck.
+
+    scripts/venv python -m tests.verify.sanitizers
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+from tests.verify import record
+
+SCENES = sorted([*record.TOP.glob("scenes/*.yaml"), *record.TOP.glob("scenes/gallery/*.yaml")])
+WAYS = (["--shadow", "auto", "--shade", "shifted", "--bump-shadow", "march:8"], ["--shadow", "exact"],
+        ["--surface", "displaced"], ["--bump-shadow", "horizon"])
+#: Valgrind knows no AVX-512, and the plain code has no other accesses than the clones.
+PLAIN = ["CLONES=no", "OPTIMISE=-O1 -g -fno-math-errno -fno-trapping-math -ffp-contract=off", "BUILD=build/plain"]
+SUMMARY = re.compile(r"(?:(\d+) failed, )?(\d+) passed")
+
+
+def make(*words: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(["make", "-j2", "BOOTSTRAP=no", *words], cwd=record.TOP, capture_output=True, text=True)
+
+
+def sanitized() -> tuple[int, int]:
+    """The whole of `make sanitize`, with all tests of the program: those that ran, those that failed."""
+    done = make("sanitize", "SANE_TESTS=tests/program")
+    units = len(re.findall(r"^  OK  ", done.stdout, re.MULTILINE))
+    bad = re.findall(r"^  FAILED  .*|^FAILED .*", done.stdout, re.MULTILINE)
+    found = SUMMARY.search(done.stdout)
+    if done.returncode:
+        print(*(bad or [done.stdout[-4000:], done.stderr[-4000:]]), sep="\n")
+    return units + (int(found[2]) if found else 0), len(bad) or (1 if done.returncode else 0)
+
+
+def memcheck(kage: Path, scene: Path, way: list[str], folder: Path) -> bool:
+    """Whether valgrind finds nothing in a small render."""
+    command = ["valgrind", "--quiet", "--error-exitcode=9", "--leak-check=full", "--show-leak-kinds=definite",
+               "--errors-for-leak-kinds=definite",
+               kage, "render", scene, *way, "--size", "12x9", "--threads", "1", "--quiet", "-o", folder / "a.exr"]
+    done = subprocess.run([*map(str, command)], capture_output=True, text=True,
+                          env={**os.environ, "KAGE_IMPORT": str(kage.parent / "kage-import")})
+    if done.returncode:
+        print(scene.name, *way, done.stderr[-3000:], sep="\n  ")
+    return done.returncode == 0
+
+
+def main() -> int:
+    tried, failed = sanitized()
+    built = make(*PLAIN, "build/plain/kage", "build/plain/kage-import")
+    if built.returncode:
+        sys.exit(built.stderr)
+    kage, folder = record.TOP / "build" / "plain" / "kage", record.KEPT
+    folder.mkdir(parents=True, exist_ok=True)
+    clean = [memcheck(kage, scene, way, folder) for scene in SCENES for way in WAYS]
+    (folder / "a.exr").unlink(missing_ok=True)
+    return record.record("sanitizers", "scripts/venv python -m tests.verify.sanitizers",
+                         {"tests under ASan, UBSan, LSan and TSan": tried, "renders under valgrind": len(clean)},
+                         failed + clean.count(False))
+
+
+if __name__ == "__main__":
+    sys.exit(main())
