@@ -149,7 +149,9 @@ typedef struct kage_load_options {
     const kage_mesh_array *meshes;
     int image_count, mesh_count;
     const kage_limits *limits; /* NULL: the defaults; of kage_scene_change: those of `scene` */
-    void *reserved[4];
+    long survey; /* not 0: only what kage_scene_get_info and kage_scene_survey need is built now, and what displaced
+                  * surfaces, `exact` and `horizon` need at the first render: of a map ten times its memory */
+    void *reserved[3];
 } kage_load_options;
 
 /* Read the scene in the file at `path`. options: NULL for the defaults. The list has all errors that were found. */
@@ -568,8 +570,8 @@ typedef struct kage_method {
 KAGE_API int kage_method_count(void);
 KAGE_API kage_method kage_method_get(int index); /* NULL fields: no such method */
 
-/* Whether `name` is a method for kage_render_options.method, such as "2+" or "iter:4". "bump", for bump mapping only, is
- * another name for "none". */
+/* Whether `name` is a method for kage_render_options.method, such as "2+" or "iter:4". "bump", for bump mapping only,
+ * is another name for "none". */
 KAGE_API int kage_method_is_known(const char *name);
 
 /* The same for the shadows of bumps on their own surface: none march:N horizon exact. */
