@@ -49,8 +49,9 @@
 extern "C" {
 #endif
 
-/* The largest values of some options: pixels along a side of a picture, samples along a side of a pixel, threads. */
-enum { KAGE_MAX_SIDE = 32768, KAGE_MAX_AA = 16, KAGE_MAX_THREADS = 1024 };
+/* The largest values of some options: pixels along a side of a picture, samples along a side of a pixel, threads, K of
+ * iter:K and N of march:N. */
+enum { KAGE_MAX_SIDE = 32768, KAGE_MAX_AA = 16, KAGE_MAX_THREADS = 1024, KAGE_MAX_STEPS = 1024 };
 
 /* The version of the library; KAGE_VERSION is that of this header. */
 KAGE_API const char *kage_version(void);
@@ -249,6 +250,15 @@ KAGE_API kage_status kage_scene_write(const kage_scene *scene, const char *path,
 
 /* Whether the file at `path`, links followed, was read for the scene, so that no output should replace it. */
 KAGE_API int kage_scene_uses_file(const kage_scene *scene, const char *path);
+
+/* Called by kage_file_paths. path: as before the `=` of a change; value: the text of a scalar, NULL for a map or a
+ * list.
+ */
+typedef void kage_path_call(void *user, const char *path, const char *value);
+
+/* Tell every path that a change of the scene in the file can have, in the order of the file: for shells and editors.
+ * The file is read as YAML alone, so this is quick and it need not be a good scene. call: in the caller's thread. */
+KAGE_API kage_status kage_file_paths(const char *path, kage_path_call *call, void *user, kage_errors **errors);
 
 /* Whether `word` is "color", the name of a plane of the scene's films, or what stands before its dot ("N", "uw",
  * "visibility"): what kage_write_options.layers has. */
@@ -456,7 +466,8 @@ typedef struct kage_probe {
     double slab[2];   /* tau where the ray enters and leaves the slab between Pmin and Pmax */
     int row_count;
     const kage_probe_row *rows;
-    int sends; /* the material has secondary rays, whose light is in no row */
+    int sends;     /* the material has secondary rays, whose light is in no row */
+    int undefined; /* P, n' or the surface has no value here: P is 0, n' is n, and no method shifts */
 } kage_probe;
 
 /* Trace the ray of pixel x, y by each method, on the smooth surfaces. */
@@ -472,7 +483,8 @@ typedef struct kage_bump_survey {
     /* A step from one value of a map's samples to the next: as a height in scene units, and the median of the slope
      * that it makes where two neighbours differ by it. 0: no map, or one of floats. */
     double step, step_slope;
-    double distance; /* of the samples from the eye, in the median */
+    double distance;  /* of the samples from the eye, in the median */
+    double undefined; /* P has no value there, in per cent of the samples; slopes and fell_back are of the others */
 } kage_bump_survey;
 
 typedef enum kage_warning_code {
@@ -482,8 +494,9 @@ typedef enum kage_warning_code {
     KAGE_WARN_FALLS_BACK,     /* value: of fell_back, above bound: the view is flat against the bumps for its order */
     KAGE_WARN_STEPS,          /* value: step_slope, above bound: the steps of a map's few bits are seen */
     KAGE_WARN_SCALE,          /* value: a scale that would be usual; bound: what slope_95 is above, or below */
-    KAGE_WARN_ZERO            /* all of P is farther than bound from 0. value: a usual `zero` of the map; without a map
+    KAGE_WARN_ZERO,           /* all of P is farther than bound from 0. value: a usual `zero` of the map; without a map
                                * what a usual function would be lower by */
+    KAGE_WARN_UNDEFINED       /* value: kage_bump_survey.undefined, above 0 */
 } kage_warning_code;
 
 typedef struct kage_warning {

@@ -120,6 +120,7 @@ static void follow(const scene *s, int x, int y, workspace *v, block *b)
     set_surface(p, &v->g);
     if (o->bump)
         set_bump(p, &v->g, o->bump);
+    p->undefined = v->g.undefined > 0;
     set_rows(s, p->object, v, b);
     p->sends = material_sends(&s->material[o->material]);
 }

@@ -21,8 +21,7 @@ static bool read_any(FILE *file, const char *channel, int threads, image_stream 
     if (*is_exr)
         return image_read_exr(file, channel, threads, to, why);
     if (n >= sizeof jpeg && memcmp(first, jpeg, sizeof jpeg) == 0)
-        return image_refuse(why, "it is a JPEG; a PNG or an OpenEXR file is expected (kage import makes PNG files of a "
-                                 "model's JPEG files)");
+        return image_refuse(why, "it is a JPEG, expected a PNG or an OpenEXR file; save it again as a PNG");
     if (n < sizeof png || memcmp(first, png, sizeof png) != 0)
         return image_refuse(why,
                             n ? "its first bytes are those of neither a PNG nor an OpenEXR file" : "the file is empty");

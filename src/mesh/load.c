@@ -5,12 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Where the triangles go. */
-typedef struct taker {
-    mesh_data *out;
-    const progress *progress;
-} taker;
-
 /* Whether the parts have names and are parts of the triangles: their program may have been broken by the file. */
 static bool good_parts(const mesh_data *d)
 {
@@ -22,6 +16,12 @@ static bool good_parts(const mesh_data *d)
     return good;
 }
 
+/* Where the triangles go. */
+typedef struct taker {
+    mesh_data *out;
+    const progress *progress;
+} taker;
+
 static bool take_triangles(void *user, reader_pipe *p)
 {
     const taker *to = user;
@@ -29,8 +29,7 @@ static bool take_triangles(void *user, reader_pipe *p)
     memory *m = progress_memory(to->progress);
     char why[MESH_WHY];
     const mesh_data come = p->letter.data;
-    if (p->letter.is != LETTER_DONE || come.n <= 0 || come.n > MESH_MOST || come.parts <= 0 ||
-        come.parts > come.n)
+    if (p->letter.is != LETTER_DONE || come.n <= 0 || come.n > MESH_MOST || come.parts <= 0 || come.parts > come.n)
         return reader_fails(p, "its reader failed, expected a valid file");
     const size_t n = (size_t)come.n, parts = (size_t)come.parts;
     *out = (mesh_data){come.n,     memory_new(m, sizeof *out->at * n),       memory_new(m, sizeof *out->skin * n),

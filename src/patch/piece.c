@@ -9,8 +9,12 @@
 /* How far a patch is subdivided before rendering: these numbers trade time before rendering and memory against time for
  * each ray, and decide nothing else. */
 enum {
-    FEWEST = 64,    /* pieces, of any patch: below that the bounding sphere is still too wide to judge sizes by */
+    FEWEST = 64, /* pieces, of any patch: below that the bounding sphere is still too wide to judge sizes by */
+#ifdef FUZZING_BUILD_MODE_UNSAFE_FOR_PRODUCTION /* as all fuzzers define it: instrumented code is many times slower */
+    MOST = 1 << 12,
+#else
     MOST = 1 << 16, /* no round of halving begins beyond this; one round at most doubles the number */
+#endif
 };
 #define LARGEST (1 / 20.)   /* larger pieces, in radii of the patch's sphere, are halved however flat they are */
 #define SMALLEST (1 / 300.) /* smaller ones are not halved however bent they are */

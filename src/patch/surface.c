@@ -80,11 +80,12 @@ void patch_surface_intersect(const patch_surface *f, int n, const rays *x, const
     c->evaluations += k.evaluations;
     for (int i = 0; i < n; i++) {
         const real t = (real)(k.to[i] + k.start[i]);
-        if (k.found[i] && t > 0 && t < h->t[i]) {
+        const bool hit = k.found[i] && t > 0 && t < h->t[i];
+        if (hit) {
             h->t[i] = t;
             h->id[i] = id;
-            c->unsure += k.unsure[i];
         }
+        c->unsure += (hit && k.unsure[i]) || patch_query_gave_up(&k, i);
     }
 }
 
@@ -120,11 +121,11 @@ void patch_surface_occlude(const patch_surface *f, int n, const rays *x, bool ow
     }
     patch_query_run(&k, n);
     c->evaluations += k.evaluations;
-    for (int i = 0; i < n; i++)
-        if (k.found[i]) {
+    for (int i = 0; i < n; i++) {
+        if (k.found[i])
             lit[i] = 0;
-            c->unsure += k.unsure[i];
-        }
+        c->unsure += (k.found[i] && k.unsure[i]) || (!k.found[i] && patch_query_gave_up(&k, i));
+    }
 }
 
 static void patch_occlude(const surface *base, int n, const rays *x, real *lit)

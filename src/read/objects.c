@@ -78,6 +78,17 @@ static void read_own_bump(reader *r, node *at, object *o)
                    scene_truth_name(r->s));
 }
 
+/* Where the shape is wrong, a square stands for it, so that the bump's own errors are told with the shape's. */
+static void read_bump_alone(reader *r, node *at, object *o)
+{
+    surface *square = reader_made(r, plane_new((vec3){0, 0, 0}, (vec3){1, 0, 0}, (vec3){0, 0, 1}, true));
+    o->own = square;
+    if (square)
+        read_own_bump(r, at, o);
+    o->own = NULL;
+    surface_free(square);
+}
+
 /* Whether the object that is copied is not itself a list of copies. */
 static bool is_single(reader *r, node *at, const object *from)
 {
@@ -125,6 +136,8 @@ static void read_object(reader *r, const queue *q, int i)
             reader_color_texture(r, m ? m : copy, o);
         if ((at_bump = yaml_get(v, "bump")) && o->own)
             read_own_bump(r, at_bump, o);
+        else if (at_bump && !copy)
+            read_bump_alone(r, at_bump, o);
         if (hidden)
             yaml_bool(r->y, hidden, "true or false", &o->hidden);
         if (!yaml_get(v, "copies"))

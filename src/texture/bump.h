@@ -17,7 +17,8 @@ typedef struct bump bump;
 typedef struct bump_ops {
     const char *kind; /* as in the scene file: "map" or "function" */
 
-    /* P at n <= LANES places; order 1: also Pu and Pw; order 2: also Puu and Pww; order 3 (2+): also Puw. Reentrant, no
+    /* P at n <= LANES places; order 1: also Pu and Pw; order 2: also Puu and Pww; order 3 (2+): also Puw. Where P, or
+     * Pu or Pw if asked for, is NaN, infinite or beyond REAL_FAR, all are 0, and h->undefined tells. Reentrant, no
      * allocation. */
     void (*eval)(const bump *p, int n, const real *u, const real *w, int order, bump_values *h);
 

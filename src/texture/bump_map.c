@@ -45,6 +45,7 @@ static void clamp_derivatives(const table_grid *g, int n, const real *u, const r
 static void map_eval(const bump *base, int n, const real *u, const real *w, int order, bump_values *h)
 {
     const map *m = (const map *)base;
+    h->undefined = 0;
     heights_look(&m->heights, n, u, w, order, h);
     if (order >= 1 && !m->heights.grid.repeat)
         clamp_derivatives(&m->heights.grid, n, u, w, order, h);
