@@ -52,6 +52,14 @@ THREADS   = -pthread -Wno-unknown-pragmas
 else
 THREADS   = -pthread -fopenmp
 endif
+ifneq ($(findstring thread,$(SANITIZE)),)
+ifneq ($(CLONES),no)
+$(error SANITIZE=thread needs CLONES=no: functions that choose their copy run before the sanitizer is ready)
+endif
+endif
+# Names of files with spaces would be two for make.
+$(foreach v,BUILD PREFIX LIBDIR LIBEXEC DESTDIR,$(if $(word 2,$($v)),\
+    $(error $v=$($v): a name with spaces, expected one without)))
 ifneq ($(SANITIZE),)
 SANITIZER = -fsanitize=$(SANITIZE) -fno-sanitize-recover=all -fno-omit-frame-pointer -g
 endif
