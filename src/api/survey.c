@@ -8,7 +8,12 @@
 
 #include <stdlib.h>
 
-enum { SAMPLES = 200, MOST_WARNINGS = 8 }; /* SAMPLES x SAMPLES rays over the picture; warnings of one object */
+#ifdef FUZZING_BUILD_MODE_UNSAFE_FOR_PRODUCTION /* as all fuzzers define it: instrumented code is many times slower */
+enum { SAMPLES = 8 };
+#else
+enum { SAMPLES = 200 }; /* SAMPLES x SAMPLES rays over the picture */
+#endif
+enum { MOST_WARNINGS = 8 }; /* of one object */
 
 /* Above this slope (95th percentile) the orders get more than about 1.5 % of a cast shadow's pixels wrong
  * (docs/method.md, "Accuracy of the orders": 1.4 % at 0.58, 7 % and more at 1.14). */
@@ -209,7 +214,9 @@ static kage_survey *report(const kage_scene *k, seen *all)
 kage_status kage_scene_survey(kage_scene *k, kage_survey **out, kage_errors **to)
 {
     const scene *s = k->first;
-    workspace *v = workspace_new(&(tracer){.scene = s});
+    memory m = {.from = k->memory.budget, .limit = k->memory.most};
+    char words[MEMORY_WORDS];
+    workspace *v = workspace_new(&(tracer){.scene = s}, &m);
     seen *all = calloc((size_t)s->objects + 1, sizeof *all);
     *out = NULL;
     if (to)
@@ -223,7 +230,7 @@ kage_status kage_scene_survey(kage_scene *k, kage_survey **out, kage_errors **to
     }
     free(all);
     workspace_free(v);
-    return *out ? KAGE_OK : error_give(KAGE_NO_MEMORY, to, "out of memory");
+    return *out ? KAGE_OK : error_give(KAGE_NO_MEMORY, to, "%s", memory_words(&m, words));
 }
 
 void kage_survey_free(kage_survey *v) { free(v); }

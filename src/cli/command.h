@@ -27,7 +27,9 @@ enum {
     COMMAND_IMPORT = 16,
     COMMAND_VIEW = 32,
     COMMAND_METHODS = 64,
-    COMMAND_HELP = 128
+    COMMAND_HELP = 128,
+    COMMAND_COMPLETE = 256,
+    COMMAND_TABLE = 512
 };
 
 /* The parsed command line. Zero: not given. */
@@ -67,7 +69,17 @@ int command_import(const arguments *a);
 int command_view(const arguments *a); /* returns only where the window's program can't be started */
 int command_view_help(void);          /* prints the window's keys, if its program is there */
 
+/* What may follow these words; the last one is not finished, and may be "". A line for each:
+ *
+ *     =WORD<tab>TEXT      the whole word, and what it means
+ *     +WORD<tab>TEXT      a beginning, which goes on without a space
+ *     .BEFORE<tab>ENDINGS files that end so, after BEFORE in the word; any files without endings
+ */
+int command_complete(int count, char **word);
+
 /* ---- help.c ---- */
+
+int command_table(void); /* commands and options as JSON */
 
 void print_help(FILE *to);
 void print_command_help(const struct command *c);

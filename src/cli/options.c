@@ -89,6 +89,11 @@ const command commands[] = {
      .values = {VALUES_COMMANDS},
      .text = "the options of a command",
      .example = {"kage help render", "the same as kage render --help"}},
+    {.name = "complete",
+     .bit = COMMAND_COMPLETE,
+     .hidden = true,
+     .text = "what may be typed next, for the completions of shells: kage complete WORDS"},
+    {.name = "table", .bit = COMMAND_TABLE, .hidden = true, .text = "commands and options as JSON, for the manuals"},
 };
 
 const int command_count = (int)(sizeof commands / sizeof *commands);

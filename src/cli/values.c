@@ -103,9 +103,14 @@ static void list_methods(char *text, size_t size)
 bool read_shadow(arguments *a, const char *name, const char *v)
 {
     char names[128];
+    if (kage_method_is_known(v))
+        return add_set(a, "render.shadow=%s", v);
+    const char *colon = strchr(v, ':');
+    if (strncmp(v, "iter:", 5) == 0 || strncmp(v, "march:", 6) == 0)
+        return usage_error("%s %s: expected a whole number from 1 to %d after %.*s", name, v, KAGE_MAX_STEPS,
+                           (int)(colon - v + 1), v);
     list_methods(names, sizeof names);
-    return kage_method_is_known(v) ? add_set(a, "render.shadow=%s", v)
-                                   : usage_error("%s %s: no such method, expected %s", name, v, names);
+    return usage_error("%s %s: no such method, expected %s", name, v, names);
 }
 
 /* `smooth`, or the other word that a key of render may have. */
@@ -128,8 +133,9 @@ bool read_shade(arguments *a, const char *name, const char *v)
 
 bool read_bump_shadow(arguments *a, const char *name, const char *v)
 {
-    return kage_bump_shadow_is_known(v) ? add_set(a, "render.bump_shadow=%s", v)
-                                        : usage_error("%s %s: expected none, march:N, horizon or exact", name, v);
+    return kage_bump_shadow_is_known(v)
+               ? add_set(a, "render.bump_shadow=%s", v)
+               : usage_error("%s %s: expected none, march:N (N: 1 to %d), horizon or exact", name, v, KAGE_MAX_STEPS);
 }
 
 bool read_size(arguments *a, const char *name, const char *v)

@@ -92,16 +92,16 @@ static void displaced_free(surface *f)
     free(d);
 }
 
-surface *displaced_new(const surface *f, bump *P)
+surface *displaced_new(const surface *f, bump *P, const progress *w)
 {
-    displaced *d = bump_prepare(P) ? calloc(1, sizeof *d) : NULL;
+    displaced *d = bump_prepare(P, w) ? calloc(1, sizeof *d) : NULL;
     if (!d)
         return NULL;
     d->base = (surface){.ops = &displaced_ops, .free = displaced_free};
     d->form = form_of(f);
     d->smooth = f;
     d->P = P;
-    if (!d->form->prepare || d->form->prepare(d))
+    if (!d->form->prepare || d->form->prepare(d, w))
         return &d->base;
     displaced_free(&d->base);
     return NULL;

@@ -181,13 +181,13 @@ static void function_bends(function *p)
     p->base.Pww_max = bump_slope(ww, p->scale);
 }
 
-static bool function_prepare(bump *base)
+static bool function_prepare(bump *base, const progress *w)
 {
     function *p = (function *)base;
     table_grid g = {.columns = parts_of(p->u), .rows = parts_of(p->w)};
     lay_axis(p->u, g.columns, &g.ku, &g.ou);
     lay_axis(p->w, g.rows, &g.kw, &g.ow);
-    p->base.pyramid = pyramid_new(&g, function_part, p);
+    p->base.pyramid = pyramid_new(&g, function_part, p, w);
     if (p->base.pyramid)
         function_bends(p);
     return p->base.pyramid;

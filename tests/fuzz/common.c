@@ -139,11 +139,11 @@ uint8_t *fuzz_read(const char *path, size_t *size)
 
 /* ---- errors ---- */
 
-/* One line without controls. */
+/* One line without controls, but for tabs. */
 static bool is_plain(const char *text)
 {
     for (; *text; text++)
-        if ((unsigned char)*text < 0x20 || *text == 0x7f)
+        if (((unsigned char)*text < 0x20 && *text != '\t') || *text == 0x7f)
             return false;
     return true;
 }

@@ -220,3 +220,63 @@ def written_out(scene: Scene) -> Scene:
         raise Cannot("no list of copies with several copies")
     made.tree["objects"] = objects
     return made
+
+
+# ---- P plus c on a plane moved by -c -------------------------------------------------------------
+
+def one_rough_ground(scene: Scene, function: str, how: Tree) -> Scene:
+    """The ground alone is rough, all else is above it."""
+    made = scene.copy()
+    objects = made.tree["objects"]
+    for thing in objects.values():
+        thing.pop("bump", None)
+    objects["ground"] = {"plane": {"origin": [0, -1.6, 0], "u": [0, 0, 1], "w": [1, 0, 0]}, "material": "earth",
+                         "bump": {"function": function}}
+    made.tree["materials"]["earth"] = {"color": [0.8, 0.7, 0.6]}
+    made.tree["render"] = how
+    made.tree["camera"]["from"][1] += 2
+    return made
+
+
+def lowered(scene: Scene, c: float) -> Scene:
+    """P is higher by c, and the plane lower."""
+    made = scene.copy()
+    ground = made.tree["objects"]["ground"]
+    ground["plane"]["origin"][1] -= c
+    ground["bump"]["function"] = f"{ground['bump']['function']} + {c}"
+    return made
+
+
+# ---- a scene that is symmetric under quarter turns about y ---------------------------------------
+
+QUARTER = Move(1, [0.0, 90.0, 0.0], [0.0, 0.0, 0.0])
+
+
+def symmetric(scene: Scene) -> Scene:
+    """Up to two things of the scene, each four times, on a ground that is the same after a quarter turn; from above."""
+    made = scene.copy()
+    old = made.tree["objects"]
+    things = {name: thing for name, thing in old.items() if name.startswith("thing") and "copy" not in thing}
+    objects: Tree = {}
+    for name, thing in list(things.items())[:2]:
+        objects[name] = thing
+        for k in (1, 2, 3):
+            objects[f"{name}_{k}"] = {"copy": name, "transform": [{"rotate": [0, 90 * k, 0]}]}
+    f = "sin(3*u + 1)*cos(2*w) + 0.5*sin(u)"
+    around = " + ".join(variables(f, u, w) for u, w in (("u", "w"), ("-w", "u"), ("-u", "-w"), ("w", "-u")))
+    bounded = {"function": around, "scale": 0.02}
+    objects["ground"] = {"plane": {"origin": [0, -0.9, 0], "u": [0, 0, 1], "w": [1, 0, 0]}, "material": "earth",
+                         "bump": bounded}
+    made.tree["materials"]["earth"] = {"color": [0.8, 0.7, 0.6], "phong": 0.4}
+    made.tree["objects"] = objects
+    made.tree["camera"] = {"from": [0, 8, 0], "at": [0, 0, 0], "up": [0, 0, 1], "width": 6}
+    made.tree["image"]["size"] = [20, 20]
+    return made
+
+
+def lights_turned(scene: Scene) -> Scene:
+    made = scene.copy()
+    view = dict(made.tree["camera"])
+    move_view(made.tree, QUARTER)
+    made.tree["camera"] = view
+    return made

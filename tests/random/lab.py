@@ -91,10 +91,10 @@ class Lab:
     workers: dict[str, Worker] = field(default_factory=dict)
 
     def picture(self, scene: Scene, build: str = "float", **more: Any) -> Planes:
-        """more: options of kage.Scene.render, or of the request to the worker: first, then, save, file."""
+        """more: options of kage.Scene.render, or of the request to the worker: first, then, save, file, name."""
         for name, data in scene.named().items():
             (self.folder / name).write_bytes(data)
-        request = {key: more.pop(key) for key in ("first", "then", "save", "file") if key in more}
+        request = {key: more.pop(key) for key in ("first", "then", "save", "file", "name") if key in more}
         request |= {"folder": str(self.folder), "text": scene.text(), "options": {"threads": 1} | more}
         if build not in self.workers:
             self.workers[build] = Worker(self.builds[build], self.seconds)

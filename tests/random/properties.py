@@ -8,14 +8,28 @@ fall on its other side; so a property says how many pixels of the few hundred ma
 
 from __future__ import annotations
 
+import subprocess
 from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
-from tests.random.change import Cannot, any_move, exchanged, mirrored, moved, written_out
+from tests.random.change import (
+    Cannot,
+    any_move,
+    exchanged,
+    lights_turned,
+    lowered,
+    mirrored,
+    moved,
+    one_rough_ground,
+    shapes,
+    symmetric,
+    written_out,
+)
 from tests.random.draw import Draw, Scene, shape_of
 from tests.random.lab import Lab, Planes
+from tests.random.oracle import FORMS, nearest
 
 Property = Callable[[Lab, Scene, Draw], str]
 SAME = 2e-5
@@ -52,7 +66,7 @@ def same(a: Planes, b: Planes) -> str:
 
 COLOURS = ["R", "G", "B", "visibility"]
 #: Of the layers those that do not change as the scene is moved and scaled.
-FIXED = [*COLOURS, "uw", "order"]
+FIXED = [*COLOURS, "uw"]
 
 
 def plain(scene: Scene) -> Scene:
@@ -253,15 +267,79 @@ def moves(lab: Lab, scene: Scene, r: Draw) -> str:
 
 def mirrors(lab: Lab, scene: Scene, _: Draw) -> str:
     made = plain(scene)
+    made.tree["render"].pop("aa", None)  # layers are those of the first sample, which is not in the middle
     got = lab.picture(mirrored(made), "double")
     return complaint({name: plane[:, ::-1] for name, plane in got.items()}, lab.picture(made, "double"),
-                     [*COLOURS, "Z", "height", "tau", "order"])
+                     [*COLOURS, "Z", "height", "tau"])
 
 
 def exchanges(lab: Lab, scene: Scene, _: Draw) -> str:
     """u and w."""
     made = plain(scene)
     return complaint(lab.picture(exchanged(made), "double"), lab.picture(made, "double"), [*COLOURS, "Z", "P", "tau"])
+
+
+def lower_plane(lab: Lab, scene: Scene, r: Draw) -> str:
+    """P plus c on a plane moved by -c is the same rough surface. A method finds the same start of shadow rays where it
+    depends on that surface alone: the truth and the march, whose slab stays, for any P; an order where its Taylor
+    polynomial is P itself, order 2 without a cross term. Near the middle: far from it a ray meets a quadric twice."""
+    method, function = r.choice((
+        ("exact", "0.1*sin(3*u)*cos(4*w)"), ("march:7", "0.1*sin(3*u + w)"), ("march:2", "0.08*noise(2*u, 3*w)"),
+        ("0", "0.05"), ("1", "0.03 + 0.1*u - 0.05*w"), ("2", "0.02*u^2 - 0.03*w^2 + 0.1*u"),
+        ("2+", "0.02*u^2 - 0.03*w^2 + 0.04*u*w + 0.01")))
+    shade = r.choice(("smooth", "shifted"))
+    made = one_rough_ground(scene, function, {"shadow": method, "shade": shade, "guard": r.often(0.5), "depth": 1})
+    a, b = (lab.picture(other, "double") for other in (lowered(made, r.choice((0.05, -0.04, 0.2))), made))
+    near = np.all([np.abs(planes[f"uw.{k}"]) < 2.5 for planes in (a, b) for k in "uw"], axis=0)
+    both = near & (a["height"] != 0) & (b["height"] != 0) & (a["order"] == b["order"])
+    if shade == "shifted":
+        return complaint(a, b, [*COLOURS, "Z", "P", "N"], where=both)
+    for planes in (a, b):
+        planes["start"] = planes["Z"] + planes["tau"]
+    return complaint(a, b, ["visibility", "start"], where=both)
+
+
+def quarter_turns(lab: Lab, scene: Scene, _: Draw) -> str:
+    """A quarter turn of the lights over a scene that such a turn does not change turns the picture."""
+    made = symmetric(plain(scene))
+    made.tree["render"].pop("aa", None)
+    got = lab.picture(lights_turned(made), "double")
+    return complaint({name: np.rot90(plane) for name, plane in got.items()}, lab.picture(made, "double"),
+                     [*COLOURS, "Z", "height", "tau"])
+
+
+def same_view(lab: Lab, scene: Scene, _: Draw) -> str:
+    """`at` further along, and an `up` of another length that leans along the view."""
+    made = plain(scene)
+    view = made.tree["camera"]
+    eye, ahead = np.array(view["from"]), np.array(view["at"]) - np.array(view["from"])
+    want = lab.picture(made, "double")
+    view["up"] = (3 * np.array(view.get("up", [0, 1, 0])) + 0.4 * ahead).tolist()
+    view["at"] = (eye + 2.5 * ahead).tolist()
+    return complaint(lab.picture(made, "double"), want, [name for name in want if name != "order"])
+
+
+def first_hits(lab: Lab, scene: Scene, _: Draw) -> str:
+    """Depths against numpy's (oracle.py)."""
+    made = scene.copy()
+    objects, shape = made.tree["objects"], shapes(scene)
+    made.tree["objects"] = {name: thing for name, thing in objects.items()
+                            if shape[name] in FORMS and "copies" not in thing and not thing.get("hidden")}
+    made.tree["render"] = {"shadow": "none", "depth": 1}
+    if not made.tree["objects"]:
+        raise Cannot("no shape with a formula")
+    return complaint(lab.picture(made, "double"), {"Z": nearest(made)})
+
+
+def program(lab: Lab, scene: Scene, _: Draw) -> str:
+    """The program writes the same bytes as the package."""
+    scene.write(lab.folder / "scene.yaml")
+    lab.picture(scene, save=str(lab.folder / "package.exr"), name="scene.yaml")
+    done = subprocess.run([lab.builds["float"] / "kage", "render", "scene.yaml", "-o", "program.exr", "--quiet"],
+                          cwd=lab.folder, capture_output=True, text=True, timeout=lab.seconds)
+    if done.returncode or (lab.folder / "program.exr").read_bytes() != (lab.folder / "package.exr").read_bytes():
+        return f"exit status {done.returncode}, other bytes: {done.stderr}"
+    return ""
 
 
 def precision(lab: Lab, scene: Scene, _: Draw) -> str:
@@ -275,7 +353,8 @@ def precision(lab: Lab, scene: Scene, _: Draw) -> str:
 PROPERTIES: dict[str, Property] = {
     found.__name__: found for found in (
         builds, threads, crops, larger, far_objects, reversed_objects, channels, fresh, list_of_copies, brightness, deeper,
-        samples, no_height, moves, mirrors, exchanges, precision)}
+        samples, no_height, moves, mirrors, exchanges, lower_plane, quarter_turns, same_view, first_hits, program,
+        precision)}
 
 
 def check(lab: Lab, scene: Scene, name: str, seed: int) -> str | None:

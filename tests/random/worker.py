@@ -16,7 +16,8 @@ import kage
 
 def rendered(request: dict[str, Any]) -> tuple[dict[str, Any], list[bytes]]:
     """The answer, and the planes."""
-    scene = kage.load(request["text"], folder=request["folder"], sets=request.get("first"), threads=1, progress=False)
+    scene = kage.load(request["text"], folder=request["folder"], name=request.get("name"), sets=request.get("first"),
+                      threads=1, progress=False)
     if "then" in request:
         scene.render(**request["options"], progress=False)  # with all that a render builds
         scene.set(request["then"])
