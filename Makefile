@@ -6,6 +6,7 @@
 #   CLONES=no             without the AVX2 copies of the stages
 #   OPENMP=no             one thread a render, without OpenMP: for SANITIZE=thread, which does not see the barriers of
 #                         its library (CLONES=no, too: functions that choose their copy run before it is ready)
+#   BVH=brute             every ray is tested with every box, which is slow: for tests/random
 #   VIEW=yes|no           kage view, the window; it needs SDL2, SDL2_ttf and fontconfig (yes where they are here)
 #   BUILD=DIR             where the objects and the program go
 #   PYTHON=PROGRAM        the Python for which the package is built (with cffi and numpy)
@@ -16,12 +17,14 @@ SANITIZE ?=
 CLONES   ?= yes
 OPENMP   ?= yes
 BUILD    ?= build/$(REAL)
+BVH      ?= embree
 BENCH    ?= normal
 SPEED    ?= normal
 OBJCOPY  ?= objcopy
 PREFIX   ?= /usr/local
 LIBDIR   ?= $(PREFIX)/lib
 LIBEXEC  ?= $(PREFIX)/libexec/kage
+SHARE    ?= $(PREFIX)/share
 PYTHON   ?= scripts/venv python
 Q         = $(if $(V),,@)
 comma    := ,
@@ -81,7 +84,8 @@ SOURCES   = $(patsubst src/%.c,%,$(wildcard src/*/*.c))
 PROGRAM   = $(filter cli/%,$(SOURCES))
 IMPORT    = $(filter import/%,$(SOURCES)) # kage-import, which alone links assimp and libjpeg
 WINDOW    = $(filter view/% look/%,$(SOURCES)) # kage-view, which alone links SDL2; look/ does without
-LIBRARY   = $(filter-out cli/% import/% view/% look/%,$(SOURCES))
+LIBRARY   = $(filter-out cli/% import/% view/% look/% $(if $(BRUTE),bvh/embree bvh/wide%),$(SOURCES)) $(BRUTE)
+BRUTE     = $(if $(filter brute,$(BVH)),random/brute)
 VERSION  := $(shell sed -n 's/.*define KAGE_VERSION "\(.*\)".*/\1/p' include/kage.h)
 SONAME    = libkage.so.$(firstword $(subst ., ,$(VERSION)))
 UNITS     = $(patsubst tests/%.c,%,$(wildcard tests/unit/*/test_*.c))
@@ -93,11 +97,12 @@ GALLERY   = $(patsubst scenes/gallery/%.yaml,%,$(wildcard scenes/gallery/*.yaml)
 
 # What `make format` and `make lint` look at. The yardsticks in bench/limits are compiled by themselves.
 C_FILES   = $(wildcard include/*.h src/*/*.[ch] examples/*.c python/*.[ch] tests/support/*.h tests/unit/*/*.[ch] \
-                       bench/limits/*.c)
+                       tests/fuzz/*.[ch] tests/random/*.c bench/limits/*.c)
 TIDY      = $(filter-out bench/limits/% $(if $(filter yes,$(VIEW)),,src/view/%),$(filter %.c,$(C_FILES)))
 
 .PHONY: all render bench speed readme reference accept counts test unit-tests program-tests programs sanitize format
-.PHONY: lint tidy same python wheel install install-files uninstall clean help bootstrap FORCE
+.PHONY: dist docs manuals lint tidy same python wheel install install-files uninstall clean help bootstrap FORCE
+.PHONY: fuzz fuzz-program fuzz-replay
 all: bootstrap
 	@$(MAKE) --no-print-directory $(JOBS) programs
 
@@ -118,8 +123,12 @@ help:
 	@echo 'make counts     count the instructions of eight renders again, and keep them for the test'
 	@echo 'make reference  render stale reference pictures with POV-Ray, into reference/'
 	@echo 'make sanitize   unit tests, and some program tests, under ASan, UBSan and TSan'
+	@echo 'make fuzz       fuzz the targets of tests/fuzz, FUZZ_SECONDS=30 each; make fuzz-replay runs its finds'
 	@echo 'make lint       check style, likely mistakes and types; make format applies the style'
 	@echo 'make same       compare all pictures with another commit, REV=COMMIT, ONLY=TEXT in their names'
+	@echo 'make dist       the source archive of HEAD, out/kage-$(VERSION).tar.gz; scripts/deb: Debian packages'
+	@echo 'make docs       the documentation as pages, into out/docs/index.html'
+	@echo 'make manuals    the manual pages and docs/kage.md again, from what they are made from'
 	@echo 'make install    install program, library and headers to PREFIX ($(PREFIX)), under DESTDIR'
 	@echo 'make uninstall  remove what install has put there'
 	@echo 'make clean      remove build/ and out/'
@@ -261,6 +270,43 @@ $(filter $(BUILD)/unit/look/%,$(UNITS:%=$(BUILD)/%)): $(patsubst %,$(BUILD)/%.o,
 WRAPPED   = malloc calloc realloc posix_memalign strdup free fy_node_build_from_malloc_string
 $(BUILD)/unit/api/test_memory: private override LDFLAGS += $(WRAPPED:%=-Wl,--wrap=%)
 
+# ---- fuzzing ----
+
+# All targets in one program, which runs that of its name: with libFuzzer (clang), or over files with a plain main.
+FUZZED    = $(filter-out fuzz/engine fuzz/replay fuzz/letters,$(patsubst tests/%.c,%,$(wildcard tests/fuzz/*.c)))
+FUZZ_CC  ?= clang
+FUZZ_INPUTS = tests/fuzz/finds
+
+$(BUILD)/fuzz/kage-fuzz: $(FUZZED:%=$(BUILD)/%.o) $(BUILD)/fuzz/engine.o $(BUILD)/internal.a | $(BUILD)/fuzz/letters
+	@echo '  LD  $@'
+	$(Q)$(CC) $(LDFLAGS) -fsanitize=fuzzer -o $@ $^ $(LIBS)
+
+$(BUILD)/fuzz/replay: $(FUZZED:%=$(BUILD)/%.o) $(BUILD)/fuzz/replay.o $(BUILD)/internal.a | $(BUILD)/fuzz/letters
+	@echo '  LD  $@'
+	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(LIBS)
+
+# It is started anew for each input, so without what a sanitizer does first.
+$(BUILD)/fuzz/letters: tests/fuzz/letters.c src/mesh/letter.h
+	@echo '  LD  $@'
+	@mkdir -p $(@D)
+	$(Q)$(CC) -Iinclude -Isrc $(STANDARD) -O1 -o $@ $<
+
+fuzz-program:
+	@scripts/bootstrap build fuzz
+	@$(MAKE) --no-print-directory $(JOBS) $(SANE) CC='$(FUZZ_CC)' OPENMP=no BUILD=build/fuzz \
+	    SANITIZE=fuzzer-no-link,address,undefined CFLAGS=-DFUZZING_BUILD_MODE_UNSAFE_FOR_PRODUCTION \
+	    build/fuzz/fuzz/kage-fuzz
+
+# Each target for so long; scripts/fuzz has more options.
+FUZZ_SECONDS = 30
+fuzz:
+	scripts/fuzz --seconds $(FUZZ_SECONDS)
+
+# The finds that are kept as tests; or FUZZ_INPUTS='TARGET FILE...'
+fuzz-replay: bootstrap
+	@$(MAKE) --no-print-directory $(JOBS) $(BUILD)/fuzz/replay
+	$(BUILD)/fuzz/replay $(FUZZ_INPUTS)
+
 # ---- the Python package ----
 
 # In $(BUILD)/python, to import from there: links to python/kage, and the modules in C for Python's stable ABI, 3.11 on.
@@ -320,7 +366,7 @@ unit-tests: $(UNITS:%=$(BUILD)/%)
 $(UNITS:%=run-%): run-%: $(BUILD)/% $(BUILD)/kage-import
 	@KAGE_IMPORT=$(BUILD)/kage-import $< >$<.log 2>&1 && echo '  OK  $<' || { cat $<.log; echo '  FAILED  $<'; exit 1; }
 
-program-tests: programs python
+program-tests: programs python $(BUILD)/fuzz/replay
 	@$(MAKE) --no-print-directory $(JOBS) REAL=double build/double/kage
 	scripts/venv python -m pytest -q -n auto --dist loadfile tests # a file's tests share what they make
 
@@ -361,7 +407,7 @@ counts: all
 # The clones' resolvers run before a sanitizer is ready; and stages in AVX2 have no other accesses than those in SSE2.
 SANE      = CLONES=no OPTIMISE='-O1 -fno-math-errno -fno-trapping-math -ffp-contract=off'
 # Those that read every kind of input, right and wrong, and run every command.
-SANE_TESTS = $(addprefix tests/program/test_,cli.py input.py mesh.py import.py)
+SANE_TESTS = $(addprefix tests/program/test_,cli.py input.py mesh.py import.py fuzz.py)
 
 # Threads of one process on libkage, without OpenMP, whose barriers ThreadSanitizer does not see (see tsan.supp).
 TSAN      = $(SANE) OPENMP=no BUILD=build/tsan SANITIZE=thread
@@ -369,10 +415,11 @@ TSAN      = $(SANE) OPENMP=no BUILD=build/tsan SANITIZE=thread
 sanitize: all
 	@CC='$(CC)' scripts/bootstrap test python
 	@LSAN_OPTIONS=suppressions=tests/support/lsan.supp:print_suppressions=0 $(MAKE) --no-print-directory $(JOBS) \
-	    $(SANE) BUILD=build/asan SANITIZE=address,undefined unit-tests build/asan/kage
+	    $(SANE) BUILD=build/asan SANITIZE=address,undefined unit-tests build/asan/kage build/asan/fuzz/replay
 	@TSAN_OPTIONS=suppressions=tests/support/tsan.supp \
 	    $(MAKE) --no-print-directory $(JOBS) $(TSAN) run-unit/api/test_threads
 	KAGE=build/asan/kage scripts/venv python -m pytest -q -n auto --dist loadfile $(SANE_TESTS)
+	@$(MAKE) --no-print-directory fuzz
 
 # ---- style ----
 
@@ -401,9 +448,30 @@ same: all
 	@CC='$(CC)' scripts/bootstrap python valgrind
 	scripts/venv python -m scripts.same $(or $(REV),HEAD) --real $(REAL) $(ONLY:%=--only %)
 
-# LIBDIR, LIBEXEC: of the library, and of kage-import, where they are not in PREFIX/lib and PREFIX/libexec/kage.
+# ---- to give away ----
+
+dist:
+	@python3 -m scripts.dist
+
+# Manual pages and docs/kage.md, after a change of options, docs/scene.md or the headers.
+manuals: all
+	@CC='$(CC)' scripts/bootstrap python
+	scripts/venv python -m scripts.man --kage $(BUILD)/kage
+
+docs:
+	@CC='$(CC)' scripts/bootstrap python
+	scripts/venv python -m mkdocs build --strict --quiet
+	@echo "the pages are in out/docs/index.html"
+
+# LIBDIR, LIBEXEC, SHARE: of the library, of kage-import, and of manuals and completions, where they are not in
+# PREFIX/lib, PREFIX/libexec/kage and PREFIX/share.
 install: all
 	@$(MAKE) --no-print-directory install-files
+
+# Manuals, and the completions of shells: a file, and where it goes below SHARE.
+MANUALS   = man1/kage.1 man3/kage.3 man3/bumpshadow.3 man5/kage-scene.5
+SHELLS    = kage.bash:bash-completion/completions/kage _kage:zsh/site-functions/_kage \
+            kage.fish:fish/vendor_completions.d/kage.fish
 
 # The same of what is built already.
 install-files: $(BUILD)/kage.pc
@@ -416,8 +484,11 @@ install-files: $(BUILD)/kage.pc
 	install -m 755 $(BUILD)/$(SONAME) $(DESTDIR)$(LIBDIR)/$(SONAME)
 	ln -sf $(SONAME) $(DESTDIR)$(LIBDIR)/libkage.so
 	install -m 644 $(BUILD)/kage.pc $(DESTDIR)$(LIBDIR)/pkgconfig/kage.pc
+	$(foreach m,$(MANUALS),install -D -m 644 man/$(notdir $(m)) $(DESTDIR)$(SHARE)/man/$(m) &&) true
+	$(foreach s,$(SHELLS),install -D -m 644 completions/$(subst :, $(DESTDIR)$(SHARE)/,$(s)) &&) true
 
 uninstall:
+	rm -f $(MANUALS:%=$(DESTDIR)$(SHARE)/man/%) $(foreach s,$(SHELLS),$(DESTDIR)$(SHARE)/$(lastword $(subst :, ,$(s))))
 	rm -f $(DESTDIR)$(PREFIX)/bin/kage $(DESTDIR)$(LIBEXEC)/kage-import $(DESTDIR)$(LIBEXEC)/kage-view \
 	    $(DESTDIR)$(PREFIX)/include/kage.h \
 	    $(DESTDIR)$(PREFIX)/include/bumpshadow.h $(DESTDIR)$(PREFIX)/include/bumpshadow.glsl \

@@ -174,6 +174,10 @@ class Stats:
     #: all seconds are 0 without RenderOptions.timing
     stages: tuple[Stage, ...]
     orders: tuple[OrderCount, ...]
+    #: samples where P, n', the shift or the light had no value (docs/scene.md, "Without a value")
+    undefined: int
+    #: the first object with such a sample, index into SceneInfo.objects; -1: none
+    undefined_object: int
 
 
 @dataclass(frozen=True, eq=False)
@@ -254,6 +258,8 @@ class BumpSurvey:
     fell_back: NDArray[np.float64]
     step: float
     step_slope: float
+    #: of the samples from the eye, in the median
+    distance: float
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,6 +11,7 @@
 typedef double real;
 #define REAL_NAME "double"
 #define REAL_INTEGER 6755399441055744.0 /* 1.5 * 2^52 */
+#define REAL_WHOLE 4503599627370496.0   /* 2^52: numbers from here on have no fraction */
 #define REAL_ROUNDING 4e-16             /* twice the relative rounding error of a sum or product */
 #define real_sqrt(x) sqrt(x)
 #define real_abs(x) fabs(x)
@@ -18,6 +19,7 @@ typedef double real;
 typedef float real;
 #define REAL_NAME "float"
 #define REAL_INTEGER 12582912.0f /* 1.5 * 2^23 */
+#define REAL_WHOLE 8388608.0f    /* 2^23 */
 #define REAL_ROUNDING 2.4e-7
 #define real_sqrt(x) sqrtf(x)
 #define real_abs(x) fabsf(x)
@@ -26,8 +28,11 @@ typedef float real;
 /* A literal of type real: R(0.5). */
 #define R(x) ((real)(x))
 
-/* The t of a ray that hits nothing. */
+/* The t of a ray that hits nothing. Larger numbers count as no value. */
 #define REAL_FAR ((real)1e30)
+
+/* The least normal number of float; smaller squares of lengths have no digits. */
+#define REAL_LEAST ((real)1.17549435e-38)
 
 /* Marks a stage: a static function that is one plain loop over lanes. It is compiled for any x86-64, for AVX2 and (by
  * gcc) for AVX-512, and the loader chooses one. All give the same bytes: stages use only what IEEE 754 rounds exactly
@@ -52,13 +57,13 @@ static inline double greater(double x, double y) { return x > y ? x : y; }
 static inline float lesser_float(float x, float y) { return x < y ? x : y; }
 static inline float greater_float(float x, float y) { return x > y ? x : y; }
 
-/* floor without libm, which SSE2 would need: adding REAL_INTEGER leaves no bits for a fraction. From |x| =
- * REAL_INTEGER / 3 on that fails and the result is x, which then has at most one bit of fraction. */
+/* floor without libm, which SSE2 would need: adding REAL_WHOLE, with the sign of x, leaves no bits for a fraction. From
+ * there on every number is whole. */
 static inline real real_floor(real x)
 {
-    real f = (x + REAL_INTEGER) - REAL_INTEGER;
+    real whole = x < 0 ? -REAL_WHOLE : REAL_WHOLE, f = (x + whole) - whole;
     f = f > x ? f - 1 : f;
-    return real_abs(x) < REAL_INTEGER / 3 ? f : x;
+    return real_abs(x) < REAL_WHOLE ? f : x;
 }
 
 #endif

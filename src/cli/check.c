@@ -1,6 +1,7 @@
 /* kage check: prints what is in a scene, how steep its visible bumps are, and warnings. */
 #include "cli/command.h"
 
+#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -13,51 +14,95 @@ static const kage_warning *find_warning(const kage_survey *v, int object, kage_w
     return NULL;
 }
 
+/* In lines of a terminal's width. */
+static void print_warning(const char *fmt, ...) CLI_PRINTF(1, 2);
+static void print_warning(const char *fmt, ...)
+{
+    enum { AT = 13 };
+    char text[512];
+    va_list args;
+    va_start(args, fmt);
+    vsnprintf(text, sizeof text, fmt, args);
+    va_end(args);
+    printf("    warning: ");
+    print_wrapped(stdout, AT, AT, COLUMNS, text);
+}
+
+/* What the method can't do, and which one can. March needs bounds of P. */
+static void print_method(const kage_scene_info *s, const kage_survey *v, int id)
+{
+    const bool bounded = s->objects[id].bounded;
+    const kage_warning *w = find_warning(v, id, KAGE_WARN_STEEP);
+    if (w)
+        print_warning("slopes above %.2g are too steep for order %s: expect 1.5 %% and more of a shadow's pixels "
+                      "wrong; %s",
+                      w->bound, s->method, bounded ? "use auto or march:8" : "lower the bump's scale");
+    if ((w = find_warning(v, id, KAGE_WARN_FALLS_BACK)))
+        print_warning("order %s falls back often, in %.3g %%: the view is flat against the bumps; use %s", s->method,
+                      w->value, bounded ? "auto or march:8" : "order 0");
+}
+
+/* Heights that are hardly meant. */
+static void print_heights(const kage_object_info *o, const kage_survey *v, int id)
+{
+    const kage_warning *w = find_warning(v, id, KAGE_WARN_SCALE);
+    const bool above = o->height[0] > 0;
+    if (w)
+        print_warning("%s; try scale: %.2g, not %.6g",
+                      v->objects[id].slope_95 > w->bound ? "the bumps are steeper than anything that is only shaded"
+                                                         : "the bumps are too flat to be seen",
+                      w->value, o->bump_scale);
+    if ((w = find_warning(v, id, KAGE_WARN_ZERO)))
+        print_warning("all of P is far %s the surface, where shadows then fall; %s %.4g", above ? "above" : "below",
+                      o->map ? "try zero:" : "take from the function about", w->value);
+}
+
 static void print_steps(const kage_object_info *o, const kage_survey *v, int id)
 {
     const kage_warning *w = find_warning(v, id, KAGE_WARN_STEPS);
     if (w)
-        printf(
-            "    warning: the map has %d bits: where it rises slowly its steps of %.3g are seen as stairs, slopes of "
-            "%.3f\n"
-            "             beside its own of %.3f; use a map of 16 bits, or bump.smooth: 2\n",
-            o->map_bits, v->objects[id].step, w->value, v->objects[id].slope_median);
+        print_warning("the map has %d bits: where it rises slowly its steps of %.3g are seen as stairs, slopes of "
+                      "%.3f beside its own of %.3f; use a map of 16 bits, or bump.smooth: 2",
+                      o->map_bits, v->objects[id].step, w->value, v->objects[id].slope_median);
 }
 
-static void print_bump(const kage_object_info *o, const kage_survey *v, int id)
+static void print_map(const kage_object_info *o, const kage_bump_survey *b)
 {
+    printf("    map       %s: %d x %d samples from %.7g to %.7g\n", o->map, o->map_size[0], o->map_size[1],
+           o->map_range[0], o->map_range[1]);
+    if (b->step > 0)
+        printf("    step      %d bits: %.4g scene units, a slope of %.4f; %s\n", o->map_bits, b->step, b->step_slope,
+               o->map_smooth > 0 ? "smoothed" : "not smoothed");
+}
+
+static void print_bump(const kage_scene_info *s, const kage_survey *v, int id)
+{
+    const kage_object_info *o = &s->objects[id];
     const kage_bump_survey *b = &v->objects[id];
-    const kage_warning *w;
     if (o->map)
-        printf("    map       %s: %d x %d samples from %.7g to %.7g\n", o->map, o->map_size[0], o->map_size[1],
-               o->map_range[0], o->map_range[1]);
-    if (o->map && b->step > 0)
-        printf("    step      %d bits: %.4g scene units from one value to the next, as a slope %.4f; %s\n", o->map_bits,
-               b->step, b->step_slope, o->map_smooth > 0 ? "smoothed" : "not smoothed");
-    printf("    P         from %.6g to %.6g scene units%s\n", o->height[0], o->height[1], o->map ? "" : " (bounds)");
+        print_map(o, b);
+    printf("    P         from %.6g to %.6g scene units%s", o->height[0], o->height[1], o->map ? "" : " (bounds)");
+    if (b->distance > 0 && o->bounded)
+        printf("\n    height    %.2g %% of the eye's distance", 100 * (o->height[1] - o->height[0]) / b->distance);
+    printf("\n");
     if (find_warning(v, id, KAGE_WARN_UNBOUNDED))
-        printf("    warning: P has no bounds here, so the guard has no slab and march:N falls back to order 0; "
-               "expected a\n"
-               "             function that is bounded over the whole surface\n");
-    if (!b->samples) {
+        print_warning("P has no bounds here, so the guard has no slab and march:N falls back to order 0; expected a "
+                      "function that is bounded over the whole surface");
+    if (b->undefined > 0)
+        print_warning("P has no value at %.3g %% of the surface that the camera sees: it is smooth there; expected a "
+                      "function with a value over the whole surface",
+                      b->undefined);
+    if (!b->samples)
         printf("    slope     unknown: the camera does not see it\n");
-        return;
+    else if (b->undefined < 100) {
+        printf("    slope     median %.3f, 95 %% below %.3f, steepest %.3f, where it is seen\n", b->slope_median,
+               b->slope_95, b->slope_max);
+        printf("    fall back order 1 in %.2f %%, order 2 in %.2f %% of what is seen\n", b->fell_back[1],
+               b->fell_back[2]);
     }
-    printf("    slope     median %.3f, 95 %% below %.3f, steepest %.3f (where the camera sees it)\n", b->slope_median,
-           b->slope_95, b->slope_max);
-    printf("    fall back order 1 in %.2f %%, order 2 in %.2f %% of what is seen\n", b->fell_back[1], b->fell_back[2]);
-    if ((w = find_warning(v, id, KAGE_WARN_STEEP)))
-        printf("    warning: slopes above %.2f are too steep for orders 0, 1 and 2: expect 1 %% and more of a\n"
-               "             shadow's pixels wrong; use march:4\n",
-               w->bound);
+    print_heights(o, v, id);
+    print_method(s, v, id);
     print_steps(o, v, id);
-    if ((w = find_warning(v, id, KAGE_WARN_FALLS_BACK))) {
-        const bool first = b->fell_back[1] > w->bound, second = b->fell_back[2] > w->bound;
-        printf("    warning: %s back often: the view is flat against the bumps; use order 0 or march:4\n",
-               first && second ? "orders 1 and 2 fall"
-               : first         ? "order 1 falls"
-                               : "order 2 falls");
-    }
 }
 
 static void print_some(int n, const char *what)
@@ -123,7 +168,7 @@ static void print_survey(const kage_scene_info *s, const kage_survey *v)
         if (o->model)
             print_model(o->model);
         if (o->bump)
-            print_bump(o, v, k);
+            print_bump(s, v, k);
     }
     printf("%d warning%s\n", v->warning_count, v->warning_count == 1 ? "" : "s");
 }

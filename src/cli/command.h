@@ -27,7 +27,9 @@ enum {
     COMMAND_IMPORT = 16,
     COMMAND_VIEW = 32,
     COMMAND_METHODS = 64,
-    COMMAND_HELP = 128
+    COMMAND_HELP = 128,
+    COMMAND_COMPLETE = 256,
+    COMMAND_TABLE = 512
 };
 
 /* The parsed command line. Zero: not given. */
@@ -38,7 +40,7 @@ typedef struct arguments {
     int command;
     const char *operand[2]; /* arguments that are not options */
     int operands;
-    const char *output[MAX_OUTPUTS];
+    const char *output[MAX_OUTPUTS], *format[MAX_OUTPUTS]; /* format: as in kage_write_options */
     int outputs;
     char *set[MAX_SETS]; /* values of --set, and options that change the scene in the same form; owned */
     int sets;
@@ -52,6 +54,7 @@ typedef struct arguments {
     int frames; /* of view, to measure */
     bool z_up;
     bool stats, quiet, no_cast, overwrite, resume, report, help;
+    bool to_stdout; /* an output is -, standard output */
 } arguments;
 
 /* Parse a command's arguments. False: the mistake is on stderr. Call arguments_free in either case. */
@@ -66,7 +69,17 @@ int command_import(const arguments *a);
 int command_view(const arguments *a); /* returns only where the window's program can't be started */
 int command_view_help(void);          /* prints the window's keys, if its program is there */
 
+/* What may follow these words; the last one is not finished, and may be "". A line for each:
+ *
+ *     =WORD<tab>TEXT      the whole word, and what it means
+ *     +WORD<tab>TEXT      a beginning, which goes on without a space
+ *     .BEFORE<tab>ENDINGS files that end so, after BEFORE in the word; any files without endings
+ */
+int command_complete(int count, char **word);
+
 /* ---- help.c ---- */
+
+int command_table(void); /* commands and options as JSON */
 
 void print_help(FILE *to);
 void print_command_help(const struct command *c);
@@ -85,6 +98,9 @@ int print_errors(kage_errors *e, int status);
 /* Print `kage: ` and a message on stderr. Returns false. */
 bool usage_error(const char *fmt, ...) CLI_PRINTF(1, 2);
 
+/* Remove what killed processes have left in the folder of an output, and say so. */
+void tidy(const arguments *a, const char *output);
+
 /* Whether no output is one of the scene's input files. False: the error is on stderr. */
 bool outputs_spare_inputs(const kage_scene *s, const char *const *output, int outputs);
 
@@ -100,6 +116,23 @@ int terminal_columns(FILE *to);
 /* Print a text that begins in column `at`, and a newline. It is broken at spaces so that no line is longer than `width`
  * (0: not broken), and goes on in column `indent`. */
 void print_wrapped(FILE *to, int at, int indent, int width, const char *text);
+
+/* ---- stop.c ---- */
+
+/* From now on Ctrl-C, SIGTERM, SIGHUP and SIGXCPU ask the command to end; name: of the scene. The callback
+ * progress_bar_show hears it. What has not ended a tenth of a second later, or at a second signal, is ended as it
+ * stands. Both say how far it was, unless quiet, and end by the signal. */
+void stop_begin(const char *name, bool quiet);
+bool stop_asked(void);
+
+/* What is done now, and how much of it. */
+void stop_note(const char *what, double share);
+
+/* What there is if the command is stopped now: "nothing written". */
+void stop_outcome(const char *fmt, ...) CLI_PRINTF(1, 2);
+
+/* End, if that was asked for. */
+void stop_end(void);
 
 /* ---- progress_bar.c ---- */
 
@@ -119,7 +152,7 @@ typedef struct progress_bar {
 void progress_bar_start(progress_bar *p, bool quiet, const char *name, long pixels);
 void progress_bar_end(progress_bar *p);
 
-/* The callback, a kage_progress. user: the bar. */
+/* The callback, a kage_progress. user: the bar. It ends the call where stop_asked. */
 int progress_bar_show(void *user, const char *what, double share);
 
 #endif

@@ -2,7 +2,9 @@
 #include "cli/command.h"
 
 #include <stdarg.h>
+#include <errno.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
@@ -59,6 +61,55 @@ bool outputs_spare_inputs(const kage_scene *s, const char *const *output, int ou
     return true;
 }
 
+void tidy(const arguments *a, const char *output)
+{
+    kage_errors *notes;
+    kage_file_tidy(output, &notes);
+    if (!a->quiet)
+        print_errors(notes, EXIT_OUTPUT);
+    else
+        kage_errors_free(notes);
+}
+
+/* All of standard input. NULL: an error is on stderr. */
+static char *read_stdin(size_t *size)
+{
+    enum { BLOCK = 1 << 16, MOST = 1 << 28 };
+    char *text = NULL;
+    size_t room = 0;
+    for (*size = 0; !feof(stdin) && !ferror(stdin); *size += fread(text + *size, 1, room - *size, stdin)) {
+        if (*size < room)
+            continue;
+        room = room ? 2 * room : BLOCK;
+        char *more = room <= MOST ? realloc(text, room) : NULL;
+        if (!more) {
+            free(text);
+            usage_error("-: the scene on standard input is too large");
+            return NULL;
+        }
+        text = more;
+    }
+    if (!ferror(stdin))
+        return text;
+    usage_error("-: standard input can't be read: %s", strerror(errno));
+    free(text);
+    return NULL;
+}
+
+/* From a file, or from standard input. */
+static kage_status read_given(const char *path, const kage_load_options *o, kage_scene **s, kage_errors **e)
+{
+    size_t size;
+    if (strcmp(path, "-") != 0)
+        return kage_scene_load(path, o, s, e);
+    char *text = read_stdin(&size);
+    *s = NULL;
+    *e = NULL;
+    const kage_status status = text ? kage_scene_parse(text, size, "stdin", NULL, o, s, e) : KAGE_BAD_INPUT;
+    free(text);
+    return status;
+}
+
 kage_scene *load_scene(const arguments *a)
 {
     kage_scene *s;
@@ -70,7 +121,7 @@ kage_scene *load_scene(const arguments *a)
                                  .threads = a->threads,
                                  .progress = progress_bar_show,
                                  .user = &p};
-    const kage_status status = kage_scene_load(a->operand[0], &o, &s, &e);
+    const kage_status status = read_given(a->operand[0], &o, &s, &e);
     progress_bar_end(&p);
     if (status != KAGE_OK) {
         print_errors(e, EXIT_INPUT);

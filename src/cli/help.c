@@ -70,6 +70,8 @@ void print_help(FILE *to)
     for (int k = 0; k < command_count; k++) {
         char names[64];
         const command *c = &commands[k];
+        if (c->hidden)
+            continue;
         snprintf(names, sizeof names, "%s%s%s%s%s", c->name, c->operand[0] ? " " : "",
                  c->operand[0] ? c->operand[0] : "", c->operand[1] ? " " : "", c->operand[1] ? c->operand[1] : "");
         fprintf(to, "  %-16s  ", names);

@@ -54,6 +54,8 @@ int command_import(const arguments *a)
         usage_error("'kage import' lacks -o SCENE.yaml; see kage import --help");
         return EXIT_INPUT;
     }
+    stop_outcome("no scene written");
+    tidy(a, a->output[0]);
     progress_bar_start(&p, a->quiet, base_name(a->operand[0]), 0);
     const kage_import_options o = {.bumps = (const char *const *)a->bump,
                                    .bump_count = a->bumps,
@@ -69,6 +71,7 @@ int command_import(const arguments *a)
     if (status != KAGE_OK)
         return print_errors(e, status == KAGE_NOT_WRITTEN ? EXIT_OUTPUT : EXIT_INPUT);
     print_report(a, r);
+    stop_outcome("written: %s", a->output[0]);
     const int bumps = a->bumps ? look_at_bumps(r->scene) : 0;
     kage_import_report_free(r);
     return bumps;

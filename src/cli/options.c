@@ -89,6 +89,11 @@ const command commands[] = {
      .values = {VALUES_COMMANDS},
      .text = "the options of a command",
      .example = {"kage help render", "the same as kage render --help"}},
+    {.name = "complete",
+     .bit = COMMAND_COMPLETE,
+     .hidden = true,
+     .text = "what may be typed next, for the completions of shells: kage complete WORDS"},
+    {.name = "table", .bit = COMMAND_TABLE, .hidden = true, .text = "commands and options as JSON, for the manuals"},
 };
 
 const int command_count = (int)(sizeof commands / sizeof *commands);
@@ -197,7 +202,10 @@ const option options[] = {
      .read = read_picture,
      .values = ".png .exr",
      .text = "output file: .png (sRGB) or .exr (linear, with all layers); may be repeated. Without it: the scene's "
-             "name with .png, in this folder. Never one of the scene's files"},
+             "name with .png, in this folder. Never one of the scene's files",
+     .more = "`-` is standard output, as a PNG; `exr:-` as an EXR, `png:-` as a PNG. It must not be a terminal. The "
+             "statistics of `--stats` go to standard error then. A link leads to the file that is written; a pipe or "
+             "a device gets the bytes at the end."},
     {.name = "--output",
      .letter = "-o",
      .argument = "FILE",
@@ -205,7 +213,7 @@ const option options[] = {
      .about = ABOUT_FILES,
      .read = read_pov,
      .values = ".pov",
-     .text = "output file, a name that ends in .pov; needed"},
+     .text = "output file, a name that ends in .pov, or - for standard output; needed"},
     {.name = "--output",
      .letter = "-o",
      .argument = "FILE",

@@ -16,6 +16,7 @@ typedef struct command {
     const char *operand[2]; /* NULL: none */
     int needed;             /* how many of these must be given */
     const char *values[2];  /* of the operands, as below */
+    bool hidden;            /* for scripts: not in --help */
     const char *text, *more;
     const char *example[2 * 4]; /* a line to type, and what it does */
 } command;

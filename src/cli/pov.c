@@ -32,11 +32,14 @@ static int write_scene(kage_scene *s, const arguments *a)
         usage_error("out of memory");
         return EXIT_OUTPUT;
     }
-    const kage_povray_options how = {.command = text, .no_cast = a->no_cast};
+    progress_bar p;
+    progress_bar_start(&p, a->quiet, base_name(a->operand[0]), 0);
+    const kage_povray_options how = {.command = text, .no_cast = a->no_cast, .progress = progress_bar_show, .user = &p};
     kage_povray_report r;
     kage_errors *e;
     const kage_status status = kage_scene_write_povray(s, a->output[0], &how, &r, &e);
     free(text);
+    progress_bar_end(&p);
     if (status != KAGE_OK)
         return print_errors(e, status == KAGE_BAD_INPUT ? EXIT_INPUT : EXIT_OUTPUT);
     if (r.coarse)
@@ -53,6 +56,8 @@ int command_pov(const arguments *a)
         usage_error("'kage pov' lacks -o FILE.pov; see kage pov --help");
         return EXIT_INPUT;
     }
+    stop_outcome("nothing written");
+    tidy(a, a->output[0]);
     kage_scene *s = load_scene(a);
     const int status = s && outputs_spare_inputs(s, a->output, 1) ? write_scene(s, a) : EXIT_INPUT;
     kage_scene_free(s);

@@ -24,6 +24,9 @@ int progress_bar_show(void *user, const char *what, double share)
     enum { WIDTH = 30 };
     progress_bar *p = user;
     char bar[WIDTH + 1] = "", rate[64];
+    stop_note(what, share);
+    if (stop_asked())
+        return 1;
     if (!p->on || strcmp(what, "objects") == 0) /* objects: too fast to see */
         return 0;
     const bool first = strcmp(p->what, what) != 0; /* of this step: draw at once, unless it is the render */

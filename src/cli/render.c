@@ -1,11 +1,22 @@
 /* kage render: render a scene, write the pictures, print statistics. */
 #include "cli/command.h"
 
-#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
+
+/* Mistakes that are seen before the scene is read. */
+static bool render_can_begin(const arguments *a)
+{
+    if (a->to_stdout && isatty(STDOUT_FILENO))
+        return usage_error("-o -: standard output is a terminal, expected a pipe or a file, as in kage render %s -o - "
+                           "> FILE.png",
+                           a->operand[0]);
+    return a->outputs > 0 || strcmp(a->operand[0], "-") != 0 ||
+           usage_error("a scene from standard input gives the picture no name, expected -o FILE");
+}
 
 /* The scene's file name with .png, in the current folder. NULL: out of memory. */
 static char *default_output(const char *path)
@@ -44,10 +55,15 @@ static bool check_layers(const char *layers, const kage_scene *s)
     return true;
 }
 
+static bool is_exr(const arguments *a, int k)
+{
+    return a->format[k] ? strcmp(a->format[k], "exr") == 0 : has_ending(a->output[k], ".exr");
+}
+
 static bool has_exr(const arguments *a)
 {
     for (int k = 0; k < a->outputs; k++)
-        if (has_ending(a->output[k], ".exr"))
+        if (is_exr(a, k))
             return true;
     return false;
 }
@@ -76,16 +92,22 @@ static bool in_bands(const kage_scene *s, const arguments *a)
     return a->resume || (a->outputs == 1 && pixels_of(s, a) > LARGE);
 }
 
-/* The name of an unfinished picture is no input either. */
+/* The name of the picture while it is unfinished. The caller frees it. NULL: out of memory, or there is none. */
+static char *part_name(const char *output)
+{
+    const size_t size = kage_file_part(output, NULL, 0) + 1;
+    char *part = size > 1 ? malloc(size) : NULL;
+    if (part)
+        kage_file_part(output, part, size);
+    return part;
+}
+
+/* It is no input either. */
 static bool part_spares_inputs(const kage_scene *s, const char *output)
 {
-    const size_t room = strlen(output) + sizeof ".part";
-    char *part = malloc(room);
-    if (!part)
-        return usage_error("out of memory");
-    snprintf(part, room, "%s.part", output);
+    char *part = part_name(output);
     const char *const name[] = {part};
-    const bool good = outputs_spare_inputs(s, name, 1);
+    const bool good = !part || outputs_spare_inputs(s, name, 1);
     free(part);
     return good;
 }
@@ -113,97 +135,76 @@ static bool check_options(const kage_scene *s, const arguments *a)
 static kage_status probe_outputs(const arguments *a, kage_errors **e)
 {
     kage_status status = KAGE_OK;
-    for (int k = 0; status == KAGE_OK && k < a->outputs; k++)
+    for (int k = 0; status == KAGE_OK && k < a->outputs; k++) {
+        tidy(a, a->output[k]);
         status = kage_file_probe(a->output[k], e);
+    }
     return status;
 }
 
-static void print_stages(const kage_stats *t)
+static void print_stages(FILE *to, const kage_stats *t)
 {
     double sum = 0;
     for (int k = 0; k < t->stage_count; k++)
         sum += t->stages[k].seconds;
     for (int k = 0; k < t->stage_count; k++) { /* timed in some tiles; here as its share of the whole */
         const double share = t->stages[k].seconds / sum;
-        printf("  %-8s%9.2f ms  %8.2f ns a sample  %5.1f %%\n", t->stages[k].name, t->seconds * 1e3 * share,
-               t->seconds * 1e9 / (double)t->camera_rays * share, 100 * share);
+        fprintf(to, "  %-8s%9.2f ms  %8.2f ns a sample  %5.1f %%\n", t->stages[k].name, t->seconds * 1e3 * share,
+                t->seconds * 1e9 / (double)t->camera_rays * share, 100 * share);
     }
 }
 
-static void print_stats(const kage_stats *t, double output)
+static void print_stats(FILE *to, const kage_stats *t, double output)
 {
-    printf("render    %9.2f ms  %8.2f ns a sample  %7.2f Mrays/s (camera and shadow)\n", t->seconds * 1e3,
-           t->seconds * 1e9 / (double)t->camera_rays, (double)(t->camera_rays + t->shadow_rays) / t->seconds / 1e6);
-    print_stages(t);
-    printf("output    %9.2f ms\n", output * 1e3);
-    printf("camera rays %ld, shadow rays %ld, height look-ups %ld\n", (long)t->camera_rays, (long)t->shadow_rays,
-           (long)t->height_lookups);
+    fprintf(to, "render    %9.2f ms  %8.2f ns a sample  %7.2f Mrays/s (camera and shadow)\n", t->seconds * 1e3,
+            t->seconds * 1e9 / (double)t->camera_rays, (double)(t->camera_rays + t->shadow_rays) / t->seconds / 1e6);
+    print_stages(to, t);
+    fprintf(to, "output    %9.2f ms\n", output * 1e3);
+    fprintf(to, "camera rays %ld, shadow rays %ld, height look-ups %ld\n", (long)t->camera_rays, (long)t->shadow_rays,
+            (long)t->height_lookups);
     if (t->secondary_rays)
-        printf("reflected and refracted rays %ld\n", (long)t->secondary_rays);
-    printf("bumped samples %ld by method %s", (long)t->bumped, t->method);
+        fprintf(to, "reflected and refracted rays %ld\n", (long)t->secondary_rays);
+    fprintf(to, "bumped samples %ld by method %s", (long)t->bumped, t->method);
     if (t->bumped) {
-        printf(", fell back %ld (%.3f %%); by order", (long)t->fell_back,
-               100.0 * (double)t->fell_back / (double)t->bumped);
+        fprintf(to, ", fell back %ld (%.3f %%); by order", (long)t->fell_back,
+                100.0 * (double)t->fell_back / (double)t->bumped);
         for (int k = 0; k < t->order_count; k++)
             if (t->orders[k].samples)
-                printf("  %s: %ld", t->orders[k].order, (long)t->orders[k].samples);
+                fprintf(to, "  %s: %ld", t->orders[k].order, (long)t->orders[k].samples);
     }
-    printf("\n");
+    fprintf(to, "\n");
+    if (t->undefined)
+        fprintf(to, "samples without a value, smooth there: %ld\n", (long)t->undefined);
     if (t->unconfirmed)
-        printf("hits of displaced surfaces that Newton's iteration did not confirm: %ld\n", (long)t->unconfirmed);
-}
-
-/* ---- Ctrl-C ---- */
-
-/* While files are written the signal only asks the library to end, so that each file is whole or absent. */
-static volatile sig_atomic_t stopped;
-
-static void stop(int signal) { stopped = signal; }
-
-enum { HELD = 2 };
-static const int held[HELD] = {SIGINT, SIGTERM};
-
-static void hold_signals(struct sigaction before[HELD])
-{
-    struct sigaction hold = {.sa_handler = stop, .sa_flags = SA_RESTART};
-    sigemptyset(&hold.sa_mask);
-    for (int k = 0; k < HELD; k++) {
-        sigaction(held[k], NULL, &before[k]);
-        if (before[k].sa_handler != SIG_IGN)
-            sigaction(held[k], &hold, NULL);
-    }
-}
-
-/* End as the signal would have ended the program. */
-static void release_signals(const struct sigaction before[HELD])
-{
-    for (int k = 0; k < HELD; k++)
-        sigaction(held[k], &before[k], NULL);
-    if (stopped)
-        raise(stopped);
-}
-
-static int show_and_listen(void *user, const char *what, double share)
-{
-    return stopped || progress_bar_show(user, what, share);
+        fprintf(to, "hits of displaced surfaces that Newton's iteration did not confirm: %ld\n", (long)t->unconfirmed);
 }
 
 /* ---- the work ---- */
 
+/* What there is when the first n outputs are written. */
+static void note_written(const arguments *a, int n)
+{
+    char names[200] = "";
+    size_t used = 0;
+    for (int k = 0; k < n && used < sizeof names; k++)
+        used += (size_t)snprintf(names + used, sizeof names - used, "%s%s", k ? ", " : "", a->output[k]);
+    stop_outcome("%s%s", n ? "written: " : "nothing written", names);
+}
+
 static kage_status write_outputs(const arguments *a, const kage_film *f, progress_bar *p, kage_errors **e)
 {
     const kage_write_options o = {
-        .bits = a->bits, .layers = a->layers, .threads = a->threads, .progress = show_and_listen, .user = p};
-    struct sigaction before[HELD];
+        .bits = a->bits, .layers = a->layers, .threads = a->threads, .progress = progress_bar_show, .user = p};
     kage_status status = KAGE_OK;
-    hold_signals(before);
     for (int k = 0; status == KAGE_OK && k < a->outputs; k++) {
         kage_write_options each = o;
-        each.layers = has_ending(a->output[k], ".exr") ? o.layers : NULL;
+        each.layers = is_exr(a, k) ? o.layers : NULL;
+        each.format = a->format[k];
         status = kage_film_write(f, a->output[k], &each, e);
+        if (status == KAGE_OK)
+            note_written(a, k + 1);
     }
     progress_bar_end(p);
-    release_signals(before);
     return status;
 }
 
@@ -211,23 +212,26 @@ static kage_status write_outputs(const arguments *a, const kage_film *f, progres
 static kage_status render_in_bands(kage_scene *s, const arguments *a, const kage_render_options *how, progress_bar *p,
                                    kage_film **f, kage_errors **e)
 {
-    const bool exr = has_exr(a);
-    const kage_write_options w = {
-        .bits = a->bits, .layers = a->layers, .threads = a->threads, .keep = exr, .resume = a->resume};
-    kage_render_options o = *how;
-    struct sigaction before[HELD];
-    o.progress = show_and_listen;
-    hold_signals(before);
-    const kage_status status = kage_render_file(s, &o, a->output[0], &w, f, e);
+    const bool exr = is_exr(a, 0) && !a->to_stdout;
+    const kage_write_options w = {.bits = a->bits,
+                                  .layers = a->layers,
+                                  .threads = a->threads,
+                                  .keep = exr,
+                                  .resume = a->resume,
+                                  .format = a->format[0]};
+    char *part = exr ? part_name(a->output[0]) : NULL;
+    if (part)
+        stop_outcome("--resume goes on with %s", part);
+    const kage_status status = kage_render_file(s, how, a->output[0], &w, f, e);
+    if (status == KAGE_OK)
+        note_written(a, 1);
+    free(part);
     progress_bar_end(p);
-    if (status == KAGE_CANCELLED && exr && !a->quiet)
-        fprintf(stderr, "%s: interrupted; --resume goes on with %s.part\n", base_name(a->operand[0]), a->output[0]);
-    release_signals(before);
     return status;
 }
 
 /* The closing line, only on a terminal, and a warning. */
-static void print_end(const arguments *a, const kage_stats *t, const char *name, bool on_terminal)
+static void print_end(const arguments *a, const kage_stats *t, const char *name, const char *object, bool on_terminal)
 {
     if (on_terminal) {
         fprintf(stderr, "%s: %.2f s", name, t->seconds);
@@ -238,6 +242,9 @@ static void print_end(const arguments *a, const kage_stats *t, const char *name,
     if (t->unconfirmed && !a->quiet)
         fprintf(stderr, "%s: %ld hits of displaced surfaces are not confirmed to the last digits\n", name,
                 (long)t->unconfirmed);
+    if (t->undefined && !a->quiet)
+        fprintf(stderr, "%s: no value at %ld samples, first on %s: smooth there, without a shift\n", name,
+                (long)t->undefined, object);
 }
 
 static int status_of(kage_status status, kage_errors *e)
@@ -259,6 +266,7 @@ static int render_outputs(kage_scene *s, const arguments *a)
     kage_status status = probe_outputs(a, &e);
     if (status != KAGE_OK)
         return status_of(status, e);
+    note_written(a, 0);
     progress_bar_start(&p, a->quiet, name, pixels_of(s, a));
     const kage_render_options o = {.crop = {c[0], c[1], c[2], c[3]},
                                    .layers = wants_layers(a),
@@ -276,9 +284,10 @@ static int render_outputs(kage_scene *s, const arguments *a)
     }
     if (status == KAGE_OK) {
         const kage_stats *t = kage_film_get_stats(f);
-        print_end(a, t, name, p.on);
+        const int lacks = t->undefined_object;
+        print_end(a, t, name, lacks < 0 ? "" : kage_scene_get_info(s)->objects[lacks].name, p.on);
         if (a->stats)
-            print_stats(t, clock_now() - start - t->seconds);
+            print_stats(a->to_stdout ? stderr : stdout, t, clock_now() - start - t->seconds);
     }
     kage_film_free(f);
     return status_of(status, e);
@@ -286,7 +295,8 @@ static int render_outputs(kage_scene *s, const arguments *a)
 
 int command_render(const arguments *given)
 {
-    kage_scene *s = load_scene(given);
+    stop_outcome("nothing written");
+    kage_scene *s = render_can_begin(given) ? load_scene(given) : NULL;
     if (!s)
         return EXIT_INPUT;
     char *fallback = given->outputs ? NULL : default_output(kage_scene_get_info(s)->path);

@@ -41,19 +41,35 @@ bool add_set(arguments *a, const char *fmt, ...)
     return true;
 }
 
-static bool add_output(arguments *a, const char *v)
+static bool add_output(arguments *a, const char *v, const char *format)
 {
     if (a->outputs == MAX_OUTPUTS)
         return usage_error("more than %d outputs", MAX_OUTPUTS);
+    a->format[a->outputs] = format;
     a->output[a->outputs++] = v;
     return true;
 }
 
+/* Standard output: "-", and for a picture also "png:-" or "exr:-". */
+static bool add_stdout(arguments *a, const char *name, const char *v, const char *format)
+{
+    if (a->to_stdout)
+        return usage_error("%s %s: a second output to standard output, expected one", name, v);
+    a->to_stdout = true;
+    return add_output(a, "/dev/stdout", format);
+}
+
 bool read_picture(arguments *a, const char *name, const char *v)
 {
+    if (strcmp(v, "-") == 0 || strcmp(v, "png:-") == 0 || strcmp(v, "/dev/stdout") == 0)
+        return add_stdout(a, name, v, "png");
+    if (strcmp(v, "exr:-") == 0)
+        return add_stdout(a, name, v, "exr");
     return has_ending(v, ".png") || has_ending(v, ".exr")
-               ? add_output(a, v)
-               : usage_error("%s %s: no such kind of picture, expected a name that ends in .png or .exr", name, v);
+               ? add_output(a, v, NULL)
+               : usage_error("%s %s: no such kind of picture, expected a name that ends in .png or .exr, or - for a "
+                             "PNG to standard output",
+                             name, v);
 }
 
 /* The one output of a command. */
@@ -61,10 +77,13 @@ static bool read_single(arguments *a, const char *name, const char *ending, cons
 {
     if (!has_ending(v, ending))
         return usage_error("%s %s: expected a name that ends in %s", name, v, ending);
-    return a->outputs ? usage_error("%s %s: a second output, expected one", name, v) : add_output(a, v);
+    return a->outputs ? usage_error("%s %s: a second output, expected one", name, v) : add_output(a, v, NULL);
 }
 
-bool read_pov(arguments *a, const char *name, const char *v) { return read_single(a, name, ".pov", v); }
+bool read_pov(arguments *a, const char *name, const char *v)
+{
+    return strcmp(v, "-") == 0 && !a->outputs ? add_stdout(a, name, v, NULL) : read_single(a, name, ".pov", v);
+}
 
 bool read_scene(arguments *a, const char *name, const char *v) { return read_single(a, name, ".yaml", v); }
 
@@ -84,9 +103,14 @@ static void list_methods(char *text, size_t size)
 bool read_shadow(arguments *a, const char *name, const char *v)
 {
     char names[128];
+    if (kage_method_is_known(v))
+        return add_set(a, "render.shadow=%s", v);
+    const char *colon = strchr(v, ':');
+    if (strncmp(v, "iter:", 5) == 0 || strncmp(v, "march:", 6) == 0)
+        return usage_error("%s %s: expected a whole number from 1 to %d after %.*s", name, v, KAGE_MAX_STEPS,
+                           (int)(colon - v + 1), v);
     list_methods(names, sizeof names);
-    return kage_method_is_known(v) ? add_set(a, "render.shadow=%s", v)
-                                   : usage_error("%s %s: no such method, expected %s", name, v, names);
+    return usage_error("%s %s: no such method, expected %s", name, v, names);
 }
 
 /* `smooth`, or the other word that a key of render may have. */
@@ -109,8 +133,9 @@ bool read_shade(arguments *a, const char *name, const char *v)
 
 bool read_bump_shadow(arguments *a, const char *name, const char *v)
 {
-    return kage_bump_shadow_is_known(v) ? add_set(a, "render.bump_shadow=%s", v)
-                                        : usage_error("%s %s: expected none, march:N, horizon or exact", name, v);
+    return kage_bump_shadow_is_known(v)
+               ? add_set(a, "render.bump_shadow=%s", v)
+               : usage_error("%s %s: expected none, march:N (N: 1 to %d), horizon or exact", name, v, KAGE_MAX_STEPS);
 }
 
 bool read_size(arguments *a, const char *name, const char *v)

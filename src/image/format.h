@@ -28,9 +28,13 @@ const char *image_refuse_form(const image_form *form);
 /* The samples on their way to the taker. values: of a pixel, 1 or 4. */
 typedef struct image_stream {
     const image_taker *to;
+    const progress *progress; /* NULL: none */
     int values, width, height;
     float range[2]; /* of all values so far */
 } image_stream;
+
+/* "there is not enough memory for the image", and what it needs, in `why`. Always false. */
+bool image_refuse_memory(const image_stream *s, char *why);
 
 /* Before the samples. False, with a reason: too large, or not taken. */
 bool image_begin(image_stream *s, int64_t width, int64_t height, char *why);

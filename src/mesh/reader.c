@@ -103,11 +103,20 @@ bool reader_fails(reader_pipe *p, const char *why)
     return false;
 }
 
+/* The next letter. The program has read a file that may have broken it, so what it sends need not make sense. False:
+ * there is none that does. */
+static bool receive_letter(int from, letter *l)
+{
+    return receive(from, l, sizeof *l) && l->magic == LETTER_MAGIC && l->is >= LETTER_OPENED && l->is <= LETTER_DONE &&
+           memchr(l->why, 0, sizeof l->why) && l->share >= 0 && l->share <= 1;
+}
+
 /* Take letters until the last one. True: it has come, and all was taken. */
 static bool receive_all(const reader_call *c, reader_pipe *p)
 {
     letter *l = &p->letter;
-    while (receive(p->from, l, sizeof *l) && l->magic == LETTER_MAGIC && l->is != LETTER_WRONG) {
+    bool good;
+    while ((good = receive_letter(p->from, l)) && l->is != LETTER_WRONG) {
         if (l->is == LETTER_OPENED) {
             if (!files_add(c->opened, l->opened))
                 return reader_fails(p, "out of memory");
@@ -119,7 +128,7 @@ static bool receive_all(const reader_call *c, reader_pipe *p)
         else if (l->is == LETTER_DONE)
             return true;
     }
-    l->is = l->is == LETTER_WRONG ? LETTER_WRONG : LETTER_READ;
+    l->is = good ? LETTER_WRONG : LETTER_READ;
     return false;
 }
 

@@ -102,9 +102,9 @@ static bool put_object(pov_text *t, const scene *s, const pov_options *how, int 
     if (of->crowd)
         pov_print(t, "#declare %s =\n", name.text);
     if (pov_is_patch(s, o))
-        good = pov_patch(t, s, o);
+        good = pov_patch(t, s, how, o);
     else if (o->shape_spec.kind == SHAPE_MESH)
-        good = pov_triangle_mesh(t, s, o);
+        good = pov_triangle_mesh(t, s, how, o);
     else if (s->displaced && o->bump)
         good = put_displaced(t, s, how, k, report);
     else
@@ -135,5 +135,6 @@ bool pov_write(const scene *s, const pov_options *given, const char *path, pov_r
         if (!stopped && k < s->objects)
             good = put_object(&t, s, &how, k, report);
     }
-    return pov_end(&t, stopped ? "stopped" : good ? NULL : "out of memory", e);
+    char words[MEMORY_WORDS];
+    return pov_end(&t, stopped ? "stopped" : good ? NULL : memory_words(progress_memory(how.progress), words), e);
 }

@@ -234,7 +234,7 @@ static void make_crowd(reader *r, node *at, int i, const surface *from, const bo
         return;
     }
     progress_show(r->from->progress, "building", 0);
-    crowd *f = reader_made(r, crowd_new(from, parts, &list, r->from->threads));
+    crowd *f = reader_made(r, crowd_new(from, parts, &list, r->from->threads, r->from->progress));
     int first = -1;
     for (int j = 0; f && j < list.kinds; j++) {
         const int before = r->list[r->lists - 1].used ? r->list[r->lists - 1].count : -1;
@@ -296,8 +296,8 @@ void reader_copies(reader *r, node *v, int i)
     bool good = from && can_be_copied(r, at, o, from);
     good = (!transform || reader_transform(r, transform, &k.after)) && good;
     good = read_file(r, at, o, &k) && good && check_rows(r, from, &k);
-    if (good && (k.row = reader_made(r, malloc(sizeof *k.row * (size_t)k.p.n))))
+    if (good && (k.row = reader_made(r, memory_new(reader_memory(r), sizeof *k.row * (size_t)k.p.n))))
         make_crowds(r, at, i, from, &k);
-    free(k.row);
+    memory_free(k.row);
     points_free(&k.p);
 }

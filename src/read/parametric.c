@@ -49,11 +49,11 @@ static surface *search(reader *r, node *at, patch *q, const char *what, const ch
     if (q)
         q->threads = r->from->threads;
     bool bounded = true;
-    surface *f = q ? patch_surface_new_bounded(q, &bounded) : NULL;
+    surface *f = q ? patch_surface_new_bounded(q, r->from->progress, &bounded) : NULL;
     if (!bounded)
         yaml_error(r->y, at, "%s", what);
     else if (!f)
-        errors_add(r->e, "out of memory");
+        reader_made(r, NULL);
     return reader_keep_surface(r, key, f);
 }
 
@@ -109,8 +109,8 @@ surface *reader_parametric(reader *r, node *at, shape_spec *spec)
         expr_free(e[k]);
     if (!f)
         f = search(r, at, patch_function_new("parametric", e, u, w),
-                   "a surface without bounds, or all in one place, expected functions that are bounded over the range "
-                   "of u and w",
+                   "the surface has no bounds, or is all in one place; expected x, y and z that are finite, and not "
+                   "all constant, over the range of u and w",
                    key);
     free(key);
     return f;
@@ -187,7 +187,8 @@ surface *reader_patches(reader *r, node *at, shape_spec *spec)
     char *key = key_of_points(r, n, point);
     surface *f = reader_found_surface(r, key);
     if (!f)
-        f = search(r, at, patch_bezier_new(n, point), "patches that are all in one place, expected some extent", key);
+        f = search(r, at, patch_bezier_new(n, point), "the patches are all in one place, expected points that differ",
+                   key);
     free(point);
     free(key);
     return f;

@@ -34,6 +34,13 @@ void stats_orders(stats *s, int n, const int32_t *order, int asked)
             s->orders[order[i] + 1]++;
 }
 
+void stats_undefined(stats *s, int32_t object, long n)
+{
+    s->undefined += n;
+    if (n > 0 && (s->undefined_object == 0 || object + 1 < s->undefined_object))
+        s->undefined_object = object + 1;
+}
+
 void stats_add(stats *sum, const stats *part)
 {
     sum->rays += part->rays;
@@ -44,6 +51,7 @@ void stats_add(stats *sum, const stats *part)
     sum->displaced.uncertain += part->displaced.uncertain;
     sum->bumped += part->bumped;
     sum->fell_back += part->fell_back;
+    stats_undefined(sum, part->undefined_object - 1, part->undefined);
     for (int k = 0; k < ORDER_CODES; k++)
         sum->orders[k] += part->orders[k];
     for (int k = 0; k < STAGES; k++)

@@ -32,6 +32,8 @@ typedef struct stats {
     long orders[ORDER_CODES];   /* bumped samples by the order really used: method_code + 1 */
     displaced_counts displaced; /* hits of displaced surfaces */
     long bumped, fell_back;     /* bumped samples; those with another order than asked for */
+    long undefined;             /* samples where something had no value (undefined.h) */
+    int32_t undefined_object;   /* the lowest object with such a sample, plus 1; 0: none */
     double seconds[STAGES];     /* in the tiles that are timed */
     bool timing;                /* this tile is timed */
     double clock;               /* when the last stage ended */
@@ -53,6 +55,9 @@ static inline void stats_stage(stats *s, enum stage k)
 /* Count n bumped samples by order; asked: the code of the method, or ORDER_ANY where no order is a fall back. */
 enum { ORDER_ANY = -2 };
 void stats_orders(stats *s, int n, const int32_t *order, int asked);
+
+/* Count n samples without a value on an object. */
+void stats_undefined(stats *s, int32_t object, long n);
 
 void stats_add(stats *sum, const stats *part);
 

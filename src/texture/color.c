@@ -19,7 +19,7 @@ STAGE static void checker_eval(const color_texture *base, int n, const real *res
     const checker c = *(const checker *)base;
     for (int i = 0; i < n; i++) {
         real pair = R(0.5) * (real_floor(u[i] * c.ku + c.ou) + real_floor(w[i] * c.kw + c.ow));
-        real odd = 2 * (pair - real_floor(pair)); /* 0 or 1 */
+        real odd = real_max(2 * (pair - real_floor(pair)), 0); /* 0 or 1; 0, too, where pair is infinite */
         color->x[i] = c.even[0] + odd * (c.odd[0] - c.even[0]);
         color->y[i] = c.even[1] + odd * (c.odd[1] - c.even[1]);
         color->z[i] = c.even[2] + odd * (c.odd[2] - c.even[2]);
@@ -51,13 +51,13 @@ struct texels {
     real v[]; /* as table.h has it */
 };
 
-texels *texels_new(const image *m, const map_layout *l)
+texels *texels_new(const image *m, const map_layout *l, const progress *w)
 {
     table_grid g;
     if (!table_lay(&g, m->width, m->height, l))
         return NULL;
     const size_t columns = (size_t)g.columns + 1, rows = (size_t)g.rows + 1;
-    texels *t = malloc(sizeof *t + columns * rows * TABLE_VALUES * sizeof *t->v);
+    texels *t = memory_new(progress_memory(w), sizeof *t + columns * rows * TABLE_VALUES * sizeof *t->v);
     if (!t)
         return NULL;
     t->others = 0;
@@ -82,7 +82,7 @@ texels *texels_share(texels *t)
 void texels_free(texels *t)
 {
     if (t && shared_drop(&t->others))
-        free(t);
+        memory_free(t);
 }
 
 typedef struct image_texture {

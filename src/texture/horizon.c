@@ -167,14 +167,15 @@ static void build_block(horizon *h, const bump *P, bool ends, const horizon_curv
 
 static size_t entries(const table_grid *g) { return (size_t)(g->columns + 1) * (size_t)(g->rows + 1) * ENTRIES; }
 
-horizon *horizon_new(const bump *P, const table_grid *grid, bool ends, const horizon_curvature *c, int threads)
+horizon *horizon_new(const bump *P, const table_grid *grid, bool ends, const horizon_curvature *c, int threads,
+                     const progress *w)
 {
     threads = threads_of(threads);
     (void)threads; /* without OpenMP */
     if (entries(grid) > INT32_MAX)
         return NULL;
     horizon *h = calloc(1, sizeof *h);
-    real *rise = h ? malloc(entries(grid) * sizeof *rise) : NULL;
+    real *rise = h ? memory_new(progress_memory(w), entries(grid) * sizeof *rise) : NULL;
     if (!rise) {
         free(h);
         return NULL;
@@ -190,7 +191,7 @@ horizon *horizon_new(const bump *P, const table_grid *grid, bool ends, const hor
 void horizon_free(horizon *h)
 {
     if (h)
-        free(h->rise);
+        memory_free(h->rise);
     free(h);
 }
 

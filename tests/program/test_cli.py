@@ -108,18 +108,47 @@ def test_check(kage: Kage) -> None:
     assert "object cube: box, material blue" in text
 
 
-def test_check_warns_of_steep_slopes_alone(kage: Kage) -> None:
-    gentle = kage.good("check", CUBE, "--set", "objects.ground.bump.scale=0.01")
-    steep = kage.good("check", CUBE, "--set", "objects.ground.bump.scale=2")
-    assert gentle.endswith("\n0 warnings\n")
-    assert "warning: slopes above" in steep
-    assert re.search(r"\n[12] warnings?\n$", steep)
+def test_check_judges_the_method(kage: Kage) -> None:
+    """Steep slopes are too much for orders, but not for methods that search."""
+    steep = (CUBE, "--set", "objects.ground.bump.scale=0.5")
+    for method in ("0", "1", "2", "2+"):
+        text = kage.good("check", *steep, "--shadow", method)
+        assert re.search(rf"warning: slopes above 0.6 are too steep for order {re.escape(method)}: ", text), method
+        assert "use auto or march:8" in text
+    for method in ("none", "march:4", "exact", "auto", "iter:4"):
+        assert kage.good("check", *steep, "--shadow", method).endswith("\n0 warnings\n"), method
+    assert kage.good("check", *steep, "--surface", "displaced").endswith("\n0 warnings\n")
+    assert "order 1 falls back often" in kage.good("check", *steep, "--shadow", "1")
+    assert kage.good("check", CUBE, "--shadow", "2").endswith("\n0 warnings\n")
+
+
+@pytest.mark.parametrize("scene", [*(TOP / "scenes").glob("*.yaml"), *(TOP / "scenes" / "gallery").glob("*.yaml")],
+                         ids=lambda scene: scene.stem)
+def test_shipped_scenes_suit_their_method(kage: Kage, scene: Path) -> None:
+    text = kage.good("check", scene)
+    assert text.endswith("\n0 warnings\n")
+    for line in text.splitlines():
+        assert len(line) <= 80 or line.startswith(("object ", "light ", str(scene))), line
+
+
+@pytest.mark.parametrize(("change", "advice"), [
+    ("scale=30", "warning: the bumps are steeper than anything that is only shaded; try scale: 0.3"),
+    ("scale=0.0022", "warning: the bumps are too flat to be seen; try scale: 0.3"),
+    ("zero=-3", "warning: all of P is far above the surface, where shadows then fall; try zero: 0.5"),
+    ("zero=3", "warning: all of P is far below the surface, where shadows then fall; try zero: 0.5"),
+])
+def test_check_advises_scale_and_zero(kage: Kage, change: str, advice: str) -> None:
+    text = kage.good("check", CUBE, "--shadow", "march:4", "--set", f"objects.ground.bump.{change}")
+    assert advice in re.sub(r"\s+", " ", text)
+    assert text.endswith("\n1 warning\n")
 
 
 def test_check_warns_of_unbounded_functions(kage: Kage) -> None:
     (kage.folder / "scene.yaml").write_text(SCENE.replace("0.1 * sin(u)", "0.01 * u").replace("bump: {map", "#"))
     text = kage.good("check", "scene.yaml")
     assert "warning: P has no bounds" in text
+    text = kage.good("check", "scene.yaml", "--set", "objects.ground.bump.scale=90", "--shadow", "0")
+    assert "too steep for order 0" in text and "march:8" not in text and "use auto" not in text
 
 
 # ---- outputs ----
@@ -487,6 +516,28 @@ def test_full_disk(kage: Kage, ending: str) -> None:
     assert kage.files() == before
 
 
+@pytest.mark.parametrize("name", ["none/a.png", "none/a.exr", "folder.png", "folder.exr"])
+def test_output_that_cannot_be_written(kage: Kage, name: str) -> None:
+    (kage.folder / "folder.png").mkdir()
+    (kage.folder / "folder.exr").mkdir()
+    before = kage.files()
+    done = kage("render", CUBE, *SMALL, "-o", name)
+    assert (done.returncode, done.stdout) == (1, "")
+    why = "Is a directory" if name.startswith("folder") else "No such file or directory"
+    assert done.stderr == f"{name}: cannot be written: {why}\n"
+    assert kage.files() == before
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no /dev/full on this system")
+@pytest.mark.parametrize("ending", ["png", "exr"])
+def test_full_disk(kage: Kage, ending: str) -> None:
+    (kage.folder / f"full.{ending}").symlink_to("/dev/full")
+    before = kage.files()
+    done = kage("render", CUBE, *SMALL, "-o", f"full.{ending}")
+    assert (done.returncode, done.stderr) == (1, f"full.{ending}: cannot be written: No space left on device\n")
+    assert kage.files() == before
+
+
 @pytest.mark.parametrize("wait", [0.05, 0.3, 0.6, 0.9, 1.2])
 def test_interrupt_leaves_no_half_file(kage: Kage, wait: float) -> None:
     """Ctrl-C at several times, some of them while files are written."""
@@ -578,7 +629,8 @@ def test_an_interrupted_picture_is_resumed(kage: Kage, whole: bytes) -> None:
     process.send_signal(signal.SIGINT)
     said = process.communicate(timeout=60)[1]
     assert process.returncode == -signal.SIGINT
-    assert said == "cube.yaml: interrupted; --resume goes on with a.exr.part\n"
+    assert re.fullmatch(r"cube.yaml: stopped while (rendering|writing), after \d+ %; "
+                        r"--resume goes on with a.exr.part\n", said)
     assert kage.files() == {"a.exr.part"}
     another = kage("render", CUBE, *BANDS, "--shadow", "1", "--resume", "-o", "a.exr")
     assert another.returncode == 1

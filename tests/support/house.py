@@ -86,6 +86,7 @@ def load(top: Path, build: Path) -> House:
 def is_text(name: str) -> bool:
     return name.endswith((".c", ".h", ".py", ".md", "Makefile")) or name in (
         "scripts/bootstrap",
+        "scripts/deb",
         "scripts/venv",
         ".ci/run",
     )

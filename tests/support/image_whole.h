@@ -26,7 +26,7 @@ static inline bool image_whole(const char *path, const char *channel, int thread
 {
     const image_taker to = {out, whole_begin, whole_take};
     *out = (image){0};
-    if (image_read(path, channel, threads, &to, range, e))
+    if (image_read(path, channel, threads, NULL, &to, range, e))
         return true;
     free(out->v);
     *out = (image){0};

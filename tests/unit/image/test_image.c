@@ -982,7 +982,7 @@ static void a_callback_stops_the_writing(void **state)
         for (int calls = 1; calls <= 2; calls++) {
             errors e = {0};
             int left = calls;
-            const progress p = {stop_at_once, &left};
+            const progress p = {.show = stop_at_once, .user = &left};
             image_form form = k ? png : planes_form;
             form.threads = 1;
             image_writer *w = open[k](in_folder("stopped"), &form, &e);

@@ -60,6 +60,28 @@ static void diagonal_neighbours_have_the_same_colour(void **state)
     color_texture_free(p);
 }
 
+/* Numbers from REAL_WHOLE / 2 on have halves and no smaller fraction; from REAL_WHOLE on they are whole. */
+static void a_distant_field_has_one_of_the_two_colours(void **state)
+{
+    (void)state;
+    color_texture *p = color_checker_new(COLORS, (const double[2]){1, 1}, (const double[2]){0, 0});
+    const double half = (double)REAL_WHOLE / 2;
+    for (int k = -9; k <= 9; k++)
+        for (int side = -1; side <= 1; side += 2) {
+            const double field = side * half + k / 2.0;
+            const bool is_odd = fmod(floor(field), 2) != 0;
+            (is_odd ? odd : even)(look_up(p, field, 0.5));
+            (is_odd ? odd : even)(look_up(p, 0.5, field));
+            assert_true(real_floor((real)field) == (real)floor(field));
+        }
+    const double far[] = {2 * half + 1, -2 * half - 1, 1e30, -1e30, HUGE_VAL, -HUGE_VAL, NAN};
+    for (int k = 0; k < 7; k++) {
+        const vec3 got = look_up(p, far[k], 0.5);
+        assert_true((got.x == 1 && got.z == 0) || (got.x == 0.25 && got.z == 1));
+    }
+    color_texture_free(p);
+}
+
 /* ---- images ---- */
 
 enum { WIDTH = 3, HEIGHT = 2 };
@@ -75,7 +97,7 @@ static texels *pixels(map_wrap wrap, map_layout *l)
         v[4 * k + 3] = 1;
     }
     *l = (map_layout){.size = {3, 2}, .wrap = wrap};
-    texels *t = texels_new(&(image){WIDTH, HEIGHT, v}, l);
+    texels *t = texels_new(&(image){WIDTH, HEIGHT, v}, l, NULL);
     assert_non_null(t);
     return t;
 }
@@ -146,7 +168,7 @@ static void an_image_of_one_row_is_refused(void **state)
     (void)state;
     float v[8] = {0};
     const map_layout l = {.size = {1, 1}};
-    assert_null(texels_new(&(image){2, 1, v}, &l));
+    assert_null(texels_new(&(image){2, 1, v}, &l, NULL));
 }
 
 int main(void)
@@ -155,6 +177,7 @@ int main(void)
         cmocka_unit_test(the_field_at_the_offset_has_the_first_colour),
         cmocka_unit_test(neighbours_have_the_other_colour),
         cmocka_unit_test(diagonal_neighbours_have_the_same_colour),
+        cmocka_unit_test(a_distant_field_has_one_of_the_two_colours),
         cmocka_unit_test(each_pixel_in_the_middle_of_its_cell),
         cmocka_unit_test(bilinear_between_pixels),
         cmocka_unit_test(nearest_is_constant_on_a_pixel),
