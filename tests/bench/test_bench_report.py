@@ -167,7 +167,8 @@ def test_reach_stops_at_the_first_that_is_too_wrong() -> None:
 
 
 @pytest.mark.parametrize(("cells", "expected"), [
-    (({"none": 0.5, "0": 0.1, "2": 0.0}, {"none": 2.0, "0": 0.9, "2": 0.9}), "bump only to 0.1, order 0 to the end (0.2)"),
+    (({"none": 0.5, "0": 0.1, "2": 0.0}, {"none": 2.0, "0": 0.9, "2": 0.9}),
+     "bump only to 0.1, order 0 to the end (0.2)"),
     (({"none": 0.5, "0": 0.1, "2": 0.0}, {"none": 2.0, "0": 2.0, "2": 1.1}), "bump only to 0.1; beyond, none of these"),
     (({"none": 5.0, "0": 4.0, "2": 3.0}, {"none": 2.0, "0": 2.0, "2": 1.1}), "none of these is good enough"),
     ((None, None), "nothing measured"),
