@@ -435,6 +435,7 @@ typedef struct kage_stats {
     const kage_order_count *orders;
     int64_t undefined; /* samples where P, n', the shift or the light had no value (docs/scene.md, "Without a value") */
     int undefined_object; /* the first object with such a sample, index into kage_scene_info.objects; -1: none */
+    int64_t memory;       /* the most bytes that the scene's family and its films have taken, as kage_limits counts */
 } kage_stats;
 
 /* What rendering the film counted. */
