@@ -92,18 +92,20 @@ def main() -> int:
     parser.add_argument("--few", type=int, default=3, help="properties a scene, besides the builds (3)")
     parser.add_argument("--all", action="store_true", help="all properties of each scene")
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1)
+    parser.add_argument("--builds", default=",".join(BUILDS), help="those of them that are compared (all)")
     parser.add_argument("--built", action="store_true", help="the builds are fresh")
     asked = parser.parse_args()
-    for build in () if asked.built else BUILDS:
+    builds = asked.builds.split(",")
+    for build in () if asked.built else builds:
         make(build, asked.jobs)
     begun = time.monotonic()
     with tempfile.TemporaryDirectory() as folder:
-        lab = Lab({build: folder_of(build) for build in BUILDS}, Path(folder))
+        lab = Lab({build: folder_of(build) for build in builds}, Path(folder))
         looked, bad = run(lab, range(asked.first, asked.first + asked.count), 99 if asked.all else asked.few)
         lab.end()
     print(", ".join(f"{name} {count}" for name, count in sorted(looked.items())))
     return record("scenes", f"python -m tests.verify.scenes --count {asked.count}",
-                  {"random scenes": asked.count, "builds": len(BUILDS), "comparisons": sum(looked.values()),
+                  {"random scenes": asked.count, "builds": len(builds), "comparisons": sum(looked.values()),
                    "pictures": lab.pictures, "minutes": round((time.monotonic() - begun) / 60)}, bad)
 
 
