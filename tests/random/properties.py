@@ -357,8 +357,8 @@ def precision(lab: Lab, scene: Scene, _: Draw) -> str:
 PROPERTIES: dict[str, Property] = {
     found.__name__: found for found in (
         builds, threads, crops, larger, far_objects, reversed_objects, channels, fresh, list_of_copies, brightness,
-        deeper, samples, no_height, moves, mirrors, exchanges, lower_plane, quarter_turns, same_view, first_hits, program,
-        precision)}
+        deeper, samples, no_height, moves, mirrors, exchanges, lower_plane, quarter_turns, same_view, first_hits,
+        program, precision)}
 
 
 def check(lab: Lab, scene: Scene, name: str, seed: int) -> str | None:
