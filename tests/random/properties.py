@@ -70,12 +70,18 @@ FIXED = [*COLOURS, "uw"]
 
 
 def plain(scene: Scene) -> Scene:
-    """Without adaptive samples, whose choice a rounding may change; the method not `auto`, whose steps depend on the
-    size of a pixel against the last digits."""
+    """Without what a last digit may change as a whole: adaptive samples, and `auto`, whose steps depend on the size of
+    a pixel (march:4 in its place). And without a march to the light over plateaus: its last step is where the way has
+    just risen to Pmax, so a plateau at Pmax is neither below the way nor above it."""
     made = scene.copy()
-    made.tree["render"].pop("aa_threshold", None)
-    if str(made.tree["render"].get("shadow")).startswith("auto"):
-        made.tree["render"]["shadow"] = "march:4"
+    how = made.tree["render"]
+    how.pop("aa_threshold", None)
+    if str(how.get("shadow")).startswith("auto"):
+        how["shadow"] = "march:4"
+    bumps = [thing["bump"] for thing in made.tree["objects"].values() if "bump" in thing]
+    level = ("select", "mod", "clamp", "smoothstep")
+    if any(word in bump.get("function", "") or bump.get("wrap") == word for bump in bumps for word in level):
+        how["bump_shadow"] = "none"
     return made
 
 
