@@ -24,6 +24,7 @@ OBJCOPY  ?= objcopy
 PREFIX   ?= /usr/local
 LIBDIR   ?= $(PREFIX)/lib
 LIBEXEC  ?= $(PREFIX)/libexec/kage
+SHARE    ?= $(PREFIX)/share
 PYTHON   ?= scripts/venv python
 Q         = $(if $(V),,@)
 comma    := ,
@@ -51,6 +52,14 @@ THREADS   = -pthread -Wno-unknown-pragmas
 else
 THREADS   = -pthread -fopenmp
 endif
+ifneq ($(findstring thread,$(SANITIZE)),)
+ifneq ($(CLONES),no)
+$(error SANITIZE=thread needs CLONES=no: functions that choose their copy run before the sanitizer is ready)
+endif
+endif
+# Names of files with spaces would be two for make.
+$(foreach v,BUILD PREFIX LIBDIR LIBEXEC DESTDIR,$(if $(word 2,$($v)),\
+    $(error $v=$($v): a name with spaces, expected one without)))
 ifneq ($(SANITIZE),)
 SANITIZER = -fsanitize=$(SANITIZE) -fno-sanitize-recover=all -fno-omit-frame-pointer -g
 endif
@@ -96,11 +105,12 @@ GALLERY   = $(patsubst scenes/gallery/%.yaml,%,$(wildcard scenes/gallery/*.yaml)
 
 # What `make format` and `make lint` look at. The yardsticks in bench/limits are compiled by themselves.
 C_FILES   = $(wildcard include/*.h src/*/*.[ch] examples/*.c python/*.[ch] tests/support/*.h tests/unit/*/*.[ch] \
-                       tests/random/*.c bench/limits/*.c)
+                       tests/fuzz/*.[ch] tests/random/*.c bench/limits/*.c)
 TIDY      = $(filter-out bench/limits/% $(if $(filter yes,$(VIEW)),,src/view/%),$(filter %.c,$(C_FILES)))
 
 .PHONY: all render bench speed readme reference accept counts test unit-tests program-tests programs sanitize format
-.PHONY: dist docs lint tidy same python wheel install install-files uninstall clean help bootstrap FORCE
+.PHONY: dist docs manuals lint tidy same python wheel install install-files uninstall clean help bootstrap FORCE
+.PHONY: fuzz fuzz-program fuzz-replay
 all: bootstrap
 	@$(MAKE) --no-print-directory $(JOBS) programs
 
@@ -121,10 +131,12 @@ help:
 	@echo 'make counts     count the instructions of eight renders again, and keep them for the test'
 	@echo 'make reference  render stale reference pictures with POV-Ray, into reference/'
 	@echo 'make sanitize   unit tests, and some program tests, under ASan, UBSan and TSan'
+	@echo 'make fuzz       fuzz the targets of tests/fuzz, FUZZ_SECONDS=30 each; make fuzz-replay runs its finds'
 	@echo 'make lint       check style, likely mistakes and types; make format applies the style'
 	@echo 'make same       compare all pictures with another commit, REV=COMMIT, ONLY=TEXT in their names'
 	@echo 'make dist       the source archive of HEAD, out/kage-$(VERSION).tar.gz; scripts/deb: Debian packages'
 	@echo 'make docs       the documentation as pages, into out/docs/index.html'
+	@echo 'make manuals    the manual pages and docs/kage.md again, from what they are made from'
 	@echo 'make install    install program, library and headers to PREFIX ($(PREFIX)), under DESTDIR'
 	@echo 'make uninstall  remove what install has put there'
 	@echo 'make clean      remove build/ and out/'
@@ -138,10 +150,11 @@ bootstrap:
 
 render: all
 	@CC='$(CC)' scripts/bootstrap python
-	@$(MAKE) --no-print-directory $(PICTURES) out/figures.png out/gallery.png out/gallery/index.html
-	@$(MAKE) --no-print-directory out/relief.png # when nothing else runs, as it is timed
+	@$(MAKE) --no-print-directory $(PICTURES) out/figures.png out/gallery.png $(GALLERY:%=out/gallery/%.png)
+	@$(MAKE) --no-print-directory -j1 out/gallery/index.html out/relief.png # when nothing else runs, as they are timed
+	@scripts/venv python -m scripts.start_page
 	@echo 'The pictures are in out/, those of the paper side by side in out/figures.png, with the truth in out/relief.png,'
-	@echo 'the gallery in out/gallery/index.html and out/gallery.png:'
+	@echo 'the gallery in out/gallery/index.html and out/gallery.png; out/index.html leads to all:'
 	@ls $(PICTURES) $(PICTURES:.png=.exr) out/figures.png $(GALLERY:%=out/gallery/%.png)
 
 # A picture is a scene and a method; its EXR is written along with it.
@@ -171,7 +184,7 @@ out/figures.png: $(PICTURES) scripts/contact_sheet.py
 out/relief.png: $(BUILD)/kage $(wildcard scenes/*.yaml scenes/data/*) scripts/relief_sheet.py scripts/contact_sheet.py
 	scripts/venv python -m scripts.relief_sheet --kage $(BUILD)/kage -o $@
 
-# Each scene of the gallery by none, and by the method that it says itself.
+# Each scene of the gallery by bump mapping only, and by the method that it says itself.
 out/gallery/%-none.png: scenes/gallery/%.yaml $(BUILD)/kage
 	@mkdir -p out/gallery
 	$(BUILD)/kage render $< --shadow none --shade smooth --bump-shadow none --aa 3 -o $@
@@ -182,12 +195,13 @@ out/gallery/%.png: scenes/gallery/%.yaml $(BUILD)/kage
 
 out/gallery.png: $(SHOWN:%=out/gallery/%-none.png) $(SHOWN:%=out/gallery/%.png) scripts/contact_sheet.py
 	scripts/venv python scripts/contact_sheet.py -o $@ --columns 3 \
-	    --title "Above, bump mapping alone; below, the same scenes by their best method" \
-	    $(foreach s,$(SHOWN),out/gallery/$(s)-none.png="$(s): none") \
+	    --title "Above, bump mapping only; below, the same scenes by their best method" \
+	    $(foreach s,$(SHOWN),out/gallery/$(s)-none.png="$(s): bump mapping only") \
 	    $(foreach s,$(SHOWN),out/gallery/$(s).png="$(s): kage")
 
 out/gallery/index.html: $(GALLERY:%=out/gallery/%-none.png) $(GALLERY:%=out/gallery/%.png) scripts/gallery.py
-	scripts/venv python scripts/gallery.py -o $@ $(GALLERY:%=scenes/gallery/%.yaml)
+out/gallery/index.html: scripts/page_of.py $(wildcard bench/templates/*)
+	scripts/venv python -m scripts.gallery --kage $(BUILD)/kage -o $@ $(GALLERY:%=scenes/gallery/%.yaml)
 
 # ---- the program ----
 
@@ -197,7 +211,7 @@ $(BUILD)/kage: $(PROGRAM:%=$(BUILD)/%.o) $(BUILD)/base/spelling.o $(BUILD)/libka
 	@echo '  LD  $@'
 	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(LIBS)
 
-$(BUILD)/kage-import: $(IMPORT:%=$(BUILD)/%.o)
+$(BUILD)/kage-import: $(IMPORT:%=$(BUILD)/%.o) $(BUILD)/base/files.o
 	@echo '  LD  $@'
 	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(IMPORT_LIBS)
 
@@ -266,9 +280,10 @@ $(BUILD)/unit/api/test_memory: private override LDFLAGS += $(WRAPPED:%=-Wl,--wra
 
 # ---- fuzzing ----
 
-# All targets in one program, which runs that of its name: with libFuzzer (clang), or over files with plain main.
-FUZZ      = $(patsubst tests/%.c,%,$(wildcard tests/fuzz/*.c))
-FUZZED    = $(filter-out fuzz/engine fuzz/replay fuzz/letters,$(FUZZ))
+# All targets in one program, which runs that of its name: with libFuzzer (clang), or over files with a plain main.
+FUZZED    = $(filter-out fuzz/engine fuzz/replay fuzz/letters,$(patsubst tests/%.c,%,$(wildcard tests/fuzz/*.c)))
+FUZZ_CC  ?= clang
+FUZZ_INPUTS = tests/fuzz/finds
 
 $(BUILD)/fuzz/kage-fuzz: $(FUZZED:%=$(BUILD)/%.o) $(BUILD)/fuzz/engine.o $(BUILD)/internal.a | $(BUILD)/fuzz/letters
 	@echo '  LD  $@'
@@ -283,6 +298,22 @@ $(BUILD)/fuzz/letters: tests/fuzz/letters.c src/mesh/letter.h
 	@echo '  LD  $@'
 	@mkdir -p $(@D)
 	$(Q)$(CC) -Iinclude -Isrc $(STANDARD) -O1 -o $@ $<
+
+fuzz-program:
+	@scripts/bootstrap build fuzz
+	@$(MAKE) --no-print-directory $(JOBS) $(SANE) CC='$(FUZZ_CC)' OPENMP=no BUILD=build/fuzz \
+	    SANITIZE=fuzzer-no-link,address,undefined CFLAGS=-DFUZZING_BUILD_MODE_UNSAFE_FOR_PRODUCTION \
+	    build/fuzz/fuzz/kage-fuzz
+
+# Each target for so long; scripts/fuzz has more options.
+FUZZ_SECONDS = 30
+fuzz:
+	scripts/fuzz --seconds $(FUZZ_SECONDS)
+
+# The finds that are kept as tests; or FUZZ_INPUTS='TARGET FILE...'
+fuzz-replay: bootstrap
+	@$(MAKE) --no-print-directory $(JOBS) $(BUILD)/fuzz/replay
+	$(BUILD)/fuzz/replay $(FUZZ_INPUTS)
 
 # ---- the Python package ----
 
@@ -343,7 +374,7 @@ unit-tests: $(UNITS:%=$(BUILD)/%)
 $(UNITS:%=run-%): run-%: $(BUILD)/% $(BUILD)/kage-import
 	@KAGE_IMPORT=$(BUILD)/kage-import $< >$<.log 2>&1 && echo '  OK  $<' || { cat $<.log; echo '  FAILED  $<'; exit 1; }
 
-program-tests: programs python
+program-tests: programs python $(BUILD)/fuzz/replay
 	@$(MAKE) --no-print-directory $(JOBS) REAL=double build/double/kage python
 	scripts/venv python -m pytest -q -n auto --dist loadfile tests # a file's tests share what they make
 
@@ -353,11 +384,13 @@ bench: all
 	@$(MAKE) --no-print-directory $(JOBS) python || echo 'bench: going on without the package, which is slower' >&2
 	@python=.venv/bin/python; scripts/venv || python=python3; \
 	    $$python -m bench --level $(BENCH) --kage $(BUILD)/kage $(SCHEDULER:%=--scheduler %) || [ $$? -eq 3 ]
+	@scripts/venv python -m scripts.start_page || echo "bench: out/index.html is left out" >&2
 
 # Each bound of docs/performance.md, with the peers, in one table; SPEED=quick|normal|full.
 speed: all
 	@CC='$(CC)' scripts/bootstrap python povray valgrind || echo 'speed: going on without what is missing' >&2
 	scripts/venv python -m bench.speed --level $(SPEED) --kage $(BUILD)/kage || [ $$? -eq 3 ]
+	@scripts/venv python -m scripts.start_page
 
 # The README's tables and pictures, and those of docs/.
 readme: render bench
@@ -382,7 +415,7 @@ counts: all
 # The clones' resolvers run before a sanitizer is ready; and stages in AVX2 have no other accesses than those in SSE2.
 SANE      = CLONES=no OPTIMISE='-O1 -fno-math-errno -fno-trapping-math -ffp-contract=off'
 # Those that read every kind of input, right and wrong, and run every command.
-SANE_TESTS = $(addprefix tests/program/test_,cli.py input.py mesh.py import.py)
+SANE_TESTS = $(addprefix tests/program/test_,cli.py input.py mesh.py import.py fuzz.py)
 
 # Threads of one process on libkage, without OpenMP, whose barriers ThreadSanitizer does not see (see tsan.supp).
 TSAN      = $(SANE) OPENMP=no BUILD=build/tsan SANITIZE=thread
@@ -390,10 +423,11 @@ TSAN      = $(SANE) OPENMP=no BUILD=build/tsan SANITIZE=thread
 sanitize: all
 	@CC='$(CC)' scripts/bootstrap test python
 	@LSAN_OPTIONS=suppressions=tests/support/lsan.supp:print_suppressions=0 $(MAKE) --no-print-directory $(JOBS) \
-	    $(SANE) BUILD=build/asan SANITIZE=address,undefined unit-tests build/asan/kage
+	    $(SANE) BUILD=build/asan SANITIZE=address,undefined unit-tests build/asan/kage build/asan/fuzz/replay
 	@TSAN_OPTIONS=suppressions=tests/support/tsan.supp \
 	    $(MAKE) --no-print-directory $(JOBS) $(TSAN) run-unit/api/test_threads
 	KAGE=build/asan/kage scripts/venv python -m pytest -q -n auto --dist loadfile $(SANE_TESTS)
+	@$(MAKE) --no-print-directory fuzz
 
 # ---- style ----
 
@@ -427,13 +461,25 @@ same: all
 dist:
 	@python3 -m scripts.dist
 
+# Manual pages and docs/kage.md, after a change of options, docs/scene.md or the headers.
+manuals: all
+	@CC='$(CC)' scripts/bootstrap python
+	scripts/venv python -m scripts.man --kage $(BUILD)/kage
+
 docs:
 	@CC='$(CC)' scripts/bootstrap python
-	scripts/venv python -m scripts.docs
+	scripts/venv python -m mkdocs build --strict --quiet
+	@echo "the pages are in out/docs/index.html"
 
-# LIBDIR, LIBEXEC: of the library, and of kage-import, where they are not in PREFIX/lib and PREFIX/libexec/kage.
+# LIBDIR, LIBEXEC, SHARE: of the library, of kage-import, and of manuals and completions, where they are not in
+# PREFIX/lib, PREFIX/libexec/kage and PREFIX/share.
 install: all
 	@$(MAKE) --no-print-directory install-files
+
+# Manuals, and the completions of shells: a file, and where it goes below SHARE.
+MANUALS   = man1/kage.1 man3/kage.3 man3/bumpshadow.3 man5/kage-scene.5
+SHELLS    = kage.bash:bash-completion/completions/kage _kage:zsh/site-functions/_kage \
+            kage.fish:fish/vendor_completions.d/kage.fish
 
 # The same of what is built already.
 install-files: $(BUILD)/kage.pc
@@ -446,8 +492,11 @@ install-files: $(BUILD)/kage.pc
 	install -m 755 $(BUILD)/$(SONAME) $(DESTDIR)$(LIBDIR)/$(SONAME)
 	ln -sf $(SONAME) $(DESTDIR)$(LIBDIR)/libkage.so
 	install -m 644 $(BUILD)/kage.pc $(DESTDIR)$(LIBDIR)/pkgconfig/kage.pc
+	$(foreach m,$(MANUALS),install -D -m 644 man/$(notdir $(m)) $(DESTDIR)$(SHARE)/man/$(m) &&) true
+	$(foreach s,$(SHELLS),install -D -m 644 completions/$(subst :, $(DESTDIR)$(SHARE)/,$(s)) &&) true
 
 uninstall:
+	rm -f $(MANUALS:%=$(DESTDIR)$(SHARE)/man/%) $(foreach s,$(SHELLS),$(DESTDIR)$(SHARE)/$(lastword $(subst :, ,$(s))))
 	rm -f $(DESTDIR)$(PREFIX)/bin/kage $(DESTDIR)$(LIBEXEC)/kage-import $(DESTDIR)$(LIBEXEC)/kage-view \
 	    $(DESTDIR)$(PREFIX)/include/kage.h \
 	    $(DESTDIR)$(PREFIX)/include/bumpshadow.h $(DESTDIR)$(PREFIX)/include/bumpshadow.glsl \

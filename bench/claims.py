@@ -461,7 +461,7 @@ def speed(report: Report) -> Claim:
         "speed", "kage",
         f"On figure 5's scene kage by {BUMP_ONLY}, and by order 0, is at least {FASTER:g} times as fast as POV-Ray's "
         "bump_map.",
-        "README.md, docs/design.md",
+        "docs/accuracy.md, docs/design.md",
         f"POV-Ray's time is at least {FASTER:g} times kage's, by the interval of the rounds' ratios; one thread each.",
         [speed_case(report, method) for method in ("none", "0")])
 
@@ -471,7 +471,7 @@ def order_0(report: Report) -> Claim:
     case: Case = (unmeasured(PAPER_SCENE, "the time") if added is None else
                   {"case": PAPER_SCENE, "verdict": at_most(added, ORDER_0_COST), "detail": added_text(added)})
     return made("order-0", "kage", f"On figure 5's scene order 0 costs at most {ORDER_0_COST:g} % over {BUMP_ONLY}.",
-                "README.md, docs/design.md",
+                "docs/accuracy.md, docs/design.md",
                 f"At most {ORDER_0_COST:g} % over the time by {BUMP_ONLY}, by the interval of the rounds' differences.",
                 [case])
 
@@ -511,7 +511,7 @@ def parity_cases(scene: str, found: Parity) -> list[Case]:
 
 def parity(report: Report) -> Claim:
     return made(
-        "parity", "kage", "kage's own displacement looks like POV-Ray's.", "README.md",
+        "parity", "kage", "kage's own displacement looks like POV-Ray's.", "docs/accuracy.md",
         f"At least {LEAST_CLOSE['self']:g} % of the pixels are within 1/255 where rough surfaces also cast shadows "
         f"(self), and at least {LEAST_CLOSE['cast']:g} % where only other objects do (cast). "
         f"At most {MOST_DIFFERENT:g} % of the shadow's pixels differ (mask).",

@@ -49,8 +49,9 @@
 extern "C" {
 #endif
 
-/* The largest values of some options: pixels along a side of a picture, samples along a side of a pixel, threads. */
-enum { KAGE_MAX_SIDE = 32768, KAGE_MAX_AA = 16, KAGE_MAX_THREADS = 1024 };
+/* The largest values of some options: pixels along a side of a picture, samples along a side of a pixel, threads, K of
+ * iter:K and N of march:N. */
+enum { KAGE_MAX_SIDE = 32768, KAGE_MAX_AA = 16, KAGE_MAX_THREADS = 1024, KAGE_MAX_STEPS = 1024 };
 
 /* The version of the library; KAGE_VERSION is that of this header. */
 KAGE_API const char *kage_version(void);
@@ -66,7 +67,8 @@ typedef enum kage_status {
     KAGE_BAD_OPTION,  /* an option or argument of the call is wrong */
     KAGE_NOT_WRITTEN, /* the output can't be written */
     KAGE_NO_MEMORY,
-    KAGE_CANCELLED /* by the progress callback */
+    KAGE_CANCELLED,  /* by the progress callback */
+    KAGE_OUT_OF_TIME /* by kage_limits.seconds */
 } kage_status;
 
 typedef struct kage_errors kage_errors;
@@ -121,6 +123,16 @@ typedef struct kage_mesh_array {
     const uint32_t *triangles;               /* 3 vertices each */
 } kage_mesh_array;
 
+/* What a call may take (docs/limits.md). Zero: the default. */
+typedef struct kage_limits {
+    int64_t memory; /* bytes that a scene, those that are changed from it, and their films may take together while the
+                     * call runs. What would take more is refused before it is taken, with KAGE_NO_MEMORY and the figure
+                     * that it needs. 0: 7/8 of the machine's memory; below 0: no limit */
+    double seconds; /* of the call, by the wall clock; then it ends as if it were cancelled, with KAGE_OUT_OF_TIME. 0:
+                     * no limit */
+    void *reserved[6];
+} kage_limits;
+
 typedef struct kage_load_options {
     const char *const *sets; /* set_count changes of the scene, PATH=VALUE as for `kage render --set` */
     int set_count;
@@ -131,13 +143,17 @@ typedef struct kage_load_options {
     /* The program that reads models (OBJ, PLY, STL, glTF, OFF, COLLADA, FBX, 3DS). NULL: the environment's KAGE_IMPORT;
      * without that kage-import in the folder of libkage.so (or of the program that libkage.a is in), in ../libexec/kage
      * from there, or in libexec/kage of the prefix that the library was installed to. Without the program a scene with
-     * a model is an error of the scene; other scenes do not need it. It has limited time (3 s and 1 s a MiB) and memory
+     * a model is an error of the scene; other scenes do not need it. It has limited time (3 s of a processor and 1 s a
+     * MiB, ten times as much by the clock) and memory
      * (512 MiB and 96 times the file); a model that crashes it is an error of the scene, too. */
     const char *model_reader;
     const kage_image_array *images;
     const kage_mesh_array *meshes;
     int image_count, mesh_count;
-    void *reserved[5];
+    const kage_limits *limits; /* NULL: the defaults; of kage_scene_change: those of `scene` */
+    long survey; /* not 0: only what kage_scene_get_info and kage_scene_survey need is built now, and what displaced
+                  * surfaces, `exact` and `horizon` need at the first render: of a map ten times its memory */
+    void *reserved[3];
 } kage_load_options;
 
 /* Read the scene in the file at `path`. options: NULL for the defaults. The list has all errors that were found. */
@@ -236,6 +252,15 @@ KAGE_API kage_status kage_scene_write(const kage_scene *scene, const char *path,
 /* Whether the file at `path`, links followed, was read for the scene, so that no output should replace it. */
 KAGE_API int kage_scene_uses_file(const kage_scene *scene, const char *path);
 
+/* Called by kage_file_paths. path: as before the `=` of a change; value: the text of a scalar, NULL for a map or a
+ * list.
+ */
+typedef void kage_path_call(void *user, const char *path, const char *value);
+
+/* Tell every path that a change of the scene in the file can have, in the order of the file: for shells and editors.
+ * The file is read as YAML alone, so this is quick and it need not be a good scene. call: in the caller's thread. */
+KAGE_API kage_status kage_file_paths(const char *path, kage_path_call *call, void *user, kage_errors **errors);
+
 /* Whether `word` is "color", the name of a plane of the scene's films, or what stands before its dot ("N", "uw",
  * "visibility"): what kage_write_options.layers has. */
 KAGE_API int kage_scene_has_layer(const kage_scene *scene, const char *word);
@@ -248,21 +273,22 @@ typedef enum kage_choice { KAGE_AS_SCENE, KAGE_YES, KAGE_NO } kage_choice;
 typedef struct kage_render_options {
     const char *method; /* where shadow rays start: none 0 1 2 2+ iter:K march:N exact auto[:E]; NULL: as the scene */
     kage_choice guard;  /* keep to the slab between the lowest and highest P */
-    kage_choice displaced;   /* yes: bumped objects are truly displaced surfaces; no: bump mapping */
-    kage_choice self_shadow; /* bumped objects cast shadows */
-    int width, height;       /* in pixels, 1 to KAGE_MAX_SIDE; both 0: as the scene says */
-    int crop[4];             /* x0 y0 x1 y1: only pixels x0 <= x < x1, y0 <= y < y1; all 0: the whole picture */
-    int aa;                  /* aa x aa samples a pixel, 1 to KAGE_MAX_AA; 0: as the scene says */
-    double aa_threshold;     /* aa only where neighbours differ by more, above 0 and up to 3; 0: as the scene says */
-    int layers;              /* not 0: the film has the other planes besides R, G and B */
-    int timing;              /* not 0: kage_stats.stages are timed, which costs about 1 % */
-    int threads;             /* 1 to KAGE_MAX_THREADS; 0: as many as there are processors */
-    kage_progress *progress; /* NULL: none */
-    void *user;              /* for progress */
-    const char *bump_shadow; /* the bumps' own shadows: none march:N horizon exact; NULL: as the scene says */
-    kage_choice shifted;     /* yes: shade where the shadow rays start; no: at the smooth hit */
-    struct kage_film *reuse; /* a film that is no longer needed: see kage_render. NULL: none */
-    void *reserved[5];
+    kage_choice displaced;     /* yes: bumped objects are truly displaced surfaces; no: bump mapping */
+    kage_choice self_shadow;   /* bumped objects cast shadows */
+    int width, height;         /* in pixels, 1 to KAGE_MAX_SIDE; both 0: as the scene says */
+    int crop[4];               /* x0 y0 x1 y1: only pixels x0 <= x < x1, y0 <= y < y1; all 0: the whole picture */
+    int aa;                    /* aa x aa samples a pixel, 1 to KAGE_MAX_AA; 0: as the scene says */
+    double aa_threshold;       /* aa only where neighbours differ by more, above 0 and up to 3; 0: as the scene says */
+    int layers;                /* not 0: the film has the other planes besides R, G and B */
+    int timing;                /* not 0: kage_stats.stages are timed, which costs about 1 % */
+    int threads;               /* 1 to KAGE_MAX_THREADS; 0: as many as there are processors */
+    kage_progress *progress;   /* NULL: none */
+    void *user;                /* for progress */
+    const char *bump_shadow;   /* the bumps' own shadows: none march:N horizon exact; NULL: as the scene says */
+    kage_choice shifted;       /* yes: shade where the shadow rays start; no: at the smooth hit */
+    struct kage_film *reuse;   /* a film that is no longer needed: see kage_render. NULL: none */
+    const kage_limits *limits; /* NULL: the scene's memory, and any time */
+    void *reserved[4];
 } kage_render_options;
 
 /* The best picture for its cost: options.method, options.bump_shadow, and options.shifted = KAGE_YES. */
@@ -327,7 +353,8 @@ typedef struct kage_write_options {
     int resume;              /* not 0: see kage_render_file */
     int band;                /* of kage_render_file: rows of a band, a multiple of 16; 0: 64 MiB or more */
     const char *format;      /* "png" or "exr"; NULL: what the path ends in */
-    void *reserved[6];
+    const kage_limits *limits; /* NULL: the film's memory, and any time. kage_render_file has those of `render` */
+    void *reserved[5];
 } kage_write_options;
 
 /* Write a film. Where `path` ends in ".png" or ".PNG": R, G and B in sRGB; in ".exr": planes as 32-bit floats, linear,
@@ -440,7 +467,8 @@ typedef struct kage_probe {
     double slab[2];   /* tau where the ray enters and leaves the slab between Pmin and Pmax */
     int row_count;
     const kage_probe_row *rows;
-    int sends; /* the material has secondary rays, whose light is in no row */
+    int sends;     /* the material has secondary rays, whose light is in no row */
+    int undefined; /* P, n' or the surface has no value here: P is 0, n' is n, and no method shifts */
 } kage_probe;
 
 /* Trace the ray of pixel x, y by each method, on the smooth surfaces. */
@@ -456,7 +484,8 @@ typedef struct kage_bump_survey {
     /* A step from one value of a map's samples to the next: as a height in scene units, and the median of the slope
      * that it makes where two neighbours differ by it. 0: no map, or one of floats. */
     double step, step_slope;
-    double distance; /* of the samples from the eye, in the median */
+    double distance;  /* of the samples from the eye, in the median */
+    double undefined; /* P has no value there, in per cent of the samples; slopes and fell_back are of the others */
 } kage_bump_survey;
 
 typedef enum kage_warning_code {
@@ -466,8 +495,9 @@ typedef enum kage_warning_code {
     KAGE_WARN_FALLS_BACK,     /* value: of fell_back, above bound: the view is flat against the bumps for its order */
     KAGE_WARN_STEPS,          /* value: step_slope, above bound: the steps of a map's few bits are seen */
     KAGE_WARN_SCALE,          /* value: a scale that would be usual; bound: what slope_95 is above, or below */
-    KAGE_WARN_ZERO            /* all of P is farther than bound from 0. value: a usual `zero` of the map; without a map
+    KAGE_WARN_ZERO,           /* all of P is farther than bound from 0. value: a usual `zero` of the map; without a map
                                * what a usual function would be lower by */
+    KAGE_WARN_UNDEFINED       /* value: kage_bump_survey.undefined, above 0 */
 } kage_warning_code;
 
 typedef struct kage_warning {
@@ -488,12 +518,13 @@ KAGE_API void kage_survey_free(kage_survey *survey); /* NULL: nothing */
 /* ---- POV-Ray ---- */
 
 typedef struct kage_povray_options {
-    const char *command;     /* for the file's header: what wrote it. NULL: "libkage" */
-    int no_cast;             /* not 0: objects without a bump cast no shadows */
-    kage_choice displaced;   /* as in kage_render_options */
-    kage_progress *progress; /* NULL: none. A call that it cancels leaves no file */
-    void *user;              /* for progress */
-    void *reserved[6];
+    const char *command;       /* for the file's header: what wrote it. NULL: "libkage" */
+    int no_cast;               /* not 0: objects without a bump cast no shadows */
+    kage_choice displaced;     /* as in kage_render_options */
+    kage_progress *progress;   /* NULL: none. A call that it cancels leaves no file */
+    void *user;                /* for progress */
+    const kage_limits *limits; /* NULL: the scene's memory, and any time */
+    void *reserved[5];
 } kage_povray_options;
 
 typedef struct kage_povray_report {
@@ -524,7 +555,8 @@ typedef struct kage_import_options {
     const char *model_reader; /* as in kage_load_options */
     const char *const *sets;  /* set_count changes, only of `scene` below, not of the file */
     int set_count;
-    void *reserved[8];
+    const kage_limits *limits; /* as in kage_load_options */
+    void *reserved[7];
 } kage_import_options;
 
 typedef struct kage_import_report {
@@ -552,8 +584,8 @@ typedef struct kage_method {
 KAGE_API int kage_method_count(void);
 KAGE_API kage_method kage_method_get(int index); /* NULL fields: no such method */
 
-/* Whether `name` is a method for kage_render_options.method, such as "2+" or "iter:4". "bump", for bump mapping only, is
- * another name for "none". */
+/* Whether `name` is a method for kage_render_options.method, such as "2+" or "iter:4". "bump", for bump mapping only,
+ * is another name for "none". */
 KAGE_API int kage_method_is_known(const char *name);
 
 /* The same for the shadows of bumps on their own surface: none march:N horizon exact. */

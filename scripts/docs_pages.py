@@ -29,12 +29,22 @@ def slug(text: str, separator: str = "-") -> str:
     return re.sub(r"[^\w\- ]", "", text.strip().lower()).replace(" ", separator)
 
 
+#: A fenced block, or an indented one after an empty line.
+BLOCK = re.compile(r"^```[^\0]*?^```|(?<=\n\n) {4}.*(?:\n+ {4}.*)*", re.MULTILINE)
+
+
+def blank(found: re.Match[str]) -> str:
+    return re.sub(r"[^\n]", " ", found[0])
+
+
+def without_blocks(text: str) -> str:
+    """With blanks for blocks of code."""
+    return BLOCK.sub(blank, text)
+
+
 def without_code(text: str) -> str:
     """With blanks for blocks and spans of code, in which nothing is a link."""
-    blank = lambda found: re.sub(r"[^\n]", " ", found[0])  # noqa: E731
-    text = re.sub(r"^(```|~~~).*?^\1", blank, text, flags=re.DOTALL | re.MULTILINE)
-    text = re.sub(r"(?:\A|(?<=\n\n))(?: {4}.*\n+)+", blank, text)
-    return re.sub(r"(`+)(?!`).+?(?<!`)\1(?!`)", blank, text)
+    return re.sub(r"(`+)(?!`).+?(?<!`)\1(?!`)", blank, without_blocks(text))
 
 
 def in_tree(page: str, link: str) -> str:
@@ -42,8 +52,10 @@ def in_tree(page: str, link: str) -> str:
     return posixpath.normpath(posixpath.join(posixpath.dirname(page), link))
 
 
-def on_site(path: str) -> str:
-    """Where the site has a file of the tree."""
+def site_path(path: str) -> str:
+    """Where the site has a file of the tree; its first page is docs/index.md, not README.md."""
+    if path == "README.md":
+        return "index.md"
     if path.startswith("docs/"):
         return path.removeprefix("docs/")
     return path if path in OUTSIDE else f"tree/{path}"
@@ -61,10 +73,10 @@ def linked(page: str, text: str) -> dict[str, str]:
 
 def rewritten(page: str, text: str) -> str:
     """A page's text with links as the site needs them."""
-    plain, here = without_code(text), posixpath.dirname(on_site(page))
+    plain, here = without_code(text), posixpath.dirname(site_path(page))
     pieces, end = [], 0
     for link in LINK.finditer(plain):
-        to = posixpath.relpath(on_site(in_tree(page, link["path"])), here or ".")
+        to = posixpath.relpath(site_path(in_tree(page, link["path"])), here or ".")
         pieces += [text[end:link.start()], to + (link["anchor"] or "")]
         end = link.end()
     return "".join([*pieces, text[end:]])
@@ -76,8 +88,8 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
     wanted = {path for page in files.documentation_pages()
               for path in linked(source(page.src_uri), page.content_string).values()}
     for path in sorted(wanted):
-        if on_site(path).startswith("tree/") and (TOP / path).is_file():
-            files.append(File.generated(config, on_site(path), abs_src_path=str(TOP / path)))
+        if site_path(path).startswith("tree/") and (TOP / path).is_file():
+            files.append(File.generated(config, site_path(path), abs_src_path=str(TOP / path)))
     return files
 
 

@@ -17,17 +17,42 @@ typedef struct c_locale {
 c_locale c_locale_begin(void);
 void c_locale_end(c_locale *l);
 
-/* The caller's progress callback. Once it has cancelled, all later calls of progress_show return false. */
+/* The memory that a scene's family and their films take, and its limit. */
+typedef struct allowance {
+    budget *budget; /* owned */
+    int64_t most;   /* bytes; 0: no limit */
+} allowance;
+
+/* A call: the caller's progress callback and limits. Once the callback has cancelled, or the time is over, all later
+ * calls of progress_show return false. */
 typedef struct watch {
     kage_progress *call;
     void *user;
     const c_locale *locale; /* the callback runs in locale->before */
-    bool cancelled;
+    memory memory;
+    double end; /* the clock's time when the call has to end; 0: never */
+    bool cancelled, late;
 } watch;
-progress watch_progress(watch *w);
 
-/* End a call. Returns KAGE_CANCELLED where w (or NULL) was cancelled, KAGE_NO_MEMORY where the errors say so, otherwise
- * `status`. Frees *e. `to`, unless NULL, gets a copy of the errors; NULL where the call succeeded or was cancelled. */
+/* limits: the caller's, or NULL. from: whose memory is taken; NULL: it is not counted. *w must stay where it is. */
+progress watch_begin(watch *w, kage_progress *call, void *user, const c_locale *l, const kage_limits *limits,
+                     const allowance *from);
+
+/* The seconds that are left, above 0; 0: there is no limit. */
+double watch_left(const watch *w);
+
+/* Whether the call has to end, as it was cancelled or has no more time. */
+bool watch_stopped(const watch *w);
+
+/* Whether the limits can be used. False: an error is in *e. */
+bool limits_are_good(const kage_limits *limits, errors *e);
+
+/* The most bytes by limits; NULL: by default. */
+int64_t limits_memory(const kage_limits *limits);
+
+/* End a call. Returns KAGE_CANCELLED or KAGE_OUT_OF_TIME where w (or NULL) was stopped, KAGE_NO_MEMORY where the errors
+ * say so, otherwise `status`. Frees *e. `to`, unless NULL, gets a copy of the errors; NULL where the call succeeded or
+ * was cancelled. */
 kage_status errors_give(errors *e, kage_status status, const watch *w, kage_errors **to);
 
 /* End a call with one message. */
@@ -45,6 +70,7 @@ struct kage_scene {
     /* what a further reading needs; owned */
     char *folder, *model_reader, **set;
     int sets, threads;
+    allowance memory;
     bool from_file; /* first->path is a file's */
     arrays arrays;
     shelf spare; /* of the scene that it is a change of: what its further readings had made */
@@ -58,7 +84,7 @@ bool sets_put(kage_scene *k, const char *set);
 bool arrays_are_good(const kage_load_options *o, errors *e);
 
 /* Copy them. False: out of memory. */
-bool arrays_take(arrays *to, const kage_load_options *o);
+bool arrays_take(arrays *to, const kage_load_options *o, memory *m);
 
 /* What decides which reading of a scene a render needs. */
 typedef struct reading {
@@ -67,8 +93,8 @@ typedef struct reading {
     bump_shadow bump_shadow;
 } reading;
 
-/* The reading for these, read now if needed; locks. It lives as long as k. NULL: errors in *e. */
-const scene *scene_reading(kage_scene *k, reading r, errors *e);
+/* The reading for these, read now if needed, and p is called then; locks. It lives as long as k. NULL: errors in *e. */
+const scene *scene_reading(kage_scene *k, reading r, const progress *p, errors *e);
 
 /* Fill in, and free, k->info. False: out of memory. */
 bool scene_describe(kage_scene *k);
@@ -81,6 +107,7 @@ enum { PICTURE_TEXTS = 7, PICTURE_CROP_SIZE = 64 };
 
 struct kage_film {
     film *film;
+    allowance memory;
     char crop[PICTURE_CROP_SIZE]; /* as a file says it: the part that is on the film */
     char *file, *source, *sets; /* for a picture's metadata: the scene's base name, its text, its changes, one a line */
     char method[METHOD_NAME_SIZE];

@@ -70,19 +70,19 @@ bool arrays_are_good(const kage_load_options *o, errors *e)
     return good && good_names(o, e);
 }
 
-bool arrays_take(arrays *to, const kage_load_options *o)
+bool arrays_take(arrays *to, const kage_load_options *o, memory *m)
 {
     static const image_type types[] = {IMAGE_U8, IMAGE_U16, IMAGE_F32, IMAGE_F64};
     bool good = true;
     for (int k = 0; good && k < o->image_count; k++) {
         const kage_image_array *a = &o->images[k];
         const image_array copy = {a->width, a->height, a->channels, types[a->type], a->samples};
-        good = arrays_add_image(to, a->name, &copy);
+        good = arrays_add_image(to, a->name, &copy, m);
     }
     for (int k = 0; good && k < o->mesh_count; k++) {
         const kage_mesh_array *a = &o->meshes[k];
         const mesh_array copy = {a->vertex_count, a->triangle_count, a->positions, a->normals, a->uvs, a->triangles};
-        good = arrays_add_mesh(to, a->name, &copy);
+        good = arrays_add_mesh(to, a->name, &copy, m);
     }
     return good;
 }

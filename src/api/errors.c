@@ -2,10 +2,12 @@
 #include "api/api.h"
 
 #include <errno.h>
+#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 struct kage_errors {
     int found, count;
@@ -71,7 +73,11 @@ static bool is_memory(const errors *e)
 
 kage_status errors_give(errors *e, kage_status status, const watch *w, kage_errors **to)
 {
-    if (w && w->cancelled)
+    if (w && w->late) {
+        errors_free(e);
+        errors_add(e, "it takes more than the time that it may take (--max-seconds)");
+        status = KAGE_OUT_OF_TIME;
+    } else if (w && w->cancelled)
         status = KAGE_CANCELLED;
     else if (status != KAGE_OK && is_memory(e))
         status = KAGE_NO_MEMORY;
@@ -126,11 +132,20 @@ void c_locale_end(c_locale *l)
     freelocale(l->c);
 }
 
+/* Seconds since some time. */
+static double clock_now(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
 static bool show(void *user, const char *what, double share)
 {
     watch *w = user;
-    if (w->cancelled || !w->call)
-        return !w->cancelled;
+    w->late = w->late || (w->end > 0 && clock_now() > w->end);
+    if (watch_stopped(w) || !w->call)
+        return !watch_stopped(w);
     const bool swaps = w->locale->c != (locale_t)0;
     if (swaps)
         uselocale(w->locale->before);
@@ -140,4 +155,30 @@ static bool show(void *user, const char *what, double share)
     return !w->cancelled;
 }
 
-progress watch_progress(watch *w) { return (progress){show, w}; }
+double watch_left(const watch *w) { return w->end > 0 ? fmax(w->end - clock_now(), 1e-9) : 0; }
+
+bool watch_stopped(const watch *w) { return w->cancelled || w->late; }
+
+bool limits_are_good(const kage_limits *l, errors *e)
+{
+    return !l || (l->seconds >= 0 && l->seconds < HUGE_VAL) ||
+           errors_add(e, "a limit of %g seconds, expected a number above 0, or 0 for none", l->seconds);
+}
+
+int64_t limits_memory(const kage_limits *l)
+{
+    const int64_t asked = l ? l->memory : 0;
+    return asked > 0 ? asked : asked < 0 ? 0 : memory_default();
+}
+
+progress watch_begin(watch *w, kage_progress *call, void *user, const c_locale *locale, const kage_limits *l,
+                     const allowance *from)
+{
+    const bool own = l && l->memory != 0; /* else that of the scene or the film */
+    *w = (watch){.call = call, .user = user, .locale = locale};
+    if (from)
+        w->memory = (memory){.from = from->budget, .limit = own ? limits_memory(l) : from->most};
+    if (l && l->seconds > 0)
+        w->end = clock_now() + l->seconds;
+    return (progress){show, w, &w->memory};
+}

@@ -99,6 +99,7 @@ void kage_film_free(kage_film *f)
     free(f->source);
     free(f->sets);
     free(f->stages);
+    budget_close(f->memory.budget);
     free(f);
 }
 
@@ -122,7 +123,7 @@ bool film_has_layer(const film *f, const char *word, size_t n)
 int kage_scene_has_layer(const kage_scene *k, const char *word)
 {
     errors e = {0};
-    film *f = film_new(k->first, (window){0, 0, 1, 1}, true, 1, NULL, &e);
+    film *f = film_new(k->first, (window){0, 0, 1, 1}, true, 1, NULL, NULL, &e);
     const bool found = f && film_has_layer(f, word, strlen(word));
     film_free(f);
     errors_free(&e);

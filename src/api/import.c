@@ -137,8 +137,8 @@ static bool make_wishes(wishes *w, const char *model, const char *file, const ch
 
 static bool has_bytes(const char *path, const void *bytes, size_t size)
 {
-    struct stat about; /* a pipe would be waited for */
-    FILE *f = stat(path, &about) == 0 && S_ISREG(about.st_mode) ? fopen(path, "rb") : NULL;
+    const char *why;
+    FILE *f = files_open_input(path, &why);
     char *there = f ? malloc(size + 1) : NULL;
     const bool same = there && fread(there, 1, size + 1, f) == size && memcmp(there, bytes, size) == 0;
     free(there);
@@ -208,16 +208,20 @@ static bool write_images(struct import_report *r, const char *file, const kage_i
 /* ---- the call ---- */
 
 /* Read the scene's text as it will stand in the file. */
-static kage_status try_scene(struct import_report *r, const char *file, const kage_import_options *o, kage_errors **to)
+static kage_status try_scene(struct import_report *r, const char *file, const kage_import_options *o, double seconds,
+                             kage_errors **to)
 {
     const int folder = (int)(base_of(file) - file);
     char *path = strndup(file, (size_t)folder);
+    kage_limits left = o->limits ? *o->limits : (kage_limits){0};
+    left.seconds = seconds;
     const kage_load_options how = {.sets = o->sets,
                                    .set_count = o->set_count,
                                    .threads = o->threads,
                                    .progress = o->progress,
                                    .user = o->user,
-                                   .model_reader = o->model_reader};
+                                   .model_reader = o->model_reader,
+                                   .limits = &left};
     if (!path)
         return error_give(KAGE_NO_MEMORY, to, "out of memory");
     const kage_status s = kage_scene_parse(r->made.text, strlen(r->made.text), file, path, &how, &r->shown.scene, to);
@@ -261,15 +265,17 @@ kage_status kage_model_import(const char *model, const char *file, const kage_im
                           o.threads, o.bump_count, o.set_count, KAGE_MAX_THREADS);
     errors e = {0};
     c_locale l = c_locale_begin();
-    watch w = {o.progress, o.user, &l, false};
-    const progress p = watch_progress(&w);
+    watch w;
+    const progress p = watch_begin(&w, o.progress, o.user, &l, o.limits, NULL);
     struct import_report *r = calloc(1, sizeof *r);
-    const bool good = r ? make(r, model, file, &o, &p, &e) : errors_add(&e, "out of memory");
+    const bool good = !limits_are_good(o.limits, &e) ? false
+                      : r                            ? make(r, model, file, &o, &p, &e)
+                                                     : errors_add(&e, "out of memory");
     c_locale_end(&l);
     const kage_status bad = r && r->unwritten ? KAGE_NOT_WRITTEN : KAGE_BAD_INPUT;
     kage_status status = errors_give(&e, good ? KAGE_OK : bad, &w, to);
     if (status == KAGE_OK)
-        status = try_scene(r, file, &o, to);
+        status = try_scene(r, file, &o, watch_left(&w), to);
     if (status == KAGE_OK && !write_file(file, r->made.text, strlen(r->made.text), &e))
         status = errors_give(&e, KAGE_NOT_WRITTEN, NULL, to);
     if (status == KAGE_OK) {

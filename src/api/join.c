@@ -103,7 +103,7 @@ static bool copy(const band *b, int count, const image_form *form, image_writer 
     bool good = true;
     for (int k = 0; good && k < count; k++) {
         progress_part part = {p, NULL, (double)k / count, (k + 1.0) / count};
-        const progress show = {progress_part_show, &part};
+        const progress show = {progress_part_show, &part, p->memory};
         exr_band *file = exr_band_open(b[k].path, e);
         band now = {b[k].path, {0, 0, 0, 0}};
         good = file && read_part(exr_band_form(file), &now, e) &&
@@ -158,9 +158,9 @@ kage_status kage_file_join(const char *const *paths, int count, const char *path
     const kage_write_options o = given ? *given : (kage_write_options){0};
     errors e = {0};
     c_locale l = c_locale_begin();
-    watch w = {o.progress, o.user, &l, false};
-    const progress p = watch_progress(&w);
-    kage_status status = options_are_good(count, path, &e) ? KAGE_OK : KAGE_BAD_OPTION;
+    watch w;
+    const progress p = watch_begin(&w, o.progress, o.user, &l, o.limits, NULL);
+    kage_status status = limits_are_good(o.limits, &e) && options_are_good(count, path, &e) ? KAGE_OK : KAGE_BAD_OPTION;
     band *b = status == KAGE_OK ? calloc((size_t)count, sizeof *b) : NULL;
     exr_band *first = b ? exr_band_open(paths[0], &e) : NULL;
     if (status == KAGE_OK && !b) {

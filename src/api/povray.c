@@ -12,10 +12,10 @@ kage_status kage_scene_write_povray(kage_scene *k, const char *path, const kage_
     pov_report r = {0};
     kage_status status = KAGE_BAD_INPUT;
     c_locale l = c_locale_begin();
-    watch w = {.call = o.progress, .user = o.user, .locale = &l};
-    const progress show = watch_progress(&w);
-    const scene *s = scene_reading(k, (reading){displaced, k->first->shadow, k->first->bump_shadow}, &e);
-    bool good = s && pov_possible(s, &e);
+    watch w;
+    const progress show = watch_begin(&w, o.progress, o.user, &l, o.limits, &k->memory);
+    const scene *s = scene_reading(k, (reading){displaced, k->first->shadow, k->first->bump_shadow}, &show, &e);
+    bool good = limits_are_good(o.limits, &e) && s && pov_possible(s, &e);
     if (good) {
         const pov_options how = {
             .command = o.command ? o.command : "libkage", .no_cast = o.no_cast != 0, .progress = &show};

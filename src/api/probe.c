@@ -120,6 +120,7 @@ static void follow(const scene *s, int x, int y, workspace *v, block *b)
     set_surface(p, &v->g);
     if (o->bump)
         set_bump(p, &v->g, o->bump);
+    p->undefined = v->g.undefined > 0;
     set_rows(s, p->object, v, b);
     p->sends = material_sends(&s->material[o->material]);
 }
@@ -133,11 +134,13 @@ kage_status kage_scene_probe(kage_scene *k, int x, int y, kage_probe **out, kage
     if (x < 0 || y < 0 || x >= s->width || y >= s->height)
         return error_give(KAGE_BAD_OPTION, to, "pixel %d,%d: the picture is %d x %d pixels, expected 0,0 to %d,%d", x,
                           y, s->width, s->height, s->width - 1, s->height - 1);
+    memory m = {.from = k->memory.budget, .limit = k->memory.most};
+    char words[MEMORY_WORDS];
     block *b = calloc(1, sizeof *b + (size_t)(s->lights * ROWS) * sizeof *b->visible);
-    workspace *v = b ? workspace_new(&(tracer){.scene = s}) : NULL;
+    workspace *v = b ? workspace_new(&(tracer){.scene = s}, &m) : NULL;
     if (!v) {
         free(b);
-        return error_give(KAGE_NO_MEMORY, to, "out of memory");
+        return error_give(KAGE_NO_MEMORY, to, "%s", memory_words(&m, words));
     }
     follow(s, x, y, v, b);
     workspace_free(v);

@@ -72,17 +72,17 @@ static bool set_crop(const int crop[4], job *j, errors *e)
 }
 
 /* Apply the options. Not KAGE_OK: an error is in *e. */
-static kage_status settle(kage_scene *k, const kage_render_options *o, job *j, errors *e)
+static kage_status settle(kage_scene *k, const kage_render_options *o, job *j, const progress *p, errors *e)
 {
     const scene *first = k->first;
     reading r = {chosen(o->displaced, first->displaced), first->shadow, first->bump_shadow};
-    if (!options_are_good(o, e))
+    if (!options_are_good(o, e) || !limits_are_good(o->limits, e))
         return KAGE_BAD_OPTION;
     if (o->method)
         method_parse(o->method, &r.shadow);
     if (o->bump_shadow)
         bump_shadow_parse(o->bump_shadow, &r.bump_shadow);
-    const scene *s = scene_reading(k, r, e);
+    const scene *s = scene_reading(k, r, p, e);
     if (!s)
         return KAGE_BAD_INPUT;
     j->view = *s;
@@ -157,7 +157,7 @@ static char *sets_of(const kage_scene *k, const kage_render_options *o, const sc
 }
 
 /* An empty film. NULL: an error is in *e. */
-static kage_film *new_film(const kage_scene *k, const kage_render_options *o, const job *j, errors *e)
+static kage_film *new_film(const kage_scene *k, const kage_render_options *o, const job *j, memory *m, errors *e)
 {
     const char *slash = strrchr(k->first->path, '/');
     kage_film *f = calloc(1, sizeof *f);
@@ -168,10 +168,11 @@ static kage_film *new_film(const kage_scene *k, const kage_render_options *o, co
         f->stages = calloc(STAGES, sizeof *f->stages);
         method_name(j->view.shadow, f->method);
         f->guard = j->view.guard;
+        f->memory = (allowance){budget_share(k->memory.budget), k->memory.most};
     }
     if (!f || !f->file || !f->source || !f->sets || !f->stages)
         errors_add(e, "out of memory");
-    else if ((f->film = film_new(&j->view, j->part, j->layers, o->threads, o->reuse ? o->reuse->film : NULL, e)))
+    else if ((f->film = film_new(&j->view, j->part, j->layers, o->threads, o->reuse ? o->reuse->film : NULL, m, e)))
         return f;
     kage_film_free(f);
     return NULL;
@@ -243,16 +244,16 @@ kage_status kage_render(kage_scene *k, const kage_render_options *given, kage_fi
     stats t = {0};
     double seconds = 0;
     c_locale l = c_locale_begin();
-    watch w = {o.progress, o.user, &l, false};
-    const progress p = watch_progress(&w);
-    kage_status status = settle(k, &o, &j, &e);
+    watch w;
+    const progress p = watch_begin(&w, o.progress, o.user, &l, o.limits, &k->memory);
+    kage_status status = settle(k, &o, &j, &p, &e);
     if (status == KAGE_OK && !fits_film(j.part, &e))
         status = KAGE_BAD_OPTION;
     if (status == KAGE_OK)
         progress_show(&p, "rendering", 0); /* a large film takes its time */
-    kage_film *f = status == KAGE_OK && !w.cancelled ? new_film(k, &o, &j, &e) : NULL;
+    kage_film *f = status == KAGE_OK && !watch_stopped(&w) ? new_film(k, &o, &j, &w.memory, &e) : NULL;
     kage_film_free(o.reuse);
-    const bool good = f && fill(f, &j, &o, w.call ? &p : NULL, &t, &seconds, &e) && !w.cancelled;
+    const bool good = f && fill(f, &j, &o, &p, &t, &seconds, &e) && !watch_stopped(&w);
     c_locale_end(&l);
     if (!good) {
         kage_film_free(f);
@@ -290,19 +291,21 @@ static bool fill_bands(kage_film *f, const job *j, const kage_render_options *o,
         next = part.y1 - y < rows ? part.y1 : y + rows;
         const double from = (y - part.y0) / all, end = (next - part.y0) / all, half = (from + end) / 2;
         progress_part first = {p, "rendering", from, half}, second = {p, "rendering", half, end};
-        const progress rendering = {progress_part_show, &first}, writing = {progress_part_show, &second};
+        const progress rendering = {progress_part_show, &first, p->memory},
+                       writing = {progress_part_show, &second, p->memory};
         film_move(f->film, y, next);
-        good = fill(f, j, o, p ? &rendering : NULL, &t, &seconds, e) && picture_add(to, f->film, p ? &writing : NULL);
+        good = fill(f, j, o, &rendering, &t, &seconds, e) && picture_add(to, f->film, &writing);
     }
     return good;
 }
 
-static kage_film *new_band(const kage_scene *k, const kage_render_options *o, const job *j, int rows, errors *e)
+static kage_film *new_band(const kage_scene *k, const kage_render_options *o, const job *j, int rows, memory *m,
+                           errors *e)
 {
     job band = *j;
     if (j->part.y1 - j->part.y0 > rows)
         band.part.y1 = j->part.y0 + rows;
-    return new_film(k, o, &band, e);
+    return new_film(k, o, &band, m, e);
 }
 
 kage_status kage_render_file(kage_scene *k, const kage_render_options *given, const char *path,
@@ -314,20 +317,20 @@ kage_status kage_render_file(kage_scene *k, const kage_render_options *given, co
     job j;
     picture file;
     c_locale l = c_locale_begin();
-    watch w = {o.progress, o.user, &l, false};
-    const progress p = watch_progress(&w);
-    kage_status status = settle(k, &o, &j, &e);
+    watch w;
+    const progress p = watch_begin(&w, o.progress, o.user, &l, o.limits, &k->memory);
+    kage_status status = settle(k, &o, &j, &p, &e);
     if (status == KAGE_OK && (write.band < 0 || write.band % IMAGE_ROWS != 0)) {
         errors_add(&e, "a band of %d rows, expected a multiple of %d", write.band, IMAGE_ROWS);
         status = KAGE_BAD_OPTION;
     }
     const int rows = status != KAGE_OK ? 0 : write.band ? write.band : band_rows(&j, o.threads);
-    kage_film *f = status == KAGE_OK ? new_band(k, &o, &j, rows, &e) : NULL;
+    kage_film *f = status == KAGE_OK ? new_band(k, &o, &j, rows, &w.memory, &e) : NULL;
     kage_film_free(o.reuse);
     if (status == KAGE_OK)
         status = f ? picture_begin(&file, f, j.part, path, &write, &e) : KAGE_NO_MEMORY;
     if (status == KAGE_OK) {
-        const bool good = fill_bands(f, &j, &o, rows, &file, w.call ? &p : NULL, &e) && !w.cancelled;
+        const bool good = fill_bands(f, &j, &o, rows, &file, &p, &e) && !watch_stopped(&w);
         status = picture_end(&file, good, &e);
     }
     c_locale_end(&l);

@@ -19,7 +19,7 @@ static char *copy(const char *text, bool *good)
 
 /* Copy what a further reading needs: of the scene that this is a change of, and of the options. False: out of memory.
  */
-static bool keep(kage_scene *k, const kage_scene *before, const char *folder, const kage_load_options *o)
+static bool keep(kage_scene *k, const kage_scene *before, const char *folder, const kage_load_options *o, memory *m)
 {
     const char *reader = o->model_reader ? o->model_reader : before ? before->model_reader : NULL;
     bool good = true;
@@ -31,21 +31,40 @@ static bool keep(kage_scene *k, const kage_scene *before, const char *folder, co
         k->set[k->sets] = copy(before->set[k->sets], &good);
     for (int j = 0; k->set && j < o->set_count && good; j++)
         good = before ? sets_put(k, o->sets[j]) : (k->set[k->sets++] = copy(o->sets[j], &good), good);
-    return good && k->set && (!before || arrays_add_all(&k->arrays, &before->arrays)) && arrays_take(&k->arrays, o);
+    return good && k->set && (!before || arrays_add_all(&k->arrays, &before->arrays)) && arrays_take(&k->arrays, o, m);
 }
 
-static kage_scene *new_scene(void)
+/* A callback of progress may call the library with the scene that is read again. */
+static bool init_lock(pthread_mutex_t *lock)
+{
+    pthread_mutexattr_t again;
+    if (pthread_mutexattr_init(&again) != 0)
+        return false;
+    const bool good =
+        pthread_mutexattr_settype(&again, PTHREAD_MUTEX_RECURSIVE) == 0 && pthread_mutex_init(lock, &again) == 0;
+    pthread_mutexattr_destroy(&again);
+    return good;
+}
+
+static kage_scene *new_scene(const kage_scene *before, const kage_limits *limits)
 {
     kage_scene *k = calloc(1, sizeof *k);
-    if (!k || pthread_mutex_init(&k->lock, NULL) == 0)
+    if (!k || !init_lock(&k->lock)) {
+        free(k);
+        return NULL;
+    }
+    k->memory.budget = before ? budget_share(before->memory.budget) : budget_open();
+    k->memory.most = before && !(limits && limits->memory) ? before->memory.most : limits_memory(limits);
+    if (k->memory.budget)
         return k;
+    pthread_mutex_destroy(&k->lock);
     free(k);
     return NULL;
 }
 
 /* What may be on shelves: of a scene's readings, which live as long as it does, and what it has to spare. Returns how
  * many. */
-enum { SHELVES = READINGS + 1 };
+enum { SHELVES = READINGS + 2 };
 static int shelves_of(kage_scene *k, const shelf *all[SHELVES])
 {
     int n = 0;
@@ -54,6 +73,11 @@ static int shelves_of(kage_scene *k, const shelf *all[SHELVES])
         if (s)
             all[n++] = &s->shelf;
     }
+    bool kept = false;
+    for (int i = 0; i < n; i++)
+        kept = kept || all[i] == &k->first->shelf;
+    if (!kept) /* it has only what a survey needs */
+        all[n++] = &k->first->shelf;
     all[n++] = &k->spare;
     return n;
 }
@@ -74,7 +98,7 @@ static bool good_options(const kage_load_options *o, errors *e)
     if (o->threads < 0 || o->threads > KAGE_MAX_THREADS || o->set_count < 0)
         return errors_add(e, "%d threads and %d changes, expected 0 to %d and 0 or more", o->threads, o->set_count,
                           KAGE_MAX_THREADS);
-    return arrays_are_good(o, e);
+    return limits_are_good(o->limits, e) && arrays_are_good(o, e);
 }
 
 /* Read from->text or the file. before: the scene that this is a change of, or NULL. False: errors in *e. */
@@ -82,8 +106,10 @@ static bool read_first(kage_scene *k, kage_scene *before, scene_source *from, co
 {
     const shelf *all[SHELVES];
     from->shelves = before ? shelves_of(before, all) : 0;
-    if (!keep(k, before, from->folder, o) || (before && !keep_spare(k, before, all, from->shelves)))
-        return errors_add(e, "out of memory");
+    memory *m = from->progress->memory;
+    char words[MEMORY_WORDS];
+    if (!keep(k, before, from->folder, o, m) || (before && !keep_spare(k, before, all, from->shelves)))
+        return errors_add(e, "%s", memory_words(m, words));
     from->shelf = all;
     from->again = before;
     from->sets = k->sets;
@@ -91,11 +117,13 @@ static bool read_first(kage_scene *k, kage_scene *before, scene_source *from, co
     from->threads = k->threads;
     from->model_reader = k->model_reader;
     from->arrays = &k->arrays;
+    from->survey = o->survey != 0;
     scene *s = scene_read(from, e);
     if (!s)
         return false;
     k->first = s;
-    k->reading[reading_index((reading){s->displaced, s->shadow, s->bump_shadow})] = s;
+    if (!from->survey || !(scene_wants_truth(s) || scene_wants_horizons(s)))
+        k->reading[reading_index((reading){s->displaced, s->shadow, s->bump_shadow})] = s;
     k->from_file = before ? before->from_file : !from->text;
     return !before || !k->from_file || files_add_path(&s->made_from, s->path) || errors_add(e, "out of memory");
 }
@@ -109,11 +137,11 @@ static kage_status load(kage_scene *before, scene_source *from, const kage_load_
     if (!good_options(&o, &e))
         return errors_give(&e, KAGE_BAD_OPTION, NULL, to);
     c_locale l = c_locale_begin();
-    watch w = {o.progress, o.user, &l, false};
-    const progress p = watch_progress(&w);
+    watch w;
+    kage_scene *k = new_scene(before, o.limits);
+    const progress p = watch_begin(&w, o.progress, o.user, &l, o.limits, k ? &k->memory : NULL);
     from->progress = &p;
-    kage_scene *k = new_scene();
-    const bool good = k && read_first(k, before, from, &o, &e) && !w.cancelled && scene_describe(k);
+    const bool good = k && read_first(k, before, from, &o, &e) && !watch_stopped(&w) && scene_describe(k);
     c_locale_end(&l);
     if (good)
         *out = k;
@@ -147,8 +175,13 @@ void kage_scene_free(kage_scene *k)
     if (!k)
         return;
     scene_forget(k);
-    for (int i = 0; i < READINGS; i++)
+    bool kept = false; /* the first is no reading where it has only what a survey needs */
+    for (int i = 0; i < READINGS; i++) {
+        kept = kept || k->reading[i] == k->first;
         scene_free(k->reading[i]);
+    }
+    if (!kept)
+        scene_free(k->first);
     for (int i = 0; k->set && i < k->sets; i++)
         free(k->set[i]);
     free(k->set);
@@ -157,12 +190,13 @@ void kage_scene_free(kage_scene *k)
     free(k->model_reader);
     arrays_free(&k->arrays);
     shelf_free(&k->spare);
+    budget_close(k->memory.budget);
     pthread_mutex_destroy(&k->lock);
     free(k);
 }
 
 /* Read the scene's text again, with more changes. */
-static scene *read_again(kage_scene *k, reading r, errors *e)
+static scene *read_again(kage_scene *k, reading r, const progress *p, errors *e)
 {
     enum { MORE = 3 };
     char shadow[METHOD_NAME_SIZE + sizeof "render.shadow="] = "render.shadow=";
@@ -188,6 +222,7 @@ static scene *read_again(kage_scene *k, reading r, errors *e)
         .set = set,
         .threads = k->threads,
         .model_reader = k->model_reader,
+        .progress = p,
         .arrays = &k->arrays,
         .shelves = shelves_of(k, all),
         .shelf = all,
@@ -198,14 +233,18 @@ static scene *read_again(kage_scene *k, reading r, errors *e)
 }
 
 /* Who finds it need not wait for others, who may be reading for long. */
-const scene *scene_reading(kage_scene *k, reading r, errors *e)
+const scene *scene_reading(kage_scene *k, reading r, const progress *p, errors *e)
 {
     scene **at = &k->reading[reading_index(r)], *s = __atomic_load_n(at, __ATOMIC_ACQUIRE);
     if (s)
         return s;
     pthread_mutex_lock(&k->lock);
     s = __atomic_load_n(at, __ATOMIC_ACQUIRE);
-    if (!s && (s = read_again(k, r, e)))
+    scene *made = s ? NULL : read_again(k, r, p, e);
+    s = __atomic_load_n(at, __ATOMIC_ACQUIRE);
+    if (s) /* a call by the callback of this one was sooner */
+        scene_free(made);
+    else if ((s = made))
         __atomic_store_n(at, s, __ATOMIC_RELEASE);
     pthread_mutex_unlock(&k->lock);
     return s;

@@ -8,7 +8,12 @@
 
 #include <stdlib.h>
 
-enum { SAMPLES = 200, MOST_WARNINGS = 7 }; /* SAMPLES x SAMPLES rays over the picture; warnings of one object */
+#ifdef FUZZING_BUILD_MODE_UNSAFE_FOR_PRODUCTION /* as all fuzzers define it: instrumented code is many times slower */
+enum { SAMPLES = 8 };
+#else
+enum { SAMPLES = 200 }; /* SAMPLES x SAMPLES rays over the picture */
+#endif
+enum { MOST_WARNINGS = 8 }; /* of one object */
 
 /* Above this slope (95th percentile) the orders get more than about 1.5 % of a cast shadow's pixels wrong
  * (docs/method.md, "Accuracy of the orders": 1.4 % at 0.58, 7 % and more at 1.14). */
@@ -33,6 +38,7 @@ typedef struct seen {
     float *slope, *cell, *distance;
     int n, room;
     long back[3]; /* samples where the orders 1 and 2 fell back */
+    int none;     /* further samples, where P has no value */
 } seen;
 
 static int ascending(const void *a, const void *b)
@@ -45,7 +51,7 @@ static int ascending(const void *a, const void *b)
 static float slope(const hit_group *g, int i)
 {
     const bs_vec3 n = lane_unit(lane_get(&g->n_smooth, i)), np = lane_get(&g->n_bump, i), c = bs_cross(n, np);
-    return (float)(real_sqrt(bs_dot(c, c)) / bs_dot(n, np));
+    return (float)(real_sqrt(bs_dot(c, c)) / real_max(bs_dot(n, np), R(1e-30)));
 }
 
 /* The shorter side of the cell of the object's map that sample i is in, in scene units. 0: no map. */
@@ -98,6 +104,10 @@ static bool look(const scene *s, int order, workspace *v, seen *all)
                 continue;
             trace_group(&k, id, v);
             for (int i = 0; i < g->n; i++) {
+                if (g->bump.undefined && g->bump.none[i]) {
+                    o->none += order == 2;
+                    continue;
+                }
                 o->back[order] += g->order[i] != order;
                 if (order == 2 && !note_sample(o, &s->object[id], g, i))
                     return false;
@@ -120,7 +130,9 @@ static void find_step(const object *o, seen *x, kage_bump_survey *b)
 
 static kage_bump_survey summary(const object *o, seen *x)
 {
-    kage_bump_survey b = {.samples = x->n};
+    kage_bump_survey b = {.samples = x->n + x->none};
+    if (x->none)
+        b.undefined = 100.0 * x->none / b.samples;
     if (!x->n)
         return b;
     find_step(o, x, &b);
@@ -172,6 +184,8 @@ static void warn_of(const kage_scene *k, const kage_bump_survey *b, int id, kage
         warn(w, n, KAGE_WARN_FLAT_TRIANGLES, id, o->model->flat, 0);
     if (o->bump && !o->bounded)
         warn(w, n, KAGE_WARN_UNBOUNDED, id, 0, 0);
+    if (b->undefined > 0)
+        warn(w, n, KAGE_WARN_UNDEFINED, id, b->undefined, 0);
     if (o->bump)
         warn_of_heights(o, b, id, w, n);
     warn_of_method(k->first, b, id, w, n);
@@ -200,7 +214,9 @@ static kage_survey *report(const kage_scene *k, seen *all)
 kage_status kage_scene_survey(kage_scene *k, kage_survey **out, kage_errors **to)
 {
     const scene *s = k->first;
-    workspace *v = workspace_new(&(tracer){.scene = s});
+    memory m = {.from = k->memory.budget, .limit = k->memory.most};
+    char words[MEMORY_WORDS];
+    workspace *v = workspace_new(&(tracer){.scene = s}, &m);
     seen *all = calloc((size_t)s->objects + 1, sizeof *all);
     *out = NULL;
     if (to)
@@ -214,7 +230,7 @@ kage_status kage_scene_survey(kage_scene *k, kage_survey **out, kage_errors **to
     }
     free(all);
     workspace_free(v);
-    return *out ? KAGE_OK : error_give(KAGE_NO_MEMORY, to, "out of memory");
+    return *out ? KAGE_OK : error_give(KAGE_NO_MEMORY, to, "%s", memory_words(&m, words));
 }
 
 void kage_survey_free(kage_survey *v) { free(v); }

@@ -46,6 +46,7 @@ static bool options_are_good(const char *path, const kage_write_options *o, cons
                    : errors_add(e, "%s: no such kind of picture, expected a name that ends in .png or .exr", path);
     if (o->bits != 0 && o->bits != 8 && o->bits != 16)
         good = errors_add(e, "%d bits, expected 8 or 16", o->bits);
+    good = limits_are_good(o->limits, e) && good;
     if (o->threads < 0 || o->threads > KAGE_MAX_THREADS)
         good = errors_add(e, "%d threads, expected 0 to %d", o->threads, KAGE_MAX_THREADS);
     if (png && o->resume)
@@ -141,13 +142,13 @@ kage_status kage_film_write(const kage_film *f, const char *path, const kage_wri
     o.keep = o.resume = 0; /* of kage_render_file alone */
     errors e = {0};
     c_locale l = c_locale_begin();
-    watch w = {o.progress, o.user, &l, false};
-    const progress show = watch_progress(&w);
+    watch w;
+    const progress show = watch_begin(&w, o.progress, o.user, &l, o.limits, &f->memory);
     picture p;
     kage_status status = picture_begin(&p, f, f->film->part, path, &o, &e);
     if (status == KAGE_OK) {
-        picture_add(&p, f->film, w.call ? &show : NULL);
-        status = picture_end(&p, !w.cancelled, &e);
+        picture_add(&p, f->film, &show);
+        status = picture_end(&p, !watch_stopped(&w), &e);
     }
     c_locale_end(&l);
     return errors_give(&e, status, &w, to);

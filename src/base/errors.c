@@ -6,6 +6,16 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Control characters become '?', but for tabs and ends of lines: a file must not steer the terminal. */
+static void clean(char *text)
+{
+    for (unsigned char *c = (unsigned char *)text; *c; c++)
+        if ((*c < 0x20 && *c != '\t' && *c != '\n') || *c == 0x7f)
+            *c = '?';
+        else if (c[0] == 0xc2 && c[1] >= 0x80 && c[1] < 0xa0) /* U+0080 to U+009F */
+            c[0] = c[1] = '?';
+}
+
 /* Add formatted text and a newline. False: there is no memory, and the text is as before. */
 static bool append(errors *e, const char *fmt, va_list args)
 {
@@ -15,6 +25,7 @@ static bool append(errors *e, const char *fmt, va_list args)
     char *text = n < 0 ? NULL : realloc(e->text, e->size + (size_t)n + 2);
     if (text) {
         vsnprintf(text + e->size, (size_t)n + 1, fmt, again);
+        clean(text + e->size);
         e->text = text;
         e->size += (size_t)n;
         strcpy(e->text + e->size++, "\n");

@@ -1,8 +1,11 @@
-/* A callback that shows the progress of long work and may stop it. */
+/* What long work gets from its caller: a callback that shows its progress and may stop it, and the memory that it may
+ * take. */
 #ifndef KAGE_BASE_PROGRESS_H
 #define KAGE_BASE_PROGRESS_H
 
 #include <stdbool.h>
+
+#include "base/memory.h"
 
 /* `what`, while the objects of a scene are read. */
 #define PROGRESS_OBJECTS "objects"
@@ -11,7 +14,11 @@ typedef struct progress {
     /* Called with the kind of work and the share of it that is done, 0..1. False: stop, with an error. May be NULL. */
     bool (*show)(void *user, const char *what, double share);
     void *user;
+    memory *memory; /* NULL: without a limit */
 } progress;
+
+/* For memory_new. w may be NULL. */
+static inline memory *progress_memory(const progress *w) { return w ? w->memory : NULL; }
 
 /* False: stop. w may be NULL. */
 static inline bool progress_show(const progress *w, const char *what, double share)

@@ -28,8 +28,11 @@ typedef float real;
 /* A literal of type real: R(0.5). */
 #define R(x) ((real)(x))
 
-/* The t of a ray that hits nothing. */
+/* The t of a ray that hits nothing. Larger numbers count as no value. */
 #define REAL_FAR ((real)1e30)
+
+/* The least normal number of float; smaller squares of lengths have no digits. */
+#define REAL_LEAST ((real)1.17549435e-38)
 
 /* Marks a stage: a static function that is one plain loop over lanes. It is compiled for any x86-64, for AVX2 and (by
  * gcc) for AVX-512, and the loader chooses one. All give the same bytes: stages use only what IEEE 754 rounds exactly

@@ -22,6 +22,8 @@ struct bvh {
     RTCDevice device;
     RTCScene scene;
     bvh_box *box;
+    budget *from; /* what Embree's memory is counted in; NULL: nothing */
+    int64_t held; /* bytes that it has now */
 };
 
 /* What the callbacks need during one traversal. Embree's context comes first, so that a pointer to it points here. */
@@ -140,30 +142,37 @@ static bool has_room(int n)
     return good;
 }
 
+/* Bytes that Embree takes for n boxes while it builds, and more. */
+static int64_t most_for(int n) { return 256 * (int64_t)n + ((int64_t)1 << 16); }
+
+/* Embree says what it takes and gives back, from any of its threads. Nothing is refused here, as an exception would go
+ * through TBB: the most was counted before. */
+static bool count_bytes(void *user, ssize_t bytes, bool post)
+{
+    bvh *b = user;
+    (void)post;
+    __atomic_add_fetch(&b->held, (int64_t)bytes, __ATOMIC_RELAXED);
+    return true;
+}
+
 /* NULL: out of memory. */
-static RTCDevice device_with(int threads, int n)
+static RTCDevice device_with(int threads, int n, bvh *b)
 {
     char how[32];
     snprintf(how, sizeof how, "threads=%d", n < MANY || is_limited() ? 1 : threads_of(threads));
-    return has_room(n) ? rtcNewDevice(how) : NULL;
+    RTCDevice d = has_room(n) ? rtcNewDevice(how) : NULL;
+    if (d)
+        rtcSetDeviceMemoryMonitorFunction(d, count_bytes, b);
+    return d;
 }
 
-bvh *bvh_new(int n, const bvh_box *box, int threads, const progress *w)
+/* Commit the boxes. False: out of memory. */
+static bool build(bvh *b, int n, const progress *w)
 {
     report to = {w, pthread_self()};
-    bvh *b = calloc(1, sizeof *b);
-    if (!b)
-        return NULL;
-    b->box = malloc(sizeof *box * (size_t)(n > 0 ? n : 1));
-    b->device = b->box ? device_with(threads, n) : NULL;
-    b->scene = b->device ? rtcNewScene(b->device) : NULL;
-    RTCGeometry g = b->scene ? rtcNewGeometry(b->device, RTC_GEOMETRY_TYPE_USER) : NULL;
-    if (!g) {
-        bvh_free(b);
-        return NULL;
-    }
-    if (n > 0)
-        memcpy(b->box, box, sizeof *box * (size_t)n);
+    RTCGeometry g = rtcNewGeometry(b->device, RTC_GEOMETRY_TYPE_USER);
+    if (!g)
+        return false;
     rtcSetGeometryUserPrimitiveCount(g, (unsigned)n);
     rtcSetGeometryUserData(g, b);
     rtcSetGeometryBoundsFunction(g, bounds, NULL);
@@ -177,22 +186,43 @@ bvh *bvh_new(int n, const bvh_box *box, int threads, const progress *w)
         rtcSetSceneProgressMonitorFunction(b->scene, report_progress, &to);
     rtcCommitScene(b->scene);
     rtcSetSceneProgressMonitorFunction(b->scene, NULL, NULL);
-    if (rtcGetDeviceError(b->device) != RTC_ERROR_NONE) {
-        bvh_free(b);
+    return rtcGetDeviceError(b->device) == RTC_ERROR_NONE;
+}
+
+bvh *bvh_new(int n, const bvh_box *box, int threads, const progress *w)
+{
+    memory *m = progress_memory(w);
+    budget *from = m ? m->from : NULL;
+    bvh *b = calloc(1, sizeof *b);
+    if (!b || !memory_count(m, from, most_for(n))) {
+        free(b);
         return NULL;
     }
-    return b;
+    b->box = memory_new(m, sizeof *box * (size_t)(n > 0 ? n : 1));
+    if (b->box && n > 0)
+        memcpy(b->box, box, sizeof *box * (size_t)n);
+    b->device = b->box ? device_with(threads, n, b) : NULL;
+    b->scene = b->device ? rtcNewScene(b->device) : NULL;
+    const bool good = b->scene && build(b, n, w);
+    memory_count(NULL, from, b->held - most_for(n)); /* what it has, in place of the most that it might take */
+    b->from = budget_share(from);
+    if (good)
+        return b;
+    bvh_free(b);
+    return NULL;
 }
 
 void bvh_free(bvh *b)
 {
     if (!b)
         return;
+    memory_count(NULL, b->from, -b->held);
     if (b->scene)
         rtcReleaseScene(b->scene);
     if (b->device)
         rtcReleaseDevice(b->device);
-    free(b->box);
+    budget_close(b->from);
+    memory_free(b->box);
     free(b);
 }
 

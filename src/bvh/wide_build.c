@@ -224,14 +224,14 @@ static void build(builder *b, const part *all, int32_t to, int level)
 #pragma omp taskwait
 }
 
-wide_bvh *wide_new(int n, const wide_box *box, int32_t *order, int threads)
+wide_bvh *wide_new(int n, const wide_box *box, int32_t *order, int threads, const progress *show)
 {
     wide_bvh *w = calloc(1, sizeof *w);
     if (!w)
         return NULL;
     w->n = n;
     /* a node with a node below it has eight children, any other but the root two items or more: so at most 4/7 n + 1 */
-    w->node = malloc(sizeof *w->node * (4 * (size_t)n / 7 + 2));
+    w->node = memory_new(progress_memory(show), sizeof *w->node * (4 * (size_t)n / 7 + 2));
     if (!w->node) {
         free(w);
         return NULL;
@@ -245,7 +245,7 @@ wide_bvh *wide_new(int n, const wide_box *box, int32_t *order, int threads)
 #pragma omp parallel num_threads(threads)
 #pragma omp single
     build(&b, &all, root, 0);
-    wide_node *less = realloc(w->node, sizeof *w->node * (size_t)w->nodes);
+    wide_node *less = memory_resize(progress_memory(show), w->node, sizeof *w->node * (size_t)w->nodes);
     w->node = less ? less : w->node;
     return w;
 }
@@ -253,7 +253,7 @@ wide_bvh *wide_new(int n, const wide_box *box, int32_t *order, int threads)
 void wide_free(wide_bvh *w)
 {
     if (w)
-        free(w->node);
+        memory_free(w->node);
     free(w);
 }
 

@@ -88,9 +88,13 @@ static void print_bump(const kage_scene_info *s, const kage_survey *v, int id)
     if (find_warning(v, id, KAGE_WARN_UNBOUNDED))
         print_warning("P has no bounds here, so the guard has no slab and march:N falls back to order 0; expected a "
                       "function that is bounded over the whole surface");
+    if (b->undefined > 0)
+        print_warning("P has no value at %.3g %% of the surface that the camera sees: it is smooth there; expected a "
+                      "function with a value over the whole surface",
+                      b->undefined);
     if (!b->samples)
         printf("    slope     unknown: the camera does not see it\n");
-    else {
+    else if (b->undefined < 100) {
         printf("    slope     median %.3f, 95 %% below %.3f, steepest %.3f, where it is seen\n", b->slope_median,
                b->slope_95, b->slope_max);
         printf("    fall back order 1 in %.2f %%, order 2 in %.2f %% of what is seen\n", b->fell_back[1],

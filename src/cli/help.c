@@ -70,6 +70,8 @@ void print_help(FILE *to)
     for (int k = 0; k < command_count; k++) {
         char names[64];
         const command *c = &commands[k];
+        if (c->hidden)
+            continue;
         snprintf(names, sizeof names, "%s%s%s%s%s", c->name, c->operand[0] ? " " : "",
                  c->operand[0] ? c->operand[0] : "", c->operand[1] ? " " : "", c->operand[1] ? c->operand[1] : "");
         fprintf(to, "  %-16s  ", names);
@@ -83,6 +85,6 @@ void print_help(FILE *to)
           "\n"
           "Manuals: man kage; man kage-scene describes scene files. The same and more is\n"
           "in docs/.\n"
-          "Exit status: 0; 1 where a picture can't be written; 2 for bad input.\n",
+          "Exit status: 0; 1 where a picture can't be written; 2 for bad input; 124 after --max-seconds.\n",
           to);
 }

@@ -26,7 +26,7 @@ static int refuse_command(const char *name)
 {
     char words[256] = "", near[32];
     size_t used = 0;
-    for (int k = 0; k < command_count && used < sizeof words; k++)
+    for (int k = 0; k < command_count && used < sizeof words && !commands[k].hidden; k++)
         used += (size_t)snprintf(words + used, sizeof words - used, "%s%s", k ? " " : "", commands[k].name);
     spelling_nearest(name, words, near, sizeof near);
     if (*near)
@@ -51,8 +51,10 @@ static int help_command(const arguments *a)
 
 static int run(const arguments *a)
 {
-    if (a->operands && a->command != COMMAND_VIEW && a->command != COMMAND_HELP)
+    if (a->operands && a->command != COMMAND_VIEW && a->command != COMMAND_HELP) {
         stop_begin(base_name(a->operand[0]), a->quiet);
+        stop_after(a->seconds);
+    }
     switch (a->command) {
     case COMMAND_RENDER:
         return command_render(a);
@@ -98,6 +100,10 @@ int main(int argc, char **argv)
     const command *c = command_find(name);
     if (!c)
         return refuse_command(name);
+    if (c->bit == COMMAND_COMPLETE)
+        return finish(command_complete(argc - 2, argv + 2));
+    if (c->bit == COMMAND_TABLE)
+        return finish(command_table());
     if (asks_for_help(argc, argv))
         return finish(help_command(&(arguments){.operands = 1, .operand = {name}}));
     arguments a;

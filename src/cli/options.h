@@ -16,6 +16,7 @@ typedef struct command {
     const char *operand[2]; /* NULL: none */
     int needed;             /* how many of these must be given */
     const char *values[2];  /* of the operands, as below */
+    bool hidden;            /* for scripts: not in --help */
     const char *text, *more;
     const char *example[2 * 4]; /* a line to type, and what it does */
 } command;
@@ -81,6 +82,8 @@ bool read_aa(arguments *a, const char *name, const char *v);
 bool read_threshold(arguments *a, const char *name, const char *v);
 bool read_crop(arguments *a, const char *name, const char *v);
 bool read_threads(arguments *a, const char *name, const char *v);
+bool read_memory(arguments *a, const char *name, const char *v);
+bool read_seconds(arguments *a, const char *name, const char *v);
 bool read_frames(arguments *a, const char *name, const char *v);
 bool read_layers(arguments *a, const char *name, const char *v);
 bool read_bits(arguments *a, const char *name, const char *v);

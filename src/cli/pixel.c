@@ -82,6 +82,8 @@ static void print_probe(const kage_scene_info *s, int x, int y, const kage_probe
     const kage_object_info *o = &s->objects[p->object];
     printf("object     %s: %s, %s%s\n", o->name, o->shape, o->bump ? "bump by " : "no bump", o->bump ? o->bump : "");
     print_surface(p);
+    if (p->undefined)
+        printf("no value   of P, n' or the surface: it is smooth here, and no method shifts\n");
     if (p->bumped)
         print_bump(p);
     print_table(s, p);

@@ -173,6 +173,8 @@ static void print_stats(FILE *to, const kage_stats *t, double output)
                 fprintf(to, "  %s: %ld", t->orders[k].order, (long)t->orders[k].samples);
     }
     fprintf(to, "\n");
+    if (t->undefined)
+        fprintf(to, "samples without a value, smooth there: %ld\n", (long)t->undefined);
     if (t->unconfirmed)
         fprintf(to, "hits of displaced surfaces that Newton's iteration did not confirm: %ld\n", (long)t->unconfirmed);
 }
@@ -229,7 +231,7 @@ static kage_status render_in_bands(kage_scene *s, const arguments *a, const kage
 }
 
 /* The closing line, only on a terminal, and a warning. */
-static void print_end(const arguments *a, const kage_stats *t, const char *name, bool on_terminal)
+static void print_end(const arguments *a, const kage_stats *t, const char *name, const char *object, bool on_terminal)
 {
     if (on_terminal) {
         fprintf(stderr, "%s: %.2f s", name, t->seconds);
@@ -240,6 +242,9 @@ static void print_end(const arguments *a, const kage_stats *t, const char *name,
     if (t->unconfirmed && !a->quiet)
         fprintf(stderr, "%s: %ld hits of displaced surfaces are not confirmed to the last digits\n", name,
                 (long)t->unconfirmed);
+    if (t->undefined && !a->quiet)
+        fprintf(stderr, "%s: no value at %ld samples, first on %s: smooth there, without a shift\n", name,
+                (long)t->undefined, object);
 }
 
 static int status_of(kage_status status, kage_errors *e)
@@ -279,7 +284,8 @@ static int render_outputs(kage_scene *s, const arguments *a)
     }
     if (status == KAGE_OK) {
         const kage_stats *t = kage_film_get_stats(f);
-        print_end(a, t, name, p.on);
+        const int lacks = t->undefined_object;
+        print_end(a, t, name, lacks < 0 ? "" : kage_scene_get_info(s)->objects[lacks].name, p.on);
         if (a->stats)
             print_stats(a->to_stdout ? stderr : stdout, t, clock_now() - start - t->seconds);
     }

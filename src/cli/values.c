@@ -103,9 +103,14 @@ static void list_methods(char *text, size_t size)
 bool read_shadow(arguments *a, const char *name, const char *v)
 {
     char names[128];
+    if (kage_method_is_known(v))
+        return add_set(a, "render.shadow=%s", v);
+    const char *colon = strchr(v, ':');
+    if (strncmp(v, "iter:", 5) == 0 || strncmp(v, "march:", 6) == 0)
+        return usage_error("%s %s: expected a whole number from 1 to %d after %.*s", name, v, KAGE_MAX_STEPS,
+                           (int)(colon - v + 1), v);
     list_methods(names, sizeof names);
-    return kage_method_is_known(v) ? add_set(a, "render.shadow=%s", v)
-                                   : usage_error("%s %s: no such method, expected %s", name, v, names);
+    return usage_error("%s %s: no such method, expected %s", name, v, names);
 }
 
 /* `smooth`, or the other word that a key of render may have. */
@@ -128,8 +133,9 @@ bool read_shade(arguments *a, const char *name, const char *v)
 
 bool read_bump_shadow(arguments *a, const char *name, const char *v)
 {
-    return kage_bump_shadow_is_known(v) ? add_set(a, "render.bump_shadow=%s", v)
-                                        : usage_error("%s %s: expected none, march:N, horizon or exact", name, v);
+    return kage_bump_shadow_is_known(v)
+               ? add_set(a, "render.bump_shadow=%s", v)
+               : usage_error("%s %s: expected none, march:N (N: 1 to %d), horizon or exact", name, v, KAGE_MAX_STEPS);
 }
 
 bool read_size(arguments *a, const char *name, const char *v)
@@ -172,6 +178,30 @@ bool read_threads(arguments *a, const char *name, const char *v)
         return usage_error("%s %s: expected a number from 1 to %d", name, v, KAGE_MAX_THREADS);
     a->threads = n;
     return true;
+}
+
+/* Bytes, or with K, M, G or T behind it 1024, 1024^2 ... bytes. */
+bool read_memory(arguments *a, const char *name, const char *v)
+{
+    static const char units[] = "KMGT";
+    char *end = NULL;
+    double x = *v >= '0' && *v <= '9' && strspn(v, "0123456789.") > 0 ? strtod(v, &end) : -1;
+    const char *unit = end && *end ? strchr(units, *end) : NULL;
+    if (unit)
+        for (end++; unit >= units; unit--)
+            x *= 1024;
+    if (!(x >= 1 && x <= 1e18) || *end)
+        return usage_error("%s %s: expected a size in bytes, or with K, M, G or T behind it: 4G", name, v);
+    a->limits.memory = (int64_t)x;
+    return true;
+}
+
+bool read_seconds(arguments *a, const char *name, const char *v)
+{
+    char *end = NULL;
+    a->seconds = *v >= '0' && *v <= '9' && strspn(v, "0123456789.") == strlen(v) ? strtod(v, &end) : -1;
+    return (a->seconds > 0 && a->seconds <= 1e6 && !*end) ||
+           usage_error("%s %s: expected a number of seconds above 0 and up to 1000000", name, v);
 }
 
 bool read_frames(arguments *a, const char *name, const char *v)

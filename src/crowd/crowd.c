@@ -101,7 +101,7 @@ static void crowd_free(surface *base)
 {
     crowd *f = (crowd *)base;
     wide_free(f->tree);
-    free(f->copy);
+    memory_free(f->copy);
     free(f);
 }
 
@@ -228,26 +228,27 @@ static void begin(crowd *f, const surface *from, int32_t parts, const crowd_list
     f->u_ends_sum = mirrors && u[1] < HUGE_VAL ? (real)(u[0] + u[1]) : 0;
 }
 
-crowd *crowd_new(const surface *from, int32_t parts, const crowd_list *list, int threads)
+crowd *crowd_new(const surface *from, int32_t parts, const crowd_list *list, int threads, const progress *w)
 {
     const size_t n = (size_t)list->n;
+    memory *m = progress_memory(w);
     crowd *f = calloc(1, sizeof *f);
-    wide_box *box = malloc(sizeof *box * n);
-    int32_t *order = malloc(sizeof *order * n);
+    wide_box *box = memory_new(m, sizeof *box * n);
+    int32_t *order = memory_new(m, sizeof *order * n);
     threads = threads_of(threads);
-    if (f && box && order && (f->copy = malloc(sizeof *f->copy * n))) {
+    if (f && box && order && (f->copy = memory_new(m, sizeof *f->copy * n))) {
         begin(f, from, parts, list);
         boxes_of(f, list, box, threads);
-        f->tree = wide_new(list->n, box, order, threads);
+        f->tree = wide_new(list->n, box, order, threads, w);
         if (f->tree)
             choose_methods(f, place_copies(f, list, order, threads));
     }
-    free(box);
-    free(order);
+    memory_free(box);
+    memory_free(order);
     if (f && f->tree)
         return f;
     if (f)
-        free(f->copy);
+        memory_free(f->copy);
     free(f);
     return NULL;
 }

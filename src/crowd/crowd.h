@@ -43,8 +43,8 @@ static inline int32_t crowd_most(int32_t parts)
     return INT32_MAX / parts < WIDE_MOST ? INT32_MAX / parts : WIDE_MOST;
 }
 
-/* `from` must outlive it. parts: of `from`; on a mesh its triangles. NULL: out of memory. */
-crowd *crowd_new(const surface *from, int32_t parts, const crowd_list *list, int threads);
+/* `from` must outlive it. parts: of `from`; on a mesh its triangles. w: as wide_new. NULL: out of memory. */
+crowd *crowd_new(const surface *from, int32_t parts, const crowd_list *list, int threads, const progress *w);
 
 /* The crowd that a surface is; NULL: it is none. */
 const crowd *crowd_of(const surface *f);

@@ -92,16 +92,16 @@ static void displaced_free(surface *f)
     free(d);
 }
 
-surface *displaced_new(const surface *f, bump *P)
+surface *displaced_new(const surface *f, bump *P, const progress *w)
 {
-    displaced *d = bump_prepare(P) ? calloc(1, sizeof *d) : NULL;
+    displaced *d = bump_prepare(P, w) ? calloc(1, sizeof *d) : NULL;
     if (!d)
         return NULL;
     d->base = (surface){.ops = &displaced_ops, .free = displaced_free};
     d->form = form_of(f);
     d->smooth = f;
     d->P = P;
-    if (!d->form->prepare || d->form->prepare(d))
+    if (!d->form->prepare || d->form->prepare(d, w))
         return &d->base;
     displaced_free(&d->base);
     return NULL;
@@ -112,6 +112,17 @@ displaced displaced_counting(const surface *f, displaced_counts *c)
     displaced d = *of(f);
     d.counts = c;
     return d;
+}
+
+/* n as a unit vector; where it has no length, that of the smooth surface, else one that faces the viewer. */
+static bs_vec3 normal_of(bs_vec3 n, bs_vec3 smooth, bs_vec3 s)
+{
+    const real n2 = bs_dot(n, n), smooth2 = bs_dot(smooth, smooth);
+    if (n2 >= REAL_LEAST && n2 < (real)HUGE_VAL)
+        return lane_unit(n);
+    if (smooth2 >= REAL_LEAST && smooth2 < (real)HUGE_VAL)
+        return lane_unit(smooth);
+    return lane_unit((bs_vec3){-s.x, -s.y, -s.z});
 }
 
 /* The surface is where height - P = 0: its normal is the gradient of that. */
@@ -127,7 +138,7 @@ void displaced_shape(const surface *f, hit_group *g)
         bs_vec3 h = lane_get(&p.gh, i), u = lane_get(&p.gu, i), w = lane_get(&p.gw, i);
         bs_vec3 n = {h.x - g->bump.Pu[i] * u.x - g->bump.Pw[i] * w.x, h.y - g->bump.Pu[i] * u.y - g->bump.Pw[i] * w.y,
                      h.z - g->bump.Pu[i] * u.z - g->bump.Pw[i] * w.z};
-        n = lane_unit(n);
+        n = normal_of(n, h, lane_get(&g->x->s, i));
         lane_set(&g->n_smooth, i, n);
         lane_set(&g->n_bump, i, n);
         lane_set(&g->q.Q, i, lane_at(g->x, i, g->t[i]));

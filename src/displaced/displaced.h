@@ -35,8 +35,8 @@ bool displaced_has_form(const surface *f);
 bool displaced_has_bounds(const bump *P);
 
 /* X over f by P, which is prepared for it. Both must outlive it, and the two functions above must be true of them.
- * NULL: out of memory. */
-surface *displaced_new(const surface *f, bump *P);
+ * w: as bump_prepare. NULL: out of memory. */
+surface *displaced_new(const surface *f, bump *P, const progress *w);
 
 /* Whether a surface is one. It has no `eval`: Q and its partials are not known, displaced_shape stands for it. */
 bool displaced_is(const surface *f);

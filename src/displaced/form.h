@@ -11,7 +11,7 @@ typedef struct displaced_form {
     bool (*fits)(const surface *smooth);
 
     /* Build what the searches need, in d. False: out of memory. NULL: they need nothing. */
-    bool (*prepare)(displaced *d);
+    bool (*prepare)(displaced *d, const progress *w);
 
     /* As the members of surface_ops; part: NULL for segments that start elsewhere. */
     void (*hit)(const displaced *d, int n, const rays *x, const ray_origins *from, int32_t id, hits *h);

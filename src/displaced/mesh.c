@@ -23,12 +23,12 @@ static const mesh *mesh_of(const displaced *d) { return (const mesh *)d->smooth;
 
 static double greatest_height(const bump *P) { return fmax(fabs((double)P->Pmin), fabs((double)P->Pmax)); }
 
-static bool over_mesh_prepare(displaced *d)
+static bool over_mesh_prepare(displaced *d, const progress *w)
 {
     const mesh *f = mesh_of(d);
     const double lo = fmin(0, (double)d->P->Pmin), hi = fmax(0, (double)d->P->Pmax);
     const double air = ROOM * (f->space.radius + greatest_height(d->P));
-    bvh_box *box = malloc(sizeof *box * (size_t)f->d.n);
+    bvh_box *box = memory_new(progress_memory(w), sizeof *box * (size_t)f->d.n);
     for (int i = 0; box && i < f->d.n; i++) {
         const mesh_triangle x = mesh_triangle_of(f, i);
         double b[2][3];
@@ -39,8 +39,8 @@ static bool over_mesh_prepare(displaced *d)
         }
         box[i] = bvh_box_in(&f->space, b[0], b[1]);
     }
-    d->prisms = box ? bvh_new(f->d.n, box, 1, NULL) : NULL;
-    free(box);
+    d->prisms = box ? bvh_new(f->d.n, box, 1, w) : NULL;
+    memory_free(box);
     return d->prisms;
 }
 

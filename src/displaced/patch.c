@@ -9,11 +9,11 @@
 
 static const patch_surface *offset_of_patch(const displaced *d) { return (const patch_surface *)d->offset; }
 
-static bool over_patch_prepare(displaced *d)
+static bool over_patch_prepare(displaced *d, const progress *w)
 {
     patch *q = patch_offset_new(((const patch_surface *)d->smooth)->q, d->P);
     bool bounded;
-    patch_surface *shape = q ? patch_surface_make(q, FLAT, &bounded) : NULL;
+    patch_surface *shape = q ? patch_surface_make(q, FLAT, w, &bounded) : NULL;
     if (!shape)
         return false;
     shape->broken = true;

@@ -49,14 +49,14 @@ static void mark_row(const display *d, int x, int y, int n, int limit, unsigned 
 
 enum { FEW = 1 << 14 }; /* pixels that are compared before another thread has started */
 
-unsigned char *adaptive_find(const film *f, window part, double threshold, int threads, errors *e)
+unsigned char *adaptive_find(const film *f, window part, double threshold, int threads, memory *m, errors *e)
 {
     display d = {f->part.x1 - f->part.x0, f->part.y1 - f->part.y0, {NULL}};
     const size_t pixels = (size_t)d.width * (size_t)d.height;
     const int width = part.x1 - part.x0, height = part.y1 - part.y0, limit = (int)(threshold * 65535);
-    unsigned char *found = malloc((size_t)width * (size_t)height);
+    unsigned char *found = memory_new(m, (size_t)width * (size_t)height);
     srgb *curve = srgb_create(16);
-    uint16_t *code = malloc(3 * pixels * sizeof *code);
+    uint16_t *code = memory_new(m, 3 * pixels * sizeof *code);
     bool good = found && curve && code;
     threads = pixels > FEW ? threads_of(threads) : 1;
     (void)threads; /* without OpenMP */
@@ -72,11 +72,12 @@ unsigned char *adaptive_find(const film *f, window part, double threshold, int t
             mark_row(&d, part.x0 - f->part.x0, y + part.y0 - f->part.y0, width, limit,
                      found + (size_t)y * (size_t)width);
     } else {
-        free(found);
+        char words[MEMORY_WORDS];
+        memory_free(found);
         found = NULL;
-        errors_add(e, "out of memory for the contrasts of %d x %d pixels", width, height);
+        errors_add(e, "the contrasts of %d x %d pixels: %s", width, height, memory_words(m, words));
     }
     free(curve);
-    free(code);
+    memory_free(code);
     return found;
 }

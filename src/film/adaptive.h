@@ -8,6 +8,6 @@
  * differ by more than `threshold`, 0 elsewhere. The difference is the sum over red, green and blue, each 0..1 as
  * displayed (sRGB, 16 bits). The caller frees it. NULL with a message: out of memory. threads: 0 for one a
  * processor; the result does not depend on it. */
-unsigned char *adaptive_find(const film *f, window part, double threshold, int threads, errors *e);
+unsigned char *adaptive_find(const film *f, window part, double threshold, int threads, memory *m, errors *e);
 
 #endif

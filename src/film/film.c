@@ -25,7 +25,7 @@ static char *plane_name(const scene *s, int k)
 static size_t plane_step(size_t pixels) { return (pixels + 15) / 16 * 16; }
 
 /* New memory is touched here, so that rendering does not wait for page faults, nor for its threads to start. */
-static void clear(float *memory, size_t values, int threads)
+static void clear(float *to, size_t values, int threads)
 {
     enum { PART = 1 << 18 }; /* values; so few are not worth a thread */
     const long parts = (long)((values + PART - 1) / PART);
@@ -33,31 +33,29 @@ static void clear(float *memory, size_t values, int threads)
 #pragma omp parallel for num_threads(threads) schedule(static) if (parts > 1)
     for (long k = 0; k < parts; k++) {
         const size_t from = (size_t)k * PART, rest = values - from;
-        memset(memory + from, 0, (rest < PART ? rest : PART) * sizeof *memory);
+        memset(to + from, 0, (rest < PART ? rest : PART) * sizeof *to);
     }
 }
 
 /* Memory for so many values: that of a film that has enough, but not far more (layers may come and go), or new. False:
  * out of memory. */
-static bool take_memory(film *f, film *spare, size_t values, int threads)
+static bool take_memory(film *f, film *spare, size_t values, int threads, memory *m)
 {
     enum { WASTE = 24 };
-    void *p;
     if (spare && spare->room >= values && spare->room / WASTE <= values) {
         f->memory = spare->memory;
         f->room = spare->room;
         spare->memory = NULL;
         return true;
     }
-    if (posix_memalign(&p, 64, values * sizeof *f->memory) != 0)
+    if (!(f->memory = memory_new(m, values * sizeof *f->memory)))
         return false;
-    f->memory = p;
     f->room = values;
     clear(f->memory, values, threads_of(threads));
     return true;
 }
 
-film *film_new(const scene *s, window part, bool layers, int threads, film *spare, errors *e)
+film *film_new(const scene *s, window part, bool layers, int threads, film *spare, memory *m, errors *e)
 {
     film *f = calloc(1, sizeof *f);
     const size_t pixels = (size_t)(part.x1 - part.x0) * (size_t)(part.y1 - part.y0), step = plane_step(pixels);
@@ -67,7 +65,7 @@ film *film_new(const scene *s, window part, bool layers, int threads, film *spar
         f->plane = calloc((size_t)f->planes, sizeof *f->plane);
         f->name = calloc((size_t)f->planes, sizeof *f->name);
     }
-    bool good = f && f->plane && f->name && take_memory(f, spare, step * (size_t)f->planes, threads);
+    bool good = f && f->plane && f->name && take_memory(f, spare, step * (size_t)f->planes, threads, m);
     for (int k = 0; good && k < f->planes; k++) {
         f->plane[k] = f->memory + step * (size_t)k;
         f->name[k] = plane_name(s, k);
@@ -76,7 +74,8 @@ film *film_new(const scene *s, window part, bool layers, int threads, film *spar
     if (good)
         return f;
     film_free(f);
-    errors_add(e, "out of memory for a picture of %d x %d pixels", part.x1 - part.x0, part.y1 - part.y0);
+    char words[MEMORY_WORDS];
+    errors_add(e, "a picture of %d x %d pixels: %s", part.x1 - part.x0, part.y1 - part.y0, memory_words(m, words));
     return NULL;
 }
 
@@ -101,7 +100,7 @@ void film_free(film *f)
         return;
     for (int k = 0; f->name && k < f->planes; k++)
         free(f->name[k]);
-    free(f->memory);
+    memory_free(f->memory);
     free(f->plane);
     free(f->name);
     free(f);

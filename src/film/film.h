@@ -39,8 +39,9 @@ static inline size_t film_index(const film *f, int x, int y)
 }
 
 /* A film whose memory several threads have touched (0: all processors); its values are for a render to set. spare, or
- * NULL: a film whose memory it takes where that is large enough. NULL: out of memory, with a message. */
-film *film_new(const scene *s, window part, bool layers, int threads, film *spare, errors *e);
+ * NULL: a film whose memory it takes where that is large enough. m: what memory is taken from; NULL: no limit. NULL:
+ * out of memory, with a message. */
+film *film_new(const scene *s, window part, bool layers, int threads, film *spare, memory *m, errors *e);
 
 /* Move the film down to the rows y0 to y1 of the picture, at most as many as it was made for. */
 void film_move(film *f, int y0, int y1);

@@ -235,9 +235,9 @@ static void render_nth(const tracer *tr, const render_options *o, pass *p, film 
     note_tile(o, p, n, tiles(part));
 }
 
-static workspace *tile_workspace(const tracer *tr)
+static workspace *tile_workspace(const tracer *tr, const render_options *o)
 {
-    workspace *v = workspace_new(tr);
+    workspace *v = workspace_new(tr, progress_memory(o->progress));
     if (v)
         camera_common(&tr->scene->camera, LANES, &v->x); /* once, as no stage changes it */
     return v;
@@ -249,7 +249,7 @@ static long run_alone(const tracer *tr, const render_options *o, pass *p, film *
 {
     const double end = stats_clock() + SECONDS_ALONE;
     const long count = tiles(f->part);
-    workspace *v = tile_workspace(tr);
+    workspace *v = tile_workspace(tr, o);
     long n = 0;
     while (v && n < count && !p->stop && stats_clock() < end)
         render_nth(tr, o, p, f, n++, v);
@@ -270,7 +270,7 @@ static bool run(const tracer *tr, const render_options *o, pass *p, film *f, sta
     const bool left = first < count;
 #pragma omp parallel num_threads(threads) if (left)
     {
-        workspace *v = left ? tile_workspace(tr) : NULL;
+        workspace *v = left ? tile_workspace(tr, o) : NULL;
         if (left && !v) {
 #pragma omp atomic write
             good = false;
@@ -290,8 +290,10 @@ static bool run(const tracer *tr, const render_options *o, pass *p, film *f, sta
         }
         workspace_free(v);
     }
-    if (!good)
-        return errors_add(e, "out of memory for the threads' waves");
+    if (!good) {
+        char words[MEMORY_WORDS];
+        return errors_add(e, "the threads' waves: %s", memory_words(progress_memory(o->progress), words));
+    }
     if (!p->stop)
         show(o, p, p->done);
     return !p->stop || errors_add(e, "cancelled");
@@ -305,14 +307,17 @@ static bool render_adaptive(const tracer *tr, const render_options *o, film *f, 
                  wide = {part.x0 - (part.x0 > 0), part.y0 - (part.y0 > 0), part.x1 + (part.x1 < tr->scene->width),
                          part.y1 + (part.y1 < tr->scene->height)};
     pass first = {1, NULL, 0, tiles(wide) + tiles(part), false}, second = {o->aa, NULL, tiles(wide), first.all, false};
-    film *margin = memcmp(&wide, &part, sizeof wide) ? film_new(tr->scene, wide, tr->layers, o->threads, NULL, e) : f;
+    film *margin = memcmp(&wide, &part, sizeof wide)
+                       ? film_new(tr->scene, wide, tr->layers, o->threads, NULL, progress_memory(o->progress), e)
+                       : f;
     bool good = margin && run(tr, o, &first, margin, sum, e);
     if (good && margin != f)
         film_copy(f, margin);
-    unsigned char *marked = good ? adaptive_find(margin, part, o->threshold, o->threads, e) : NULL;
+    unsigned char *marked =
+        good ? adaptive_find(margin, part, o->threshold, o->threads, progress_memory(o->progress), e) : NULL;
     second.marked = marked;
     good = marked && run(tr, o, &second, f, sum, e);
-    free(marked);
+    memory_free(marked);
     if (margin != f)
         film_free(margin);
     return good;

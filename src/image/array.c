@@ -1,8 +1,6 @@
 /* Passes on the samples of an image in memory. */
 #include "image/array.h"
 
-#include <stdlib.h>
-
 #include "base/real.h"
 #include "image/format.h"
 
@@ -59,14 +57,14 @@ bool image_read_array(const image_array *a, const char *channel, image_stream *t
         return image_refuse(why, "it has %d channels; a height map has one", a->channels);
     if (!image_begin(to, a->width, a->height, why))
         return false;
-    float *row = malloc(sizeof *row * (size_t)a->width * (size_t)to->values);
+    float *row = memory_new(progress_memory(to->progress), sizeof *row * (size_t)a->width * (size_t)to->values);
     if (!row)
-        return image_refuse(why, "there is not enough memory for the image");
+        return image_refuse_memory(to, why);
     bool good = true;
     for (int y = 0; good && y < a->height; y++) {
         fill_row(a, y, to->values, row);
         good = image_pass(to, 0, y, a->width, row, to->range, why);
     }
-    free(row);
+    memory_free(row);
     return good;
 }

@@ -16,7 +16,9 @@ typedef struct image_array {
 size_t image_array_size(const image_array *a);
 
 /* As image_read and image_read_color. */
-bool image_array_read(const image_array *a, const char *channel, const image_taker *to, float range[2], errors *e);
-bool image_array_read_color(const image_array *a, image_encoding encoding, image *out, bool *is_float, errors *e);
+bool image_array_read(const image_array *a, const char *channel, const progress *w, const image_taker *to,
+                      float range[2], errors *e);
+bool image_array_read_color(const image_array *a, image_encoding encoding, const progress *w, image *out,
+                            bool *is_float, errors *e);
 
 #endif

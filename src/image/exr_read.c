@@ -78,7 +78,8 @@ typedef struct exr_worker {
     exr_context_t ctx;
     exr_decode_pipeline_t pipe;
     bool started;
-    float *line; /* a chunk's line of pixels */
+    int64_t counted; /* bytes for chunks, in the budget */
+    float *line;     /* a chunk's line of pixels */
     float range[2];
 } exr_worker;
 
@@ -175,6 +176,19 @@ static bool unpack(exr_worker *w, int x, int y)
     return true;
 }
 
+/* Count what the library takes for a chunk: the samples as they are in the file, as they are, and on the way. */
+static bool count_chunk(exr_worker *w, const exr_chunk_info_t *chunk)
+{
+    memory *m = progress_memory(w->plan->to->progress);
+    const int64_t bytes = (int64_t)(chunk->packed_size + 2 * chunk->unpacked_size);
+    if (!m || bytes <= w->counted)
+        return true;
+    if (!memory_count(m, m->from, bytes - w->counted))
+        return image_refuse_memory(w->plan->to, w->reader.why);
+    w->counted = bytes;
+    return true;
+}
+
 /* Decode one chunk, whose first sample is (x, y) of the image. */
 static bool decode_chunk(exr_worker *w, const exr_chunk_info_t *chunk, int x, int y)
 {
@@ -186,6 +200,8 @@ static bool decode_chunk(exr_worker *w, const exr_chunk_info_t *chunk, int x, in
     if (chunk->packed_size == 0 ||
         (chunk->compression == EXR_COMPRESSION_NONE && chunk->packed_size != chunk->unpacked_size))
         return image_refuse(r->why, "OpenEXR: a chunk has a wrong size");
+    if (!count_chunk(w, chunk))
+        return false;
     if (!exr_good(r, w->started ? exr_decoding_update(w->ctx, 0, chunk, &w->pipe)
                                 : exr_decoding_initialize(w->ctx, 0, chunk, &w->pipe)))
         return false;
@@ -260,9 +276,9 @@ static bool begin_worker(exr_worker *w)
     const size_t values = (size_t)w->plan->to->values, width = (size_t)w->plan->width;
     w->range[0] = INFINITY;
     w->range[1] = -INFINITY;
-    w->line = malloc((values + 1) * width * sizeof *w->line);
+    w->line = memory_new(progress_memory(w->plan->to->progress), (values + 1) * width * sizeof *w->line);
     if (!w->line)
-        return image_refuse(w->reader.why, "there is not enough memory for the image");
+        return image_refuse_memory(w->plan->to, w->reader.why);
     for (size_t k = 0; k < values * width; k++)
         w->line[k] = 1; /* alpha, where there is no such channel */
     return exr_good(&w->reader, exr_open(&w->reader, &w->ctx));
@@ -275,7 +291,9 @@ static void end_worker(exr_worker *w)
         exr_decoding_destroy(w->ctx, &w->pipe);
         exr_finish(&w->ctx);
     }
-    free(w->line);
+    memory_free(w->line);
+    if (w->counted > 0)
+        memory_count(NULL, w->plan->to->progress->memory->from, -w->counted);
 }
 
 static void decode_all(int fd, const exr_plan *p, int threads, exr_failure *bad)
@@ -291,6 +309,12 @@ static void decode_all(int fd, const exr_plan *p, int threads, exr_failure *bad)
 #pragma omp for schedule(dynamic)
         for (int k = 0; k < p->chunks; k++) {
             int first;
+            if (is_callers_thread() && !image_goes_on(p->to, (int)((double)k / p->chunks * p->to->height), why))
+#pragma omp critical
+            {
+                bad->chunk = -1;
+                memcpy(bad->why, why, sizeof why);
+            }
 #pragma omp critical
             first = bad->chunk;
             if (k < first && !(ready && decode_numbered(&w, k)))

@@ -16,6 +16,12 @@ bool image_refuse(char *why, const char *fmt, ...)
     return false;
 }
 
+bool image_refuse_memory(const image_stream *s, char *why)
+{
+    char words[MEMORY_WORDS];
+    return image_refuse(why, "%s", memory_words(progress_memory(s->progress), words));
+}
+
 static const char *refuse_size(int64_t width, int64_t height)
 {
     if (width < 1 || height < 1)
@@ -34,7 +40,7 @@ bool image_begin(image_stream *s, int64_t width, int64_t height, char *why)
     s->range[1] = -INFINITY;
     if (!refused)
         refused = s->to->begin(s->to->user, s->width, s->height);
-    return !refused || image_refuse(why, "%s", refused);
+    return !refused || (*refused ? image_refuse(why, "%s", refused) : image_refuse_memory(s, why));
 }
 
 /* What is found so far, each of some columns by itself. unknown: 0, or NaN by a value that is NaN or infinite. */
@@ -96,6 +102,11 @@ const char *image_refuse_form(const image_form *form)
 }
 
 int image_writer_rows(const image_writer *w) { return w->rows; }
+
+bool image_goes_on(const image_stream *s, int rows, char *why)
+{
+    return progress_show(s->progress, "reading", (double)rows / s->height) || image_refuse(why, "cancelled");
+}
 
 bool image_writer_add(image_writer *w, int rows, const float *const *plane, const progress *p)
 {

@@ -28,9 +28,13 @@ const char *image_refuse_form(const image_form *form);
 /* The samples on their way to the taker. values: of a pixel, 1 or 4. */
 typedef struct image_stream {
     const image_taker *to;
+    const progress *progress; /* NULL: none */
     int values, width, height;
     float range[2]; /* of all values so far */
 } image_stream;
+
+/* "there is not enough memory for the image", and what it needs, in `why`. Always false. */
+bool image_refuse_memory(const image_stream *s, char *why);
 
 /* Before the samples. False, with a reason: too large, or not taken. */
 bool image_begin(image_stream *s, int64_t width, int64_t height, char *why);
@@ -38,6 +42,9 @@ bool image_begin(image_stream *s, int64_t width, int64_t height, char *why);
 /* Pass on n pixels of row y from column x on, and widen the range, which may be another thread's own. False, with a
  * reason: a value is NaN or infinite. */
 bool image_pass(const image_stream *s, int x, int y, int n, const float *v, float range[2], char *why);
+
+/* Show how many rows are decoded. False, with a reason: the caller has ended the reading. */
+bool image_goes_on(const image_stream *s, int rows, char *why);
 
 /* Whole numbers as samples, 0..1. */
 static inline float image_of_u8(int x) { return (float)x / 255.0f; }

@@ -12,7 +12,7 @@
 /* An image in colour: four values a pixel. */
 typedef struct image {
     int width, height;
-    float *v; /* height x width x 4 values; free() */
+    float *v; /* height x width x 4 values; memory_free */
 } image;
 
 /* The most samples a side and in all of an image that is read; a picture that is written has only the
@@ -24,7 +24,7 @@ enum { IMAGE_MAX_SIDE = 65536 };
 typedef struct image_taker {
     void *user;
 
-    /* Called once, before the samples. Returns NULL, or why the image can't be taken. */
+    /* Called once, before the samples. Returns NULL, or why the image can't be taken; "": not enough memory. */
     const char *(*begin)(void *user, int width, int height);
 
     /* Called with n samples of row y, from column x on, for each sample once, in any order, by several threads at once.
@@ -33,7 +33,7 @@ typedef struct image_taker {
 } image_taker;
 
 /* Read one channel of a file, on the given number of threads (0: one for each processor; PNG takes two at
- * most). range: the least sample and the most.
+ * most). w: where its memory comes from; NULL: without a limit. range: the least sample and the most.
  *
  * PNG: grey, 8 or 16 bit (also 1, 2, 4 bit; grey with alpha, the alpha ignored), as sample / (2^bits - 1),
  * so 0..1, without any gamma; `channel` must be NULL. Colour and palette images must be grey: red, green and blue the
@@ -42,7 +42,8 @@ typedef struct image_taker {
  * channel, or Y. Values are not changed; NaN and infinities are refused.
  * The format is recognised by the file's first bytes, not by its name.
  * False, with one message in *e that does not name the file. */
-bool image_read(const char *path, const char *channel, int threads, const image_taker *to, float range[2], errors *e);
+bool image_read(const char *path, const char *channel, int threads, const progress *w, const image_taker *to,
+                float range[2], errors *e);
 
 /* The bits of a PNG's samples, or the indices of its palette: 1 to 16. 0: the file is no PNG. */
 int image_png_bits(const char *path);
@@ -56,7 +57,8 @@ typedef enum image_encoding { IMAGE_BY_KIND, IMAGE_SRGB, IMAGE_LINEAR } image_en
  * PNG: any kind; sRGB unless IMAGE_LINEAR is asked for. Its other statements about gamma are ignored.
  * OpenEXR: as above; R, G and B, or Y as a grey. Always linear; IMAGE_SRGB is an error.
  * An image that is transparent anywhere is refused. exr: whether the file is one. */
-bool image_read_color(const char *path, image_encoding encoding, int threads, image *out, bool *exr, errors *e);
+bool image_read_color(const char *path, image_encoding encoding, int threads, const progress *w, image *out, bool *exr,
+                      errors *e);
 
 /* A named text to write into the file. */
 typedef struct image_text {

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/files.h"
 #include "image/srgb.h"
 
 static bool read_any(FILE *file, const char *channel, int threads, image_stream *to, bool *is_exr, char *why)
@@ -21,8 +22,7 @@ static bool read_any(FILE *file, const char *channel, int threads, image_stream 
     if (*is_exr)
         return image_read_exr(file, channel, threads, to, why);
     if (n >= sizeof jpeg && memcmp(first, jpeg, sizeof jpeg) == 0)
-        return image_refuse(why, "it is a JPEG; a PNG or an OpenEXR file is expected (kage import makes PNG files of a "
-                                 "model's JPEG files)");
+        return image_refuse(why, "it is a JPEG, expected a PNG or an OpenEXR file; save it again as a PNG");
     if (n < sizeof png || memcmp(first, png, sizeof png) != 0)
         return image_refuse(why,
                             n ? "its first bytes are those of neither a PNG nor an OpenEXR file" : "the file is empty");
@@ -33,9 +33,10 @@ static bool read_any(FILE *file, const char *channel, int threads, image_stream 
 
 static bool read_file(const char *path, const char *channel, int threads, image_stream *to, bool *is_exr, errors *e)
 {
-    FILE *file = fopen(path, "rb");
+    const char *reason;
+    FILE *file = files_open_input(path, &reason);
     if (!file)
-        return errors_add(e, "%s", strerror(errno));
+        return errors_add(e, "%s", reason);
     char why[IMAGE_WHY] = "";
     bool ok = read_any(file, channel, threads, to, is_exr, why);
     fclose(file);
@@ -45,7 +46,8 @@ static bool read_file(const char *path, const char *channel, int threads, image_
 int image_png_bits(const char *path)
 {
     unsigned char head[25]; /* the signature, then the chunk IHDR: its size, its name, the image's size, the bits */
-    FILE *file = fopen(path, "rb");
+    const char *why;
+    FILE *file = files_open_input(path, &why);
     const bool good = file && fread(head, 1, sizeof head, file) == sizeof head && memcmp(head + 1, "PNG", 3) == 0 &&
                       memcmp(head + 12, "IHDR", 4) == 0;
     if (file)
@@ -53,10 +55,11 @@ int image_png_bits(const char *path)
     return good && head[24] <= 16 ? head[24] : 0;
 }
 
-bool image_read(const char *path, const char *channel, int threads, const image_taker *to, float range[2], errors *e)
+bool image_read(const char *path, const char *channel, int threads, const progress *w, const image_taker *to,
+                float range[2], errors *e)
 {
     bool is_exr;
-    image_stream s = {.to = to, .values = 1};
+    image_stream s = {.to = to, .progress = w, .values = 1};
     const bool ok = read_file(path, channel, threads, &s, &is_exr, e);
     range[0] = s.range[0];
     range[1] = s.range[1];
@@ -69,9 +72,10 @@ static bool read_memory(const image_array *a, const char *channel, image_stream 
     return image_read_array(a, channel, to, why) || errors_add(e, "%s", why);
 }
 
-bool image_array_read(const image_array *a, const char *channel, const image_taker *to, float range[2], errors *e)
+bool image_array_read(const image_array *a, const char *channel, const progress *w, const image_taker *to,
+                      float range[2], errors *e)
 {
-    image_stream s = {.to = to, .values = 1};
+    image_stream s = {.to = to, .progress = w, .values = 1};
     const bool ok = read_memory(a, channel, &s, e);
     range[0] = s.range[0];
     range[1] = s.range[1];
@@ -80,16 +84,22 @@ bool image_array_read(const image_array *a, const char *channel, const image_tak
 
 /* ---- in colour: all pixels in memory ---- */
 
+typedef struct colour_pixels {
+    image *out;
+    const progress *progress;
+} colour_pixels;
+
 static const char *begin_pixels(void *user, int width, int height)
 {
-    image *out = user;
-    *out = (image){width, height, malloc((size_t)width * (size_t)height * 4 * sizeof *out->v)};
-    return out->v ? NULL : "there is not enough memory for the image";
+    const colour_pixels *c = user;
+    float *v = memory_new(progress_memory(c->progress), (size_t)width * (size_t)height * 4 * sizeof *v);
+    *c->out = (image){width, height, v};
+    return v ? NULL : "";
 }
 
 static void take_pixels(void *user, int x, int y, int n, const float *v)
 {
-    const image *out = user;
+    const image *out = ((const colour_pixels *)user)->out;
     memcpy(out->v + 4 * ((size_t)y * (size_t)out->width + (size_t)x), v, 4 * (size_t)n * sizeof *v);
 }
 
@@ -97,7 +107,7 @@ static void take_pixels(void *user, int x, int y, int n, const float *v)
 static bool keep_if(bool good, image *out)
 {
     if (!good) {
-        free(out->v);
+        memory_free(out->v);
         *out = (image){0};
     }
     return good;
@@ -125,20 +135,24 @@ static bool finish_color(image_encoding encoding, bool linear, const char *wrong
            errors_add(e, "there is not enough memory for the image");
 }
 
-bool image_read_color(const char *path, image_encoding encoding, int threads, image *out, bool *is_exr, errors *e)
+bool image_read_color(const char *path, image_encoding encoding, int threads, const progress *w, image *out,
+                      bool *is_exr, errors *e)
 {
-    const image_taker to = {out, begin_pixels, take_pixels};
-    image_stream s = {.to = &to, .values = 4};
+    colour_pixels c = {out, w};
+    const image_taker to = {&c, begin_pixels, take_pixels};
+    image_stream s = {.to = &to, .progress = w, .values = 4};
     *out = (image){0};
     return keep_if(read_file(path, NULL, threads, &s, is_exr, e) &&
                        finish_color(encoding, *is_exr, "an OpenEXR file is linear; srgb is for PNG", out, e),
                    out);
 }
 
-bool image_array_read_color(const image_array *a, image_encoding encoding, image *out, bool *is_float, errors *e)
+bool image_array_read_color(const image_array *a, image_encoding encoding, const progress *w, image *out,
+                            bool *is_float, errors *e)
 {
-    const image_taker to = {out, begin_pixels, take_pixels};
-    image_stream s = {.to = &to, .values = 4};
+    colour_pixels c = {out, w};
+    const image_taker to = {&c, begin_pixels, take_pixels};
+    image_stream s = {.to = &to, .progress = w, .values = 4};
     *out = (image){0};
     *is_float = a->type >= IMAGE_F32;
     return keep_if(

@@ -22,7 +22,14 @@ static void put_corner(const mesh_array *a, size_t from, float at[3], float norm
     uv[1] = a->uvs ? 1 - (float)a->uvs[2 * from + 1] : NAN;
 }
 
-bool mesh_array_read(const mesh_array *a, mesh_data *out, char why[MESH_WHY])
+bool mesh_refuse_memory(const progress *w, char why[MESH_WHY])
+{
+    char words[MEMORY_WORDS];
+    snprintf(why, MESH_WHY, "%s", memory_words(progress_memory(w), words));
+    return false;
+}
+
+bool mesh_array_read(const mesh_array *a, const progress *w, mesh_data *out, char why[MESH_WHY])
 {
     const size_t n = (size_t)a->triangles;
     if (a->triangles < 1 || a->triangles > MESH_MOST) {
@@ -35,11 +42,12 @@ bool mesh_array_read(const mesh_array *a, mesh_data *out, char why[MESH_WHY])
                      (unsigned long)a->corners[k], a->vertices - 1);
             return false;
         }
-    *out = (mesh_data){.n = a->triangles, .at = malloc(sizeof *out->at * n), .skin = malloc(sizeof *out->skin * n)};
+    memory *m = progress_memory(w);
+    *out = (mesh_data){
+        .n = a->triangles, .at = memory_new(m, sizeof *out->at * n), .skin = memory_new(m, sizeof *out->skin * n)};
     if (!out->at || !out->skin) {
         mesh_data_free(out);
-        snprintf(why, MESH_WHY, "out of memory");
-        return false;
+        return mesh_refuse_memory(w, why);
     }
     for (size_t k = 0; k < n; k++)
         for (size_t c = 0; c < 3; c++) {

@@ -95,9 +95,9 @@ typedef struct places {
 
 static void free_places(places *p)
 {
-    free(p->of);
-    free(p->first);
-    free(p->corner);
+    memory_free(p->of);
+    memory_free(p->first);
+    memory_free(p->corner);
 }
 
 /* FNV-1a; -0 is 0. */
@@ -112,14 +112,15 @@ static uint32_t hash_of(const float at[3])
 
 static bool same(const float a[3], const float b[3]) { return a[0] == b[0] && a[1] == b[1] && a[2] == b[2]; }
 
-static bool find_places(const mesh_data *d, places *p)
+static bool find_places(const mesh_data *d, memory *m, places *p)
 {
     const int corners = 3 * d->n;
     uint32_t size = 16;
     while (size < 2 * (uint32_t)corners)
         size *= 2;
-    int32_t *table = malloc(sizeof *table * size); /* open addressing: a corner of each place, -1: free */
-    *p = (places){malloc(sizeof(int32_t) * (size_t)corners), NULL, malloc(sizeof(int32_t) * (size_t)corners), 0};
+    int32_t *table = memory_new(m, sizeof *table * size); /* open addressing: a corner of each place, -1: free */
+    *p = (places){memory_new(m, sizeof(int32_t) * (size_t)corners), NULL,
+                  memory_new(m, sizeof(int32_t) * (size_t)corners), 0};
     if (table && p->of)
         memset(table, 0xff, sizeof *table * size);
     for (int i = 0; table && p->of && i < corners; i++) {
@@ -133,8 +134,8 @@ static bool find_places(const mesh_data *d, places *p)
         } else
             p->of[i] = p->of[table[k]];
     }
-    free(table);
-    p->first = calloc((size_t)p->n + 2, sizeof *p->first);
+    memory_free(table);
+    p->first = memory_zeroed(m, ((size_t)p->n + 2) * sizeof *p->first);
     if (!table || !p->of || !p->corner || !p->first)
         return false;
     for (int i = 0; i < corners; i++)
@@ -180,10 +181,10 @@ static void smooth_place(mesh_data *d, const int32_t *corner, int n, double leas
     }
 }
 
-static bool smooth(mesh_data *d, double crease, int threads)
+static bool smooth(mesh_data *d, double crease, int threads, memory *m)
 {
     places p;
-    const bool good = find_places(d, &p);
+    const bool good = find_places(d, m, &p);
     const double least = km_cos(crease * (KM_PI / 180)) - SAME_ANGLE;
     const int n = good ? p.n : 0;
     (void)threads; /* without OpenMP */
@@ -248,7 +249,8 @@ static void replace_averted(mesh_data *d)
     }
 }
 
-bool mesh_clean(mesh_data *d, mesh_normals normals, double crease, double most, int threads, char why[MESH_WHY])
+bool mesh_clean(mesh_data *d, mesh_normals normals, double crease, double most, int threads, const progress *w,
+                char why[MESH_WHY])
 {
     if (!check_numbers(d, most, why))
         return false;
@@ -261,10 +263,8 @@ bool mesh_clean(mesh_data *d, mesh_normals normals, double crease, double most, 
     count_bare(d);
     const bool given = keep_given(d, normals);
     flip_by_normals(d);
-    if (!given && normals != MESH_NORMALS_FLAT && !smooth(d, crease, threads_of(threads))) {
-        snprintf(why, MESH_WHY, "out of memory");
-        return false;
-    }
+    if (!given && normals != MESH_NORMALS_FLAT && !smooth(d, crease, threads_of(threads), progress_memory(w)))
+        return mesh_refuse_memory(w, why);
     replace_averted(d);
     if (normals == MESH_NORMALS_FLAT) /* all were missing, not wrong */
         d->notes.bent = 0;

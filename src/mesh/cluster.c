@@ -227,10 +227,10 @@ static void cut(int n, const bvh_box *box, unsigned char *size, unsigned char *s
         start[i - size[i] + 1] = 1;
 }
 
-/* Groups of boxes: group g is box[first[g]] to box[first[g + 1] - 1]. The caller frees `first`. NULL: out of memory. */
-static int32_t *cut_all(int n, const bvh_box *box, int threads, int *groups)
+/* Groups of boxes: group g is box[first[g]] to box[first[g + 1] - 1]. `first`: memory_free. NULL: out of memory. */
+static int32_t *cut_all(int n, const bvh_box *box, int threads, memory *m, int *groups)
 {
-    unsigned char *size = malloc((size_t)n), *start = calloc((size_t)n, 1);
+    unsigned char *size = memory_new(m, (size_t)n), *start = memory_zeroed(m, (size_t)n);
     int32_t *first = NULL;
     (void)threads; /* without OpenMP */
     *groups = 0;
@@ -240,13 +240,13 @@ static int32_t *cut_all(int n, const bvh_box *box, int threads, int *groups)
             cut(n - a < CHUNK ? n - a : CHUNK, box + a, size + a, start + a);
         for (int i = 0; i < n; i++)
             *groups += start[i];
-        first = malloc(sizeof *first * ((size_t)*groups + 1));
+        first = memory_new(m, sizeof *first * ((size_t)*groups + 1));
     }
     for (int i = 0, g = 0; first && i <= n; i++)
         if (i == n || start[i])
             first[g++] = i;
-    free(size);
-    free(start);
+    memory_free(size);
+    memory_free(start);
     return first;
 }
 
@@ -339,9 +339,10 @@ static mesh_block block_of(int n, const bvh_box *box, const mesh_cluster *c, int
 }
 
 /* The triangles' boxes, sorted. */
-static bool sort_triangles(const mesh_data *d, const bvh_space *space, int threads, key *sorted, bvh_box *box)
+static bool sort_triangles(const mesh_data *d, const bvh_space *space, int threads, memory *m, key *sorted,
+                           bvh_box *box)
 {
-    key *keys = malloc(sizeof *keys * (size_t)d->n);
+    key *keys = memory_new(m, sizeof *keys * (size_t)d->n);
     if (!keys)
         return false;
     (void)threads; /* without OpenMP */
@@ -354,26 +355,26 @@ static bool sort_triangles(const mesh_data *d, const bvh_space *space, int threa
 #pragma omp parallel for num_threads(threads) schedule(static)
     for (int i = 0; i < d->n; i++)
         box[i] = box_of(d, space, (int32_t)sorted[i].index);
-    free(keys);
+    memory_free(keys);
     return true;
 }
 
 /* From sorted triangles. box: of each; becomes those of the clusters, and then of the blocks. */
-static bool make(const mesh_data *d, const bvh_space *space, int threads, const key *sorted, bvh_box *box,
+static bool make(const mesh_data *d, const bvh_space *space, int threads, memory *m, const key *sorted, bvh_box *box,
                  mesh_clusters *out)
 {
     int clusters, blocks;
-    int32_t *first = cut_all(d->n, box, threads, &clusters);
-    out->cluster = first ? malloc(sizeof *out->cluster * (size_t)clusters) : NULL;
+    int32_t *first = cut_all(d->n, box, threads, m, &clusters);
+    out->cluster = first ? memory_new(m, sizeof *out->cluster * (size_t)clusters) : NULL;
     if (out->cluster) {
 #pragma omp parallel for num_threads(threads) schedule(static)
         for (int g = 0; g < clusters; g++)
             out->cluster[g] = cluster_of(d, space, first[g + 1] - first[g], sorted + first[g], box + first[g]);
         for (int g = 0; g < clusters; g++) /* first[g] >= g */
             box[g] = box_of_all(first[g + 1] - first[g], box + first[g]);
-        free(first);
-        first = cut_all(clusters, box, threads, &blocks);
-        out->block = first ? malloc(sizeof *out->block * (size_t)blocks) : NULL;
+        memory_free(first);
+        first = cut_all(clusters, box, threads, m, &blocks);
+        out->block = first ? memory_new(m, sizeof *out->block * (size_t)blocks) : NULL;
     }
     if (out->block) {
         out->n = blocks;
@@ -383,30 +384,32 @@ static bool make(const mesh_data *d, const bvh_space *space, int threads, const 
         for (int g = 0; g < blocks; g++) /* first[g] >= g */
             box[g] = box_of_all(first[g + 1] - first[g], box + first[g]);
     }
-    free(first);
+    memory_free(first);
     return out->block;
 }
 
-bool mesh_clusters_new(const mesh_data *d, const bvh_space *space, int threads, mesh_clusters *out, bvh_box **box)
+bool mesh_clusters_new(const mesh_data *d, const bvh_space *space, int threads, const progress *w, mesh_clusters *out,
+                       bvh_box **box)
 {
-    key *sorted = malloc(sizeof *sorted * (size_t)d->n);
+    memory *m = progress_memory(w);
+    key *sorted = memory_new(m, sizeof *sorted * (size_t)d->n);
     *out = (mesh_clusters){0};
-    *box = malloc(sizeof **box * (size_t)d->n);
+    *box = memory_new(m, sizeof **box * (size_t)d->n);
     threads = threads_of(threads);
-    const bool good =
-        sorted && *box && sort_triangles(d, space, threads, sorted, *box) && make(d, space, threads, sorted, *box, out);
-    free(sorted);
+    const bool good = sorted && *box && sort_triangles(d, space, threads, m, sorted, *box) &&
+                      make(d, space, threads, m, sorted, *box, out);
+    memory_free(sorted);
     if (good)
         return true;
     mesh_clusters_free(out);
-    free(*box);
+    memory_free(*box);
     *box = NULL;
     return false;
 }
 
 void mesh_clusters_free(mesh_clusters *c)
 {
-    free(c->cluster);
-    free(c->block);
+    memory_free(c->cluster);
+    memory_free(c->block);
     *c = (mesh_clusters){0};
 }

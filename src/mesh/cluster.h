@@ -45,7 +45,8 @@ typedef struct mesh_clusters {
 
 /* Make the clusters and blocks, and the box of each block. The caller frees *box. The result does not depend on the
  * threads (0: one for each processor). False: out of memory. */
-bool mesh_clusters_new(const mesh_data *d, const bvh_space *space, int threads, mesh_clusters *out, bvh_box **box);
+bool mesh_clusters_new(const mesh_data *d, const bvh_space *space, int threads, const progress *w, mesh_clusters *out,
+                       bvh_box **box);
 void mesh_clusters_free(mesh_clusters *c);
 
 /* Rays as axes: z is the coordinate in which a ray's direction is largest, x and y the two that follow it. x and y are

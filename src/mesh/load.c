@@ -16,18 +16,26 @@ static bool good_parts(const mesh_data *d)
     return good;
 }
 
+/* Where the triangles go. */
+typedef struct taker {
+    mesh_data *out;
+    const progress *progress;
+} taker;
+
 static bool take_triangles(void *user, reader_pipe *p)
 {
-    mesh_data *out = user;
+    const taker *to = user;
+    mesh_data *out = to->out;
+    memory *m = progress_memory(to->progress);
+    char why[MESH_WHY];
     const mesh_data come = p->letter.data;
-    if (p->letter.is != LETTER_DONE || come.n <= 0 || come.n > MESH_MOST || come.parts <= 0 ||
-        come.parts > come.n)
+    if (p->letter.is != LETTER_DONE || come.n <= 0 || come.n > MESH_MOST || come.parts <= 0 || come.parts > come.n)
         return reader_fails(p, "its reader failed, expected a valid file");
     const size_t n = (size_t)come.n, parts = (size_t)come.parts;
-    *out = (mesh_data){come.n,     malloc(sizeof *out->at * n),       malloc(sizeof *out->skin * n),
-                       come.notes, malloc(sizeof *out->part * parts), come.parts};
+    *out = (mesh_data){come.n,     memory_new(m, sizeof *out->at * n),       memory_new(m, sizeof *out->skin * n),
+                       come.notes, memory_new(m, sizeof *out->part * parts), come.parts};
     if (!out->at || !out->skin || !out->part)
-        return reader_fails(p, "out of memory");
+        return reader_fails(p, (mesh_refuse_memory(to->progress, why), why));
     return reader_receive(p, out->at, sizeof *out->at * n) && reader_receive(p, out->skin, sizeof *out->skin * n) &&
            reader_receive(p, out->part, sizeof *out->part * parts) &&
            (good_parts(out) || reader_fails(p, "its reader failed, expected a valid file"));
@@ -36,8 +44,9 @@ static bool take_triangles(void *user, reader_pipe *p)
 bool mesh_file_read(const char *path, const char *reader, const progress *w, files *opened, mesh_data *out,
                     char why[MESH_WHY])
 {
+    taker to = {out, w};
     const reader_call c = {
-        .path = path, .reader = reader, .show = w, .opened = opened, .take = take_triangles, .user = out};
+        .path = path, .reader = reader, .show = w, .opened = opened, .take = take_triangles, .user = &to};
     *out = (mesh_data){0};
     const bool good = reader_run(&c, why);
     if (!good)
@@ -59,7 +68,7 @@ static bool refuse(const mesh_data *d, const char *name, char why[MESH_WHY])
     return false;
 }
 
-bool mesh_data_part(const mesh_data *d, const char *name, mesh_data *out, char why[MESH_WHY])
+bool mesh_data_part(const mesh_data *d, const char *name, const progress *w, mesh_data *out, char why[MESH_WHY])
 {
     int k = 0;
     while (k < d->parts && strcmp(d->part[k].name, name) != 0)
@@ -67,12 +76,12 @@ bool mesh_data_part(const mesh_data *d, const char *name, mesh_data *out, char w
     if (k == d->parts)
         return refuse(d, name, why);
     const int first = d->part[k].first, n = d->part[k].n;
-    *out =
-        (mesh_data){.n = n, .at = malloc(sizeof *out->at * (size_t)n), .skin = malloc(sizeof *out->skin * (size_t)n)};
+    memory *m = progress_memory(w);
+    *out = (mesh_data){
+        .n = n, .at = memory_new(m, sizeof *out->at * (size_t)n), .skin = memory_new(m, sizeof *out->skin * (size_t)n)};
     if (!out->at || !out->skin) {
         mesh_data_free(out);
-        snprintf(why, MESH_WHY, "out of memory");
-        return false;
+        return mesh_refuse_memory(w, why);
     }
     memcpy(out->at, d->at + first, sizeof *out->at * (size_t)n);
     memcpy(out->skin, d->skin + first, sizeof *out->skin * (size_t)n);

@@ -218,9 +218,9 @@ static void set_box(mesh *f)
 static bvh *tree_of(mesh *f, int threads, const progress *w)
 {
     bvh_box *box;
-    bvh *b = mesh_clusters_new(&f->d, &f->space, threads, &f->clusters, &box) ? bvh_new(f->clusters.n, box, threads, w)
-                                                                              : NULL;
-    free(box);
+    const bool good = mesh_clusters_new(&f->d, &f->space, threads, w, &f->clusters, &box);
+    bvh *b = good ? bvh_new(f->clusters.n, box, threads, w) : NULL;
+    memory_free(box);
     return b;
 }
 
@@ -281,7 +281,7 @@ surface *mesh_new(mesh_data *d, int threads, const progress *w)
 
 /* A map that mirrors swaps inside and outside. So the corners get the opposite order, and u is reflected about the
  * middle of its range. */
-surface *mesh_moved(const surface *base, const affine *m, int threads)
+surface *mesh_moved(const surface *base, const affine *m, int threads, const progress *w)
 {
     const mesh *from = (const mesh *)base;
     const bool mirrors = affine_volume(m) < 0;
@@ -293,8 +293,8 @@ surface *mesh_moved(const surface *base, const affine *m, int threads)
     memcpy(f->u, from->u, sizeof f->u);
     memcpy(f->w, from->w, sizeof f->w);
     f->d = (mesh_data){.n = from->d.n,
-                       .at = malloc(sizeof *f->d.at * (size_t)from->d.n),
-                       .skin = malloc(sizeof *f->d.skin * (size_t)from->d.n),
+                       .at = memory_new(progress_memory(w), sizeof *f->d.at * (size_t)from->d.n),
+                       .skin = memory_new(progress_memory(w), sizeof *f->d.skin * (size_t)from->d.n),
                        .notes = from->d.notes};
     for (int k = 0; f->d.at && f->d.skin && k < f->d.n; k++)
         for (int i = 0; i < 3; i++) {
@@ -308,15 +308,15 @@ surface *mesh_moved(const surface *base, const affine *m, int threads)
             f->d.skin[k].uv[to][1] = from->d.skin[k].uv[i][1];
         }
     if (f->d.at && f->d.skin)
-        return finish(f, threads, NULL);
+        return finish(f, threads, w);
     mesh_free(&f->base);
     return NULL;
 }
 
 void mesh_data_free(mesh_data *d)
 {
-    free(d->at);
-    free(d->skin);
-    free(d->part);
+    memory_free(d->at);
+    memory_free(d->skin);
+    memory_free(d->part);
     *d = (mesh_data){0};
 }

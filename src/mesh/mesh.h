@@ -35,7 +35,7 @@ surface *mesh_new(mesh_data *d, int threads, const progress *w);
 
 /* The image of a mesh by an affine map, with arrays of its own; unlike one by surface_transformed it can be displaced.
  * Where the map mirrors, u runs the other way in its range. NULL: out of memory. */
-surface *mesh_moved(const surface *base, const affine *m, int threads);
+surface *mesh_moved(const surface *base, const affine *m, int threads, const progress *w);
 
 /* Whether a surface is one. */
 bool mesh_is(const surface *f);

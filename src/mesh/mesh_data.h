@@ -43,7 +43,7 @@ typedef struct mesh_part {
 
 typedef struct mesh_data {
     int n;             /* triangles */
-    float (*at)[3][3]; /* the corners of each, in scene units; owned */
+    float (*at)[3][3]; /* the corners of each, in scene units; owned, as all here: memory_free */
     mesh_skin *skin;   /* of each; owned */
     mesh_notes notes;
     mesh_part *part; /* owned; NULL once the triangles are changed */
@@ -66,8 +66,9 @@ typedef struct mesh_array {
     const uint32_t *corners;                 /* 3 a triangle */
 } mesh_array;
 
-/* Its triangles. False, with the reason in one line. (array.c) */
-bool mesh_array_read(const mesh_array *a, mesh_data *out, char why[MESH_WHY]);
+/* Its triangles. w: what their memory is taken from, as below; NULL: no limit. False, with the reason in one line.
+ * (array.c) */
+bool mesh_array_read(const mesh_array *a, const progress *w, mesh_data *out, char why[MESH_WHY]);
 
 /* Free the arrays and empty *d. */
 void mesh_data_free(mesh_data *d);
@@ -80,12 +81,16 @@ bool mesh_file_read(const char *path, const char *reader, const progress *w, fil
                     char why[MESH_WHY]);
 
 /* The triangles of one part; the result is the caller's. False, with the reason: no such part, or out of memory. */
-bool mesh_data_part(const mesh_data *d, const char *name, mesh_data *out, char why[MESH_WHY]);
+bool mesh_data_part(const mesh_data *d, const char *name, const progress *w, mesh_data *out, char why[MESH_WHY]);
+
+/* Say in `why` that there is not enough memory, and what is needed. Always false. (array.c) */
+bool mesh_refuse_memory(const progress *w, char why[MESH_WHY]);
 
 /* Check the numbers, remove triangles without an area, and find a normal for every corner: the file's where it is
  * usable, otherwise the mean over the triangles about the vertex that are within `crease` degrees of this one. False,
  * with the reason: a coordinate beyond `most`, no triangle left, or out of memory. The result does not depend on the
  * threads, 0: one for each processor. (clean.c) */
-bool mesh_clean(mesh_data *d, mesh_normals normals, double crease, double most, int threads, char why[MESH_WHY]);
+bool mesh_clean(mesh_data *d, mesh_normals normals, double crease, double most, int threads, const progress *w,
+                char why[MESH_WHY]);
 
 #endif

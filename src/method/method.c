@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-const char method_expected[] = "none, 0, 1, 2, 2+, iter:K, march:N, exact or auto[:E]";
+const char method_expected[] = "none, 0, 1, 2, 2+, iter:K, march:N (K and N: 1 to 1024), exact or auto[:E]";
 
 const method_help method_helps[] = {
     {"none", "the smooth hit: bump mapping only, as other renderers do it; also called bump"},

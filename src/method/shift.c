@@ -6,40 +6,108 @@
 #include "wave/fill.h"
 #include "wave/lane.h"
 
-STAGE static void normals_smooth(hit_group *restrict g)
+/* Whether a vector with this square has a length and a direction. */
+static inline int has_length(real square) { return (square >= REAL_LEAST) & (square < (real)HUGE_VAL); }
+
+/* Both return how many lanes have no normal, or no n'. */
+STAGE static int normals_smooth(hit_group *restrict g)
 {
+    int none = 0;
     for (int i = 0; i < g->n; i++) {
         bs_vec3 n = bs_normal(lane_get(&g->q.Qu, i), lane_get(&g->q.Qw, i));
         lane_set(&g->n_smooth, i, n);
         lane_set(&g->n_bump, i, lane_unit(n));
+        none += has_length(bs_dot(n, n)) == 0;
     }
+    return none;
 }
 
-/* Returns how many lanes are not regular. */
 STAGE static int normals_bump(hit_group *restrict g)
 {
-    int irregular = 0;
+    int none = 0;
     for (int i = 0; i < g->n; i++) {
         bs_vec3 Qu = lane_get(&g->q.Qu, i), Qw = lane_get(&g->q.Qw, i), n = bs_normal(Qu, Qw);
         bs_vec3 np = bs_perturbed_normal(n, Qu, Qw, g->bump.Pu[i], g->bump.Pw[i]);
-        int regular = bs_regular(n, Qu, Qw);
-        np.x = regular ? np.x : n.x;
-        np.y = regular ? np.y : n.y;
-        np.z = regular ? np.z : n.z;
+        int good = bs_regular(n, Qu, Qw) & has_length(bs_dot(np, np));
+        np.x = good ? np.x : n.x;
+        np.y = good ? np.y : n.y;
+        np.z = good ? np.z : n.z;
         lane_set(&g->n_smooth, i, n);
         lane_set(&g->n_bump, i, lane_unit(np));
-        irregular += regular == 0;
+        none += good == 0;
     }
-    return irregular;
+    return none;
+}
+
+/* ---- without a value ---- */
+
+void shift_undefined(hit_group *g, int i)
+{
+    if (g->undefined == 0)
+        fill_ids(g->n, 0, g->none);
+    g->undefined += g->none[i] == 0;
+    g->none[i] = 1;
+}
+
+static void level_bump(hit_group *g, int i)
+{
+    bump_values *h = &g->bump;
+    h->P[i] = h->Pu[i] = h->Pw[i] = h->Puu[i] = h->Puw[i] = h->Pww[i] = 0;
+}
+
+/* Qu x Qw, where float's range does not bear it; where there is none, a normal that faces the viewer. */
+static vec3 normal_at(const hit_group *g, int i)
+{
+    const vec3 u = vec3s_get(&g->q.Qu, i), w = vec3s_get(&g->q.Qw, i), n = vec3_cross(u, w), s = vec3s_get(&g->x->s, i);
+    const double length = vec3_length(n);
+    return length > 0 && length < HUGE_VAL ? vec3_scale(n, 1 / length) : vec3_scale(vec3_unit(s), -1);
+}
+
+/* A plane without bumps in place of a surface without a normal. */
+static void flatten(hit_group *g, int i)
+{
+    const vec3 n = normal_at(g, i);
+    const vec3 axis = fabs(n.x) < 0.6 ? (vec3){1, 0, 0} : (vec3){0, 1, 0}, u = vec3_unit(vec3_cross(axis, n)),
+               none = {0, 0, 0};
+    vec3s_set(&g->q.Qu, i, u);
+    vec3s_set(&g->q.Qw, i, vec3_cross(n, u));
+    vec3s_set(&g->q.Quu, i, none);
+    vec3s_set(&g->q.Quw, i, none);
+    vec3s_set(&g->q.Qww, i, none);
+    vec3s_set(&g->n_smooth, i, n);
+    vec3s_set(&g->n_bump, i, n);
+    level_bump(g, i);
+}
+
+/* The lanes that the loops above count. Where the surface is not regular, but has a normal, P is its height; where n'
+ * alone is beyond float's range, there is no bump. */
+static void mend_normals(hit_group *g, bool bumped)
+{
+    for (int i = 0; i < g->n; i++) {
+        const bs_vec3 Qu = lane_get(&g->q.Qu, i), Qw = lane_get(&g->q.Qw, i), n = lane_get(&g->n_smooth, i);
+        const bs_vec3 np = bumped ? bs_perturbed_normal(n, Qu, Qw, g->bump.Pu[i], g->bump.Pw[i]) : n;
+        const bool smooth = has_length(bs_dot(n, n)), regular = !bumped || bs_regular(n, Qu, Qw);
+        if (smooth && regular && has_length(bs_dot(np, np)))
+            continue;
+        if (!smooth)
+            flatten(g, i);
+        else if (regular)
+            level_bump(g, i);
+        shift_undefined(g, i);
+    }
 }
 
 void shift_normals(hit_group *g, const bump *P)
 {
-    if (P)
-        g->regular = normals_bump(g) == 0;
-    else
-        normals_smooth(g);
+    if ((P ? normals_bump : normals_smooth)(g) > 0)
+        mend_normals(g, P);
+    if (P && g->bump.undefined)
+        for (int i = 0; i < g->n; i++)
+            if (g->bump.none[i])
+                shift_undefined(g, i);
 }
+
+/* ---- the shift ---- */
 
 static inline bs_view view(const hit_group *g, int i)
 {
@@ -52,17 +120,31 @@ static inline real curvature(const hit_group *g, int i, bs_view v)
                         lane_get(&g->q.Qww, i));
 }
 
-/* Order none where the surface is not regular. In a loop of its own: in the methods' loops the choice would become a
- * branch and stop vectorisation. */
-STAGE static void drop_irregular(hit_group *restrict g)
+static void drop(hit_group *g, int i)
 {
-    for (int i = 0; i < g->n; i++) {
-        int regular = bs_regular(lane_get(&g->n_smooth, i), lane_get(&g->q.Qu, i), lane_get(&g->q.Qw, i));
-        real tau = g->tau[i];
-        int32_t order = g->order[i];
-        g->tau[i] = regular ? tau : 0;
-        g->order[i] = regular ? order : -1;
-    }
+    g->tau[i] = 0;
+    g->order[i] = -1;
+}
+
+STAGE static int count_far(int n, const real *restrict tau)
+{
+    int far = 0;
+    for (int i = 0; i < n; i++)
+        far += !(real_abs(tau[i]) < REAL_FAR);
+    return far;
+}
+
+void shift_known(hit_group *g)
+{
+    if (count_far(g->n, g->tau))
+        for (int i = 0; i < g->n; i++)
+            if (!(real_abs(g->tau[i]) < REAL_FAR)) {
+                shift_undefined(g, i);
+                drop(g, i);
+            }
+    for (int i = 0; g->bump.undefined && i < g->n; i++)
+        if (g->bump.none[i])
+            drop(g, i);
 }
 
 /* One lane. `order` is constant in each loop below, so derivatives that it does not use are not loaded. */
@@ -288,8 +370,9 @@ long shift_group(hit_group *g, const bump *P, method m, bool guard)
         by_orders[guard][m.n](g, P->Pmin, P->Pmax);
     else
         evaluations = (m.kind == METHOD_ITER ? iterate : march)(g, P, m);
-    if (!g->regular)
-        drop_irregular(g);
+    for (int i = 0; g->undefined && i < g->n; i++)
+        if (g->none[i])
+            drop(g, i);
     return evaluations;
 }
 

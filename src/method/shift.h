@@ -6,14 +6,23 @@
 #include "method/method.h"
 #include "texture/bump.h"
 
-/* g->n_smooth and g->n_bump, from the partials of Q and, unless `bump` is NULL, of P. */
+/* Count lane i among those without a value. */
+void shift_undefined(hit_group *g, int i);
+
+/* g->n_smooth and g->n_bump, from the partials of Q and, unless `bump` is NULL, of P. Lanes where the surface is not
+ * regular (bs_regular), or where P or n' has no value, are counted. */
 void shift_normals(hit_group *g, const bump *bump);
 
-/* g->tau and g->order. Order none where the surface is not regular (bs_regular). guard: fall back where tau is outside
- * the slab. Returns how often P was evaluated. */
+/* g->tau and g->order: of lanes without a value 0 and none. guard: fall back where tau is outside the slab. Returns how
+ * often P was evaluated. */
 long shift_group(hit_group *g, const bump *bump, method m, bool guard);
 
-/* For secondary rays: tau >= -t, so that the shifted place is not before the ray's start. */
+/* Where P or tau has no value (for a ray along the surface tau has none), tau becomes 0, by order none. The lane is
+ * counted. */
+void shift_known(hit_group *g);
+
+/* tau >= -t, so that the shifted place is not before the ray's start: an eye can be inside the slab of P, and secondary
+ * rays start there. */
 void shift_within(hit_group *g);
 
 /* g->t0 = t_hit + tau. */

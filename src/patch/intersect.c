@@ -16,10 +16,11 @@
 #include <stdlib.h>
 
 enum {
-    STEPS = 24,      /* of Newton's iteration; four are usual, and those that begin far off need more */
-    DEPTH = 128,     /* of the stack of halves; each halving adds one, and 64 in u and in w leave no digit to halve */
-    HALVINGS = 4096, /* of one piece for one ray; what is left is tried as it is on a patch with jumps, else dropped */
-    QUEUE = 1024,    /* undecided pieces that wait: 8 for each ray of a wave */
+    STEPS = 24,  /* of Newton's iteration; four are usual, and those that begin far off need more */
+    DEPTH = 128, /* of the stack of halves; each halving adds one, and 64 in u and in w leave no digit to halve */
+    HALVINGS = PATCH_HALVINGS, /* for one ray; what is left is tried as it is, and not proved */
+    TRIES = 256,               /* of that, from the nearest on */
+    QUEUE = 1024,              /* undecided pieces that wait: 8 for each ray of a wave */
 };
 
 /* Shares of the width of a piece's range in u or w. */
@@ -176,34 +177,55 @@ static bool is_unprovable(const patch_surface *f, const piece *p)
            p->w[1] - p->w[0] < UNPROVED * (f->q->w[1] - f->q->w[0]);
 }
 
+/* A piece without a proof, unless the ray has had too many of them. */
+static void try_piece(search *h, int lane, const piece *f)
+{
+    if (h->k->tries[lane]++ < TRIES)
+        add_pair(h, lane, f, 0, 0, true);
+}
+
+/* What becomes of a half. Whether it is to be halved again. */
+static bool is_open(search *h, int lane, const piece *half)
+{
+    const patch_surface *f = h->k->f;
+    const patch_query *k = h->k;
+    const double point = POINT * (f->l.space.radius + 0.1 * vec3_length(f->l.space.centre));
+    double a, b;
+    const piece_answer answer = piece_intersect(half, k->r[lane], k->s[lane], k->from[lane], k->to[lane], &a, &b);
+    if (answer == PIECE_ONCE)
+        add_pair(h, lane, half, a, b, false);
+    else if (answer == PIECE_OPEN && is_unprovable(f, half))
+        add_pair(h, lane, half, 0, 0, true);
+    else if (answer == PIECE_OPEN && piece_radius(half) > point)
+        return true;
+    else if (answer == PIECE_OPEN)
+        accept_point(h->k, lane, half);
+    return false;
+}
+
 /* Subdivide a piece for one ray until each half is decided. */
 static void subdivide(search *h, int lane, const piece *whole)
 {
     const patch_surface *f = h->k->f;
     patch_query *k = h->k;
-    const double point = POINT * (f->l.space.radius + 0.1 * vec3_length(f->l.space.centre));
     piece open[DEPTH];
     int n = 1;
     open[0] = *whole;
-    for (int halvings = 0; n && halvings < HALVINGS; halvings++) {
+    while (n && k->halvings[lane] < HALVINGS) {
         const piece one = open[--n];
+        k->halvings[lane]++;
         for (int which = 0; which < 2; which++) {
-            double a, b;
             const piece half = piece_half(f->q, &one, which);
-            const piece_answer answer =
-                piece_intersect(&half, k->r[lane], k->s[lane], k->from[lane], k->to[lane], &a, &b);
-            if (answer == PIECE_ONCE)
-                add_pair(h, lane, &half, a, b, false);
-            else if (answer == PIECE_OPEN && is_unprovable(f, &half))
-                add_pair(h, lane, &half, 0, 0, true);
-            else if (answer == PIECE_OPEN && n < DEPTH - 1 && piece_radius(&half) > point)
+            if (!is_open(h, lane, &half))
+                continue;
+            if (n < DEPTH)
                 open[n++] = half;
-            else if (answer == PIECE_OPEN)
+            else
                 accept_point(k, lane, &half);
         }
     }
-    while (f->broken && n)
-        add_pair(h, lane, &open[--n], 0, 0, true);
+    while (n)
+        try_piece(h, lane, &open[--n]);
 }
 
 static int by_lane_and_near(const void *a, const void *b)
@@ -284,6 +306,7 @@ void patch_query_add(patch_query *k, int i, vec3 r, vec3 s, double from, double 
     k->from[i] = from - start;
     k->to[i] = to - start;
     k->found[i] = k->unsure[i] = false;
+    k->halvings[i] = k->tries[i] = 0;
 }
 
 void patch_query_run(patch_query *k, int n)
@@ -303,4 +326,6 @@ void patch_query_run(patch_query *k, int n)
             bvh_along(f->tree, r, s, end, visit, &h);
     }
     subdivide_all(&h);
+    for (int i = 0; i < n; i++)
+        k->evaluations += 2L * k->halvings[i];
 }

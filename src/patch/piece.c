@@ -9,8 +9,12 @@
 /* How far a patch is subdivided before rendering: these numbers trade time before rendering and memory against time for
  * each ray, and decide nothing else. */
 enum {
-    FEWEST = 64,    /* pieces, of any patch: below that the bounding sphere is still too wide to judge sizes by */
+    FEWEST = 64, /* pieces, of any patch: below that the bounding sphere is still too wide to judge sizes by */
+#ifdef FUZZING_BUILD_MODE_UNSAFE_FOR_PRODUCTION /* as all fuzzers define it: instrumented code is many times slower */
+    MOST = 1 << 12,
+#else
     MOST = 1 << 16, /* no round of halving begins beyond this; one round at most doubles the number */
+#endif
 };
 #define LARGEST (1 / 20.)   /* larger pieces, in radii of the patch's sphere, are halved however flat they are */
 #define SMALLEST (1 / 300.) /* smaller ones are not halved however bent they are */
@@ -91,15 +95,15 @@ static bool needs_halving(const pieces *l, double flat, const piece *f)
 }
 
 /* One round: each piece that needs it is halved. False: out of memory. *any: whether one was. */
-static bool halve(const patch *q, double flat, pieces *l, bool *any)
+static bool halve(const patch *q, double flat, memory *m, pieces *l, bool *any)
 {
     const int n = l->n;
-    piece *more = realloc(l->piece, sizeof *more * (size_t)(2 * n));
+    piece *more = memory_resize(m, l->piece, sizeof *more * (size_t)(2 * n));
     *any = false;
     if (!more)
         return false;
     l->piece = more;
-    int32_t *parent = malloc(sizeof *parent * (size_t)n); /* the pieces that are halved */
+    int32_t *parent = memory_new(m, sizeof *parent * (size_t)n); /* the pieces that are halved */
     if (!parent)
         return false;
     int halved = 0;
@@ -114,7 +118,7 @@ static bool halve(const patch *q, double flat, pieces *l, bool *any)
         more[parent[k]] = piece_half(q, &whole, 0);
         more[n + k] = piece_half(q, &whole, 1);
     }
-    free(parent);
+    memory_free(parent);
     l->n = n + halved;
     *any = halved > 0;
     return true;
@@ -128,15 +132,15 @@ static bool has_bounds(const pieces *l)
     return l->space.radius > POINT * vec3_length(l->space.centre) && l->space.radius < HUGE_VAL;
 }
 
-bool pieces_of(const patch *q, double flat, pieces *l, bool *bounded)
+bool pieces_of(const patch *q, double flat, const progress *w, pieces *l, bool *bounded)
 {
-    *l = (pieces){.piece = malloc(sizeof *l->piece * (size_t)q->parts)};
+    *l = (pieces){.piece = memory_new(progress_memory(w), sizeof *l->piece * (size_t)q->parts)};
     bool good = l->piece, any = true;
     for (int part = 0; good && part < q->parts; part++)
         l->piece[l->n++] = piece_of(q, part, q->u, q->w);
     while (good && any && l->n < MOST) {
         measure(l);
-        good = halve(q, flat, l, &any);
+        good = halve(q, flat, progress_memory(w), l, &any);
     }
     if (good) {
         measure(l);
@@ -147,7 +151,7 @@ bool pieces_of(const patch *q, double flat, pieces *l, bool *bounded)
 
 void pieces_free(pieces *l)
 {
-    free(l->piece);
+    memory_free(l->piece);
     *l = (pieces){0};
 }
 

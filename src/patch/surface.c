@@ -80,11 +80,12 @@ void patch_surface_intersect(const patch_surface *f, int n, const rays *x, const
     c->evaluations += k.evaluations;
     for (int i = 0; i < n; i++) {
         const real t = (real)(k.to[i] + k.start[i]);
-        if (k.found[i] && t > 0 && t < h->t[i]) {
+        const bool hit = k.found[i] && t > 0 && t < h->t[i];
+        if (hit) {
             h->t[i] = t;
             h->id[i] = id;
-            c->unsure += k.unsure[i];
         }
+        c->unsure += (hit && k.unsure[i]) || patch_query_gave_up(&k, i);
     }
 }
 
@@ -120,11 +121,11 @@ void patch_surface_occlude(const patch_surface *f, int n, const rays *x, bool ow
     }
     patch_query_run(&k, n);
     c->evaluations += k.evaluations;
-    for (int i = 0; i < n; i++)
-        if (k.found[i]) {
+    for (int i = 0; i < n; i++) {
+        if (k.found[i])
             lit[i] = 0;
-            c->unsure += k.unsure[i];
-        }
+        c->unsure += (k.found[i] && k.unsure[i]) || (!k.found[i] && patch_query_gave_up(&k, i));
+    }
 }
 
 static void patch_occlude(const surface *base, int n, const rays *x, real *lit)
@@ -196,13 +197,13 @@ static void patch_box(const surface *base, double lo[3], double hi[3])
 
 /* ---- making one ---- */
 
-static bvh *tree_of(const pieces *l, int threads)
+static bvh *tree_of(const pieces *l, int threads, const progress *w)
 {
-    bvh_box *box = malloc(sizeof *box * (size_t)l->n);
+    bvh_box *box = memory_new(progress_memory(w), sizeof *box * (size_t)l->n);
     for (int i = 0; box && i < l->n; i++)
         box[i] = bvh_box_in(&l->space, l->piece[i].box[0], l->piece[i].box[1]);
-    bvh *b = box ? bvh_new(l->n, box, threads, NULL) : NULL;
-    free(box);
+    bvh *b = box ? bvh_new(l->n, box, threads, w) : NULL;
+    memory_free(box);
     return b;
 }
 
@@ -239,7 +240,7 @@ static surface_ops *methods_of(const patch *q)
     return ops;
 }
 
-patch_surface *patch_surface_make(patch *q, double flat, bool *bounded)
+patch_surface *patch_surface_make(patch *q, double flat, const progress *w, bool *bounded)
 {
     patch_surface *f = calloc(1, sizeof *f);
     *bounded = true;
@@ -250,28 +251,28 @@ patch_surface *patch_surface_make(patch *q, double flat, bool *bounded)
     f->q = q;
     f->base.free = patch_free;
     f->base.ops = f->methods = methods_of(q);
-    if (f->base.ops && pieces_of(q, flat, &f->l, bounded))
-        f->tree = tree_of(&f->l, q->threads);
+    if (f->base.ops && pieces_of(q, flat, w, &f->l, bounded))
+        f->tree = tree_of(&f->l, q->threads, w);
     if (f->tree)
         return f;
     patch_free(&f->base);
     return NULL;
 }
 
-surface *patch_surface_new_bounded(patch *q, bool *bounded)
+surface *patch_surface_new_bounded(patch *q, const progress *w, bool *bounded)
 {
     const double FLAT = 0.045; /* 2.6 degrees: few pieces stay undecided. Only speed depends on it. */
-    patch_surface *f = patch_surface_make(q, FLAT, bounded);
+    patch_surface *f = patch_surface_make(q, FLAT, w, bounded);
     return f ? &f->base : NULL;
 }
 
-surface *patch_surface_new(patch *q)
+surface *patch_surface_new(patch *q, const progress *w)
 {
     bool bounded;
-    return patch_surface_new_bounded(q, &bounded);
+    return patch_surface_new_bounded(q, w, &bounded);
 }
 
-surface *patch_surface_formula(const char *kind, const form_formula *f, int threads)
+surface *patch_surface_formula(const char *kind, const form_formula *f, int threads, const progress *w)
 {
     expr *e[3];
     expr_error wrong;
@@ -281,12 +282,12 @@ surface *patch_surface_formula(const char *kind, const form_formula *f, int thre
     if (!q)
         return NULL;
     q->threads = threads;
-    return patch_surface_new(q);
+    return patch_surface_new(q, w);
 }
 
-surface *patch_surface_affine(const surface *base, const affine *m)
+surface *patch_surface_affine(const surface *base, const affine *m, const progress *w)
 {
     const patch_surface *f = (const patch_surface *)base;
     patch *q = patch_affine_new(f->q, m);
-    return q ? patch_surface_new(q) : NULL;
+    return q ? patch_surface_new(q, w) : NULL;
 }

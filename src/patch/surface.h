@@ -18,23 +18,23 @@ typedef struct patch_surface {
 /* Whether a surface is one. */
 bool patch_surface_is(const surface *f);
 
-/* The surface of a patch; n = Qu x Qw counts as outward. Owns q, also on failure. NULL: Q has no bounds over its range,
- * or is a point, or out of memory. */
-surface *patch_surface_new(patch *q);
+/* The surface of a patch; n = Qu x Qw counts as outward. Owns q, also on failure. w: as pieces_of. NULL: Q has no
+ * bounds over its range, or is a point, or out of memory. */
+surface *patch_surface_new(patch *q, const progress *w);
 
 /* The same; *bounded is false where Q has no bounds or is a point. */
-surface *patch_surface_new_bounded(patch *q, bool *bounded);
+surface *patch_surface_new_bounded(patch *q, const progress *w, bool *bounded);
 
 /* The image of a patch surface by an affine map, which unlike that by surface_transformed can be displaced. `base` must
  * outlive it. Where the map mirrors, u runs the other way. NULL: as patch_surface_new. */
-surface *patch_surface_affine(const surface *base, const affine *m);
+surface *patch_surface_affine(const surface *base, const affine *m, const progress *w);
 
 /* A closed form's formula as a patch surface, for true displacement of shapes whose closest points have no closed form.
  * `kind` must outlive it; threads: as patch.threads. NULL: out of memory. */
-surface *patch_surface_formula(const char *kind, const form_formula *f, int threads);
+surface *patch_surface_formula(const char *kind, const form_formula *f, int threads, const progress *w);
 
 /* As patch_surface_new_bounded, with the flatness of its pieces (pieces_of). */
-patch_surface *patch_surface_make(patch *q, double flat, bool *bounded);
+patch_surface *patch_surface_make(patch *q, double flat, const progress *w, bool *bounded);
 
 /* Counts of work: evaluations of the patch, and hits that are not proved to be the first. */
 typedef struct patch_counts {

@@ -26,19 +26,26 @@ int points_find(const points_file *f, const char *name, size_t length)
     return POINTS_NOTHING;
 }
 
+bool points_no_memory(const points_file *f)
+{
+    char words[MEMORY_WORDS];
+    return errors_add(f->e, "%s: %s", f->name, memory_words(progress_memory(f->progress), words));
+}
+
 bool points_make(points_file *f, int columns, const int *kind, size_t n)
 {
     points *p = f->p;
+    memory *m = progress_memory(f->progress);
     bool good = true;
     if (n > INT32_MAX)
         return errors_add(f->e, "%s: %zu rows, expected at most %d", f->name, n, INT32_MAX);
     n += n == 0;
     for (int k = 0; k < columns; k++)
         if (kind[k] == POINTS_LABEL)
-            good = good && (p->label = malloc(sizeof *p->label * n));
+            good = good && (p->label = memory_new(m, sizeof *p->label * n));
         else if (kind[k] >= 0)
-            good = good && (p->v[kind[k]] = malloc(sizeof **p->v * n));
-    return good || errors_add(f->e, "%s: out of memory", f->name);
+            good = good && (p->v[kind[k]] = memory_new(m, sizeof **p->v * n));
+    return good || points_no_memory(f);
 }
 
 /* ---- values ---- */

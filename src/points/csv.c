@@ -207,8 +207,8 @@ bool points_csv(points_file *f)
     const size_t most = count_lines(at);
     if (!read_head(f, at, &h) || !points_make(f, h.columns, h.kind, most))
         return false;
-    if (!(p->line = malloc(sizeof *p->line * most)))
-        return errors_add(f->e, "%s: out of memory", f->name);
+    if (!(p->line = memory_new(progress_memory(f->progress), sizeof *p->line * most)))
+        return points_no_memory(f);
     int32_t line = 1;
     for (const char *k = f->text; k < at; k = next_line(k))
         line += next_line(k) <= at;

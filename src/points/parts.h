@@ -25,6 +25,9 @@ int points_find(const points_file *f, const char *name, size_t length);
 /* Where `at` is, and what is wrong there. Always false. */
 bool points_wrong_at(const points_file *f, const char *at, const char *message);
 
+/* The error that there is not enough memory. Always false. */
+bool points_no_memory(const points_file *f);
+
 /* Memory for n rows of the columns that the file has. kind[k]: what its column k is. False with an error. */
 bool points_make(points_file *f, int columns, const int *kind, size_t n);
 

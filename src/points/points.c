@@ -1,6 +1,8 @@
 /* Reads a list of points, of either kind. */
 #include "points/parts.h"
 
+#include "base/files.h"
+
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -16,34 +18,29 @@ bool points_error(const points *p, const char *name, int32_t row, const char *me
     return text_error(e, name, p->text, p->line[row], 1, message);
 }
 
-static char *read_all(const char *path, const char *name, size_t *size, errors *e)
+static char *read_all(const char *path, const char *name, memory *m, size_t *size, errors *e)
 {
-    struct stat about;
-    if (stat(path, &about) == 0 && !S_ISREG(about.st_mode)) { /* a pipe could wait forever, a device never end */
-        errors_add(e, "%s: can't read the list: no regular file", name);
-        return NULL;
-    }
-    FILE *f = fopen(path, "rb");
+    const char *reason;
+    FILE *f = files_open_input(path, &reason);
     char *text = NULL;
     size_t n = 0, room = 0;
-    errno = f ? 0 : errno;
+    errno = 0;
     while (f && !ferror(f) && !feof(f)) {
         if (n + 1 >= room) {
-            char *more = realloc(text, room = room ? 2 * room : 1 << 16);
-            if (!more) {
-                errno = ENOMEM;
+            char *more = memory_resize(m, text, room = room ? 2 * room : 1 << 16);
+            if (!more)
                 break;
-            }
             text = more;
         }
         n += fread(text + n, 1, room - n - 1, f);
     }
-    const char *why = f && !ferror(f) && feof(f) ? NULL : strerror(errno ? errno : ENOMEM);
+    char words[MEMORY_WORDS];
+    const char *why = !f ? reason : ferror(f) ? strerror(errno ? errno : EIO) : feof(f) ? NULL : memory_words(m, words);
     if (f)
         fclose(f);
     if (why) {
         errors_add(e, "%s: can't read the list: %s", name, why);
-        free(text);
+        memory_free(text);
         return NULL;
     }
     text[n] = 0;
@@ -56,7 +53,7 @@ bool points_read(const char *path, const char *name, const points_column *column
 {
     points_file f = {.name = name, .column = columns, .label = label, .progress = w, .p = p, .e = e};
     *p = (points){0};
-    if (!(f.text = read_all(path, name, &f.size, e)))
+    if (!(f.text = read_all(path, name, progress_memory(w), &f.size, e)))
         return false;
     p->text = f.text;
     const bool ply = strncmp(f.text, "ply\n", 4) == 0 || strncmp(f.text, "ply\r", 4) == 0;
@@ -64,7 +61,7 @@ bool points_read(const char *path, const char *name, const points_column *column
     if (good && p->n == 0)
         return errors_add(e, "%s: a list without places, expected one or more", name);
     if (ply) {
-        free(p->text);
+        memory_free(p->text);
         p->text = NULL;
     }
     return good;
@@ -73,9 +70,9 @@ bool points_read(const char *path, const char *name, const points_column *column
 void points_free(points *p)
 {
     for (int k = 0; k < POINTS_COLUMNS; k++)
-        free(p->v[k]);
-    free(p->label);
-    free(p->line);
-    free(p->text);
+        memory_free(p->v[k]);
+    memory_free(p->label);
+    memory_free(p->line);
+    memory_free(p->text);
     *p = (points){0};
 }

@@ -113,6 +113,7 @@ bool pov_mesh(pov_text *t, const scene *s, const pov_options *how, const object 
                       .unbounded = o->shape_spec.form == &form_plane};
     x.v.f = o->shape;
     x.v.P = o->bump;
+    x.v.memory = progress_memory(how->progress);
     x.points = o->map.file && !s->sends && s->aa == 1;
     const int k = fit(&x);
     put_note(t, &x, k);
@@ -133,7 +134,7 @@ bool pov_mesh(pov_text *t, const scene *s, const pov_options *how, const object 
         if (parts > 1)
             pov_print(t, "}\n");
     }
-    free(x.face);
+    memory_free(x.face);
     pov_vertices_free(&x.v);
     return x.memory;
 }

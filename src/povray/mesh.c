@@ -44,13 +44,13 @@ static int32_t index_of(pile *p, const pov_vertex *v)
     return p->table[k];
 }
 
-static bool begin(pile *p, int faces)
+static bool begin(pile *p, int faces, memory *m)
 {
     for (p->size = 16; p->size < 6 * (uint32_t)faces; p->size *= 2)
         ;
-    p->v = malloc(sizeof *p->v * 3 * (size_t)faces);
-    p->face = malloc(sizeof *p->face * (size_t)faces);
-    p->table = malloc(sizeof *p->table * p->size);
+    p->v = memory_new(m, sizeof *p->v * 3 * (size_t)faces);
+    p->face = memory_new(m, sizeof *p->face * (size_t)faces);
+    p->table = memory_new(m, sizeof *p->table * p->size);
     if (p->table)
         memset(p->table, 0xff, sizeof *p->table * p->size);
     return p->v && p->face && p->table;
@@ -162,13 +162,13 @@ static bool add_rough(pile *p, const object *o, const mesh *f, int n)
     return v;
 }
 
-bool pov_triangle_mesh(pov_text *t, const scene *s, const object *o)
+bool pov_triangle_mesh(pov_text *t, const scene *s, const pov_options *how, const object *o)
 {
     const bool rough = s->displaced && o->bump;
     const mesh *f = (const mesh *)(rough ? o->shape : o->own);
     const int n = rough ? division_of(s, f) : 1;
     pile p = {0};
-    bool good = begin(&p, f->d.n * n * n);
+    bool good = begin(&p, f->d.n * n * n, progress_memory(how->progress));
     if (good && rough)
         good = add_rough(&p, o, f, n);
     else if (good)
@@ -180,9 +180,9 @@ bool pov_triangle_mesh(pov_text *t, const scene *s, const object *o)
         pov_print(t, "\n");
         pov_mesh2(t, p.v, p.vertices, pov_by_uv(s, o), p.faces, (const int32_t(*)[3])p.face);
     }
-    free(p.v);
-    free(p.face);
-    free(p.table);
+    memory_free(p.v);
+    memory_free(p.face);
+    memory_free(p.table);
     if (good && o->moved && !rough)
         pov_matrix(t, o->placed.x, o->placed.y, o->placed.z, o->placed.o, " // its transform\n");
     return good;

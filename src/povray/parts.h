@@ -40,7 +40,7 @@ void pov_isosurface(pov_text *t, const scene *s, const object *o, const char *na
 bool pov_mesh(pov_text *t, const scene *s, const pov_options *how, const object *o, pov_report *report);
 
 /* An object that pov_is_patch, smooth or displaced, as one mesh. False: out of memory. */
-bool pov_patch(pov_text *t, const scene *s, const object *o);
+bool pov_patch(pov_text *t, const scene *s, const pov_options *how, const object *o);
 
 /* Of an object of copies: the object that each is an image of, and the union of those of one kind, once that is
  * declared under a name. */
@@ -48,6 +48,6 @@ object pov_original(const object *o);
 void pov_copies(pov_text *t, const object *o, int kind, const char *name);
 
 /* A mesh from a file, smooth or displaced. False: out of memory. */
-bool pov_triangle_mesh(pov_text *t, const scene *s, const object *o);
+bool pov_triangle_mesh(pov_text *t, const scene *s, const pov_options *how, const object *o);
 
 #endif

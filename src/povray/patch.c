@@ -153,7 +153,7 @@ static int make_faces(const grid *g, const pov_vertex *v, int32_t (*face)[3])
     return n;
 }
 
-bool pov_patch(pov_text *t, const scene *s, const object *o)
+bool pov_patch(pov_text *t, const scene *s, const pov_options *how, const object *o)
 {
     grid g = {.s = s, .o = o, .rough = s->displaced && o->bump};
     if (!measure(&g))
@@ -161,8 +161,9 @@ bool pov_patch(pov_text *t, const scene *s, const object *o)
     if (g.rough && o->map.file)
         fit_map(&g);
     const int row = g.n[0] + 1, all = (g.n[1] + 1) * row, parts = o->shape->ops->parts;
-    pov_vertex *v = malloc(sizeof *v * (size_t)all * (size_t)parts);
-    int32_t(*face)[3] = malloc(sizeof *face * 2 * (size_t)g.n[0] * (size_t)g.n[1] * (size_t)parts);
+    memory *m = progress_memory(how->progress);
+    pov_vertex *v = memory_new(m, sizeof *v * (size_t)all * (size_t)parts);
+    int32_t(*face)[3] = memory_new(m, sizeof *face * 2 * (size_t)g.n[0] * (size_t)g.n[1] * (size_t)parts);
     const bool good = v && face;
     for (int part = 0; good && part < parts; part++)
         for (int j = 0; j <= g.n[1]; j++)
@@ -173,7 +174,7 @@ bool pov_patch(pov_text *t, const scene *s, const object *o)
                   parts > 1 ? " a part" : "");
         pov_mesh2(t, v, all * parts, pov_by_uv(s, o), n, (const int32_t(*)[3])face);
     }
-    free(face);
-    free(v);
+    memory_free(face);
+    memory_free(v);
     return good;
 }

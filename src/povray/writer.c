@@ -1,4 +1,5 @@
 /* The POV-Ray file as a whole: camera, lights, materials, and each object by the file that can write it. */
+#include "pov_text/flat.h"
 #include "povray/parts.h"
 
 #include <stdio.h>
@@ -83,7 +84,8 @@ static bool put_displaced(pov_text *t, const scene *s, const pov_options *how, i
     double gradient = 0;
     for (int part = 0; part < o->shape->ops->parts; part++)
         gradient = fmax(gradient, pov_isosurface_gradient(o, part));
-    if (gradient < HUGE_VAL && pov_function(t, o, P.text)) {
+    /* toward a horizon POV-Ray's isosurface lets light through */
+    if (gradient < HUGE_VAL && !pov_has_horizon(s, o) && pov_function(t, o, P.text)) {
         pov_isosurface(t, s, o, P.text);
         return true;
     }
@@ -102,9 +104,9 @@ static bool put_object(pov_text *t, const scene *s, const pov_options *how, int 
     if (of->crowd)
         pov_print(t, "#declare %s =\n", name.text);
     if (pov_is_patch(s, o))
-        good = pov_patch(t, s, o);
+        good = pov_patch(t, s, how, o);
     else if (o->shape_spec.kind == SHAPE_MESH)
-        good = pov_triangle_mesh(t, s, o);
+        good = pov_triangle_mesh(t, s, how, o);
     else if (s->displaced && o->bump)
         good = put_displaced(t, s, how, k, report);
     else
@@ -135,5 +137,6 @@ bool pov_write(const scene *s, const pov_options *given, const char *path, pov_r
         if (!stopped && k < s->objects)
             good = put_object(&t, s, &how, k, report);
     }
-    return pov_end(&t, stopped ? "stopped" : good ? NULL : "out of memory", e);
+    char words[MEMORY_WORDS];
+    return pov_end(&t, stopped ? "stopped" : good ? NULL : memory_words(progress_memory(how.progress), words), e);
 }

@@ -9,6 +9,7 @@
 /* The samples on their way from the file into the table. */
 typedef struct map_reading {
     const map_layout *layout; /* NULL: it is wrong; the file is read for its own errors */
+    const progress *progress;
     bump *p;
     int width, height;
 } map_reading;
@@ -20,8 +21,11 @@ static const char *begin_samples(void *user, int width, int height)
     m->height = height;
     if (!m->layout || width < 2 || height < 2) /* reader_usable refuses it */
         return NULL;
-    m->p = bump_map_new(width, height, m->layout);
-    return m->p ? NULL : "there is not enough memory for the map, or the map has more than 2^29 samples";
+    table_grid g;
+    if (!table_lay(&g, width, height, m->layout))
+        return "the map has more than 2^29 samples, four for each one where both axes are mirrored";
+    m->p = bump_map_new(width, height, m->layout, m->progress);
+    return m->p ? NULL : "";
 }
 
 static void take_samples(void *user, int x, int y, int n, const float *v)
@@ -58,32 +62,38 @@ typedef struct kept_samples {
     float v[];
 } kept_samples;
 
+typedef struct keeping {
+    kept_samples *k;
+    const progress *progress;
+} keeping;
+
 /* A file's samples on their way into memory. */
 static const char *begin_kept(void *user, int width, int height)
 {
-    kept_samples **to = user;
+    keeping *to = user;
     const size_t n = (size_t)width * (size_t)height;
-    if (!(*to = malloc(sizeof **to + n * sizeof *(*to)->v)))
-        return "there is not enough memory for the map";
-    (*to)->image = (image_array){width, height, 1, IMAGE_F32, (*to)->v};
+    kept_samples *k = to->k = memory_new(progress_memory(to->progress), sizeof *k + n * sizeof *k->v);
+    if (!k)
+        return "";
+    k->image = (image_array){width, height, 1, IMAGE_F32, k->v};
     return NULL;
 }
 
 static void take_kept(void *user, int x, int y, int n, const float *v)
 {
-    kept_samples *to = *(kept_samples **)user;
+    kept_samples *to = ((keeping *)user)->k;
     memcpy(to->v + (size_t)y * (size_t)to->image.width + (size_t)x, v, (size_t)n * sizeof *v);
 }
 
 /* Read the samples of a file, to keep them. NULL: an error is in *e. */
 static kept_samples *read_kept(reader *r, const source *from, const char *layer, errors *e)
 {
-    kept_samples *k = NULL;
+    keeping k = {NULL, r->from->progress};
     const image_taker to = {&k, begin_kept, take_kept};
     float range[2];
-    if (image_read(from->path, layer, r->from->threads, &to, range, e))
-        return k;
-    free(k);
+    if (image_read(from->path, layer, r->from->threads, k.progress, &to, range, e))
+        return k.k;
+    memory_free(k.k);
     return NULL;
 }
 
@@ -105,7 +115,7 @@ static const image_array *kept_of(reader *r, const source *from, const char *lay
 {
     char *key = key_of_samples(r, from, layer);
     kept_samples *k = reader_found(r, key);
-    if (!k && key && r->from->again && (k = read_kept(r, from, layer, e)) && !reader_keep(r, key, k, free))
+    if (!k && key && r->from->again && (k = read_kept(r, from, layer, e)) && !reader_keep(r, key, k, memory_free))
         k = NULL;
     free(key);
     return k ? &k->image : NULL;
@@ -115,11 +125,11 @@ static bool read_all(reader *r, const source *from, const char *layer, map_readi
 {
     const image_taker to = {m, begin_samples, take_samples};
     if (from->array)
-        return image_array_read(&from->array->image, layer, &to, range, e);
+        return image_array_read(&from->array->image, layer, m->progress, &to, range, e);
     const image_array *kept = kept_of(r, from, layer, e);
     if (kept)
-        return image_array_read(kept, NULL, &to, range, e);
-    return e->count == 0 && image_read(from->path, layer, r->from->threads, &to, range, e);
+        return image_array_read(kept, NULL, m->progress, &to, range, e);
+    return e->count == 0 && image_read(from->path, layer, r->from->threads, m->progress, &to, range, e);
 }
 
 /* The bits of a source's samples; 0: floats. */
@@ -141,13 +151,13 @@ static bool smooth(reader *r, node *at, const map_layout *l, int bits, bump *p)
                           "the samples are floats, which have no steps to be smoothed, "
                           "expected a PNG");
     const double step = fabs(l->scale) / (double)((1 << bits) - 1);
-    return bump_map_smooth(p, l->smooth, step, r->from->threads) || reader_made(r, NULL);
+    return bump_map_smooth(p, l->smooth, step, r->from->threads, r->from->progress) || reader_made(r, NULL);
 }
 
 /* The table and its note from a source. NULL with an error. */
 static made_map *make_map(reader *r, node *at, node *file, const source *from, const char *layer, const map_layout *l)
 {
-    map_reading m = {.layout = l};
+    map_reading m = {.layout = l, .progress = r->from->progress};
     float range[2];
     errors e = {0};
     const bool was_read = read_all(r, from, layer, &m, range, &e);

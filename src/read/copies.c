@@ -229,12 +229,12 @@ static void make_crowd(reader *r, node *at, int i, const surface *from, const bo
     if (list.n == 0)
         return;
     if (list.n > crowd_most(parts)) {
-        yaml_error(r->y, at, "%d copies of a surface of %d parts, expected at most %d of it", (int)list.n, (int)parts,
+        yaml_error(r->y, at, "%d copies of a surface of %d parts, expected at most %d copies", (int)list.n, (int)parts,
                    (int)crowd_most(parts));
         return;
     }
     progress_show(r->from->progress, "building", 0);
-    crowd *f = reader_made(r, crowd_new(from, parts, &list, r->from->threads));
+    crowd *f = reader_made(r, crowd_new(from, parts, &list, r->from->threads, r->from->progress));
     int first = -1;
     for (int j = 0; f && j < list.kinds; j++) {
         const int before = r->list[r->lists - 1].used ? r->list[r->lists - 1].count : -1;
@@ -274,7 +274,7 @@ static bool can_be_copied(reader *r, node *at, const object *o, const surface *f
     double lo[3], hi[3];
     from->ops->box(from, lo, hi);
     if (!(hi[0] - lo[0] < HUGE_VAL && hi[1] - lo[1] < HUGE_VAL && hi[2] - lo[2] < HUGE_VAL))
-        return yaml_error(r->y, at, "a %s has no end, expected copies of an object that has", from->ops->kind);
+        return yaml_error(r->y, at, "a %s has no end, expected copies of an object that has one", from->ops->kind);
     if (o->bump && scene_wants_truth(r->s))
         return yaml_error(r->y, at,
                           "a list of copies with a bump can't be displaced, expected objects with 'copy' for %s",
@@ -296,8 +296,8 @@ void reader_copies(reader *r, node *v, int i)
     bool good = from && can_be_copied(r, at, o, from);
     good = (!transform || reader_transform(r, transform, &k.after)) && good;
     good = read_file(r, at, o, &k) && good && check_rows(r, from, &k);
-    if (good && (k.row = reader_made(r, malloc(sizeof *k.row * (size_t)k.p.n))))
+    if (good && (k.row = reader_made(r, memory_new(reader_memory(r), sizeof *k.row * (size_t)k.p.n))))
         make_crowds(r, at, i, from, &k);
-    free(k.row);
+    memory_free(k.row);
     points_free(&k.p);
 }

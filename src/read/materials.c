@@ -32,15 +32,17 @@ static void free_made(void *thing)
 /* NULL with an error. */
 static made_image *make_image(reader *r, node *file, const source *from, image_encoding encoding, const map_layout *l)
 {
+    const progress *w = r->from->progress;
     image pixels = {0};
     errors e = {0};
     bool linear = false;
-    const bool was_read = from->array ? image_array_read_color(&from->array->image, encoding, &pixels, &linear, &e)
-                                      : image_read_color(from->path, encoding, r->from->threads, &pixels, &linear, &e);
+    const bool was_read = from->array
+                              ? image_array_read_color(&from->array->image, encoding, w, &pixels, &linear, &e)
+                              : image_read_color(from->path, encoding, r->from->threads, w, &pixels, &linear, &e);
     texels *t = NULL;
     if (reader_usable(r, file, from->name, was_read, pixels.width, pixels.height, "pixels", &e))
-        t = reader_made(r, texels_new(&pixels, l));
-    free(pixels.v);
+        t = reader_made(r, texels_new(&pixels, l, w));
+    memory_free(pixels.v);
     made_image *made = t ? reader_made(r, malloc(sizeof *made)) : NULL;
     if (made)
         *made = (made_image){t, linear};

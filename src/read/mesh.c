@@ -35,7 +35,7 @@ static bool read_file(reader *r, const char *path, const char *part, mesh_data *
             return false;
         r->model_path = reader_copy(r, path);
     }
-    return mesh_data_part(&r->model, part, d, why);
+    return mesh_data_part(&r->model, part, from->progress, d, why);
 }
 
 /* What a mesh is made from. */
@@ -53,17 +53,18 @@ static bool read_triangles(reader *r, const model *m, mesh_data *d)
     char why[MESH_WHY];
     if (m->from.array && m->part)
         return yaml_error(r->y, m->part, "an array has no parts, expected none to be named");
-    bool good = m->from.array ? mesh_array_read(&m->from.array->mesh, d, why)
+    bool good = m->from.array ? mesh_array_read(&m->from.array->mesh, r->from->progress, d, why)
                               : read_file(r, m->from.path, m->part_name, d, why);
     if (good)
         progress_show(r->from->progress, "checking", 1);
-    good = good && mesh_clean(d, m->normals, m->crease, BIG, r->from->threads, why);
-    free(d->part); /* of the file's triangles, some of which may have been left out */
+    good = good && mesh_clean(d, m->normals, m->crease, BIG, r->from->threads, r->from->progress, why);
+    memory_free(d->part); /* of the file's triangles, some of which may have been left out */
     d->part = NULL;
     if (!good)
         return yaml_error(r->y, m->part ? m->part : m->file, "'%s' can't be used: %s", m->from.name, why);
-    return is_large(d) || yaml_error(r->y, m->file, "'%s' can't be used: it is smaller than %g, expected some size",
-                                     m->from.name, SMALL);
+    return is_large(d) ||
+           yaml_error(r->y, m->file, "'%s' can't be used: the model is smaller than %g, expected some size",
+                      m->from.name, SMALL);
 }
 
 /* A glTF may have its numbers in other files, which may have changed. */

@@ -69,12 +69,24 @@ static void read_own_bump(reader *r, node *at, object *o)
     o->bump_of = NULL;
     o->map = (map_note){0};
     o->bump_spec = (bump_spec){0};
+    r->now = at;
     o->bump = reader_bump(r, at, o);
     if (o->bump && scene_wants_truth(r->s) && !displaced_has_bounds(o->bump))
         yaml_error(r->y, at,
                    "no bounds of P or of its slope are known, expected them for %s: a function that is bounded, "
                    "without jumps, over the whole surface",
                    scene_truth_name(r->s));
+}
+
+/* Where the shape is wrong, a square stands for it, so that the bump's own errors are told with the shape's. */
+static void read_bump_alone(reader *r, node *at, object *o)
+{
+    surface *square = reader_made(r, plane_new((vec3){0, 0, 0}, (vec3){1, 0, 0}, (vec3){0, 0, 1}, true));
+    o->own = square;
+    if (square)
+        read_own_bump(r, at, o);
+    o->own = NULL;
+    surface_free(square);
 }
 
 /* Whether the object that is copied is not itself a list of copies. */
@@ -104,6 +116,7 @@ static void read_object(reader *r, const queue *q, int i)
     node *v = q->at[i], *m, *at_bump, *copy;
     int k;
     q->state[i] = BEGUN;
+    r->now = v;
     o->placed = affine_identity();
     if (yaml_map(r->y, v, "an object", READER_SHAPES " material bump transform copy copies hidden")) {
         node *hidden = yaml_get(v, "hidden");
@@ -123,16 +136,20 @@ static void read_object(reader *r, const queue *q, int i)
             reader_color_texture(r, m ? m : copy, o);
         if ((at_bump = yaml_get(v, "bump")) && o->own)
             read_own_bump(r, at_bump, o);
+        else if (at_bump && !copy)
+            read_bump_alone(r, at_bump, o);
         if (hidden)
             yaml_bool(r->y, hidden, "true or false", &o->hidden);
         if (!yaml_get(v, "copies"))
             place(r, v, o);
         else if (o->own)
             reader_copies(r, v, i);
-        if (o->shape && !o->crowd && o->bump && scene_wants_truth(s) && displaced_has_form(o->shape))
+        if (o->shape && !o->crowd && o->bump && scene_wants_truth(s) && displaced_has_form(o->shape) &&
+            !r->from->survey)
             o->displaced = reader_made(r, reader_displaced(r, o));
     }
     q->state[i] = DONE;
+    r->now = NULL;
 }
 
 /* Copy object i and those that its list adds to `to`, the first of which is to[at]. Returns how many. */

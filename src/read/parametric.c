@@ -1,6 +1,8 @@
 /* Surfaces without closed forms: three functions of u and w, and Bezier patches. */
 #include "read/parts.h"
 
+#include "base/files.h"
+
 #include "patch/patch_file.h"
 #include "patch/surface.h"
 
@@ -49,11 +51,11 @@ static surface *search(reader *r, node *at, patch *q, const char *what, const ch
     if (q)
         q->threads = r->from->threads;
     bool bounded = true;
-    surface *f = q ? patch_surface_new_bounded(q, &bounded) : NULL;
+    surface *f = q ? patch_surface_new_bounded(q, r->from->progress, &bounded) : NULL;
     if (!bounded)
         yaml_error(r->y, at, "%s", what);
     else if (!f)
-        errors_add(r->e, "out of memory");
+        reader_made(r, NULL);
     return reader_keep_surface(r, key, f);
 }
 
@@ -109,8 +111,8 @@ surface *reader_parametric(reader *r, node *at, shape_spec *spec)
         expr_free(e[k]);
     if (!f)
         f = search(r, at, patch_function_new("parametric", e, u, w),
-                   "a surface without bounds, or all in one place, expected functions that are bounded over the range "
-                   "of u and w",
+                   "the surface has no bounds, or is all in one place; expected x, y and z that are finite, and not "
+                   "all constant, over the range of u and w",
                    key);
     free(key);
     return f;
@@ -162,12 +164,13 @@ static vec3 *read_file(reader *r, node *at, int *patches)
     const char *name = yaml_text(r->y, at, "the file of the patches");
     char *path = name ? reader_beside(r, name) : NULL;
     vec3 *point = NULL;
-    FILE *there = path ? fopen(path, "rb") : NULL;
+    const char *why = NULL;
+    FILE *there = path ? files_open_input(path, &why) : NULL;
     if (there) {
         fclose(there);
         point = patch_file_read(path, path, BIG, patches, r->e);
     } else if (path)
-        yaml_error(r->y, at, "'%s' can't be used: %s", name, strerror(errno));
+        yaml_error(r->y, at, "'%s' can't be used: %s", name, why);
     free(path);
     return point;
 }
@@ -187,7 +190,8 @@ surface *reader_patches(reader *r, node *at, shape_spec *spec)
     char *key = key_of_points(r, n, point);
     surface *f = reader_found_surface(r, key);
     if (!f)
-        f = search(r, at, patch_bezier_new(n, point), "patches that are all in one place, expected some extent", key);
+        f = search(r, at, patch_bezier_new(n, point), "the patches are all in one place, expected points that differ",
+                   key);
     free(point);
     free(key);
     return f;

@@ -48,7 +48,7 @@ static bool is_mesh_sized(const surface *f, const affine *m, double *wrong)
 }
 
 /* A closed form with these values, which are about the origin, mapped by m. NULL: out of memory. */
-static surface *image_of_closed(object *o, const shape_values *values, const affine *m, bool truth, int threads)
+static surface *image_of_closed(reader *r, object *o, const shape_values *values, const affine *m, bool truth)
 {
     form_fault fault;
     form_formula formula;
@@ -57,20 +57,20 @@ static surface *image_of_closed(object *o, const shape_values *values, const aff
     surface *f = o->centred ? surface_transformed(o->centred, m) : NULL;
     if (!f || !truth || displaced_has_form(f) || !form->formula || !form->formula(&o->shape_spec.values, &formula))
         return f;
-    surface *searched = patch_surface_formula(form->name, &formula, threads);
+    surface *searched = patch_surface_formula(form->name, &formula, r->from->threads, r->from->progress);
     if (!searched)
         return f;
     surface_free(f);
     surface_free(o->centred);
     o->centred = searched;
-    return patch_surface_affine(searched, m);
+    return patch_surface_affine(searched, m, r->from->progress);
 }
 
 /* The object's own shape mapped by m; of a closed form, the one with `values`. NULL: out of memory. */
 static surface *image_of(reader *r, object *o, const shape_values *values, const affine *m, bool truth)
 {
     if (o->shape_spec.kind == SHAPE_CLOSED)
-        return image_of_closed(o, values, m, truth, r->from->threads);
+        return image_of_closed(r, o, values, m, truth);
     return truth ? reader_moved(r, o, m) : surface_transformed(o->own, m);
 }
 
@@ -97,7 +97,12 @@ bool reader_place(reader *r, node *at, object *o)
     whole = affine_then(&whole, m);
     if (!(o->shape = reader_made(r, image_of(r, o, &values, &whole, truth))))
         return false;
-    if (!(is_mesh ? is_mesh_sized(o->own, m, &wrong) : is_sized(o->shape, &wrong)))
+    const bool sized = is_mesh ? is_mesh_sized(o->own, m, &wrong) : is_sized(o->shape, &wrong);
+    if (!sized && isnan(wrong))
+        return yaml_error(r->y, at,
+                          "the surface is a line or a point, or has no value in the middle of its range of u "
+                          "and w; expected one with an area there, to transform it");
+    if (!sized)
         return yaml_error(r->y, at, "an edge or a radius of %.4g scene units after the transform, expected 1e-6 to 1e6",
                           wrong);
     if (truth && !displaced_has_form(o->shape))

@@ -25,7 +25,7 @@ scene *scene_read(const scene_source *from, errors *e)
     if (r.y) {
         r.s->path = reader_copy(&r, from->path);
         if (!from->text && !files_add_path(&r.s->made_from, from->path))
-            errors_add(e, "out of memory");
+            reader_made(&r, NULL);
         r.s->source = reader_copy(&r, yaml_source(r.y));
         if (r.s->path) {
             yaml_map(r.y, yaml_root(r.y), "the scene", "camera image render lights materials objects");
@@ -36,11 +36,11 @@ scene *scene_read(const scene_source *from, errors *e)
             if (e->count == before) {
                 note_secondary(r.s);
                 bool good = true;
-                r.s->object_bvh = object_bvh_new(r.s, from->threads, &good);
-                if (scene_wants_horizons(r.s))
-                    good = (r.s->horizons = horizons_new(r.s, from->threads)) && good;
+                r.s->object_bvh = object_bvh_new(r.s, from->threads, from->progress, &good);
+                if (scene_wants_horizons(r.s) && !from->survey)
+                    good = (r.s->horizons = horizons_new(r.s, from->threads, from->progress)) && good;
                 if (!good)
-                    errors_add(e, "out of memory");
+                    reader_made(&r, NULL);
             }
         }
         yaml_close(r.y);

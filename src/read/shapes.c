@@ -65,7 +65,7 @@ static surface *read_closed(reader *r, node *at, const closed_form *form, shape_
     if (!f && fault.message)
         yaml_error(r->y, fault.key ? yaml_get(at, fault.key) : at, "%s", fault.message);
     else if (!f)
-        errors_add(r->e, "out of memory");
+        reader_made(r, NULL);
     return f;
 }
 

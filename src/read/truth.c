@@ -51,8 +51,8 @@ surface *reader_moved(reader *r, const object *o, const affine *m)
     surface *f = found(r, key);
     if (!f && key)
         f = keep(r, key,
-                 o->shape_spec.kind == SHAPE_MESH ? mesh_moved(o->own, m, r->from->threads)
-                                                  : patch_surface_affine(o->own, m),
+                 o->shape_spec.kind == SHAPE_MESH ? mesh_moved(o->own, m, r->from->threads, r->from->progress)
+                                                  : patch_surface_affine(o->own, m, r->from->progress),
                  o->own, NULL);
     free(key);
     return f;
@@ -61,11 +61,11 @@ surface *reader_moved(reader *r, const object *o, const affine *m)
 surface *reader_displaced(reader *r, const object *o)
 {
     if (o->shape_spec.kind == SHAPE_CLOSED) /* takes no time */
-        return displaced_new(o->shape, o->bump);
+        return displaced_new(o->shape, o->bump, r->from->progress);
     char *key = reader_key(r, "displaced %p %p", (const void *)o->shape, (const void *)o->bump);
     surface *f = found(r, key);
     if (!f && key)
-        f = keep(r, key, displaced_new(o->shape, o->bump), o->shape, o->bump);
+        f = keep(r, key, displaced_new(o->shape, o->bump, r->from->progress), o->shape, o->bump);
     free(key);
     return f;
 }

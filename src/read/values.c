@@ -5,10 +5,18 @@
 #include <stdlib.h>
 #include <string.h>
 
+const char *reader_memory_words(const reader *r, char text[MEMORY_WORDS])
+{
+    return memory_words(reader_memory(r), text);
+}
+
 void *reader_made(reader *r, void *p)
 {
-    if (!p)
-        errors_add(r->e, "out of memory");
+    char words[MEMORY_WORDS];
+    if (!p && r->now)
+        yaml_error(r->y, r->now, "%s", reader_memory_words(r, words));
+    else if (!p)
+        errors_add(r->e, "%s: %s", r->from->path, reader_memory_words(r, words));
     return p;
 }
 
@@ -126,7 +134,7 @@ char *reader_beside(reader *r, const char *file)
     if (path)
         snprintf(path, size, "%.*s%s%s", (int)n, folder, slash, file);
     if (!path || !files_add_path(&r->s->made_from, path))
-        errors_add(r->e, "out of memory");
+        reader_made(r, NULL);
     return path;
 }
 

@@ -27,14 +27,21 @@ typedef struct reader {
     scene *s;
     errors *e;
     const scene_source *from;
+    node *now; /* what is being read, for errors of memory; NULL: nothing that has a place */
     int lists;
     copies_list *list;
     char *model_path; /* the last model of which a part was asked for, which need not be read again for the next part */
     mesh_data model;
 } reader;
 
-/* Returns p. Adds the error "out of memory" where it is NULL. */
+/* Returns p. Where it is NULL, adds the error that there is not enough memory, at what is being read. */
 void *reader_made(reader *r, void *p);
+
+/* Where this scene's memory is from. */
+static inline memory *reader_memory(const reader *r) { return progress_memory(r->from->progress); }
+
+/* "there is not enough memory", and what is needed. */
+const char *reader_memory_words(const reader *r, char text[MEMORY_WORDS]);
 
 /* A copy of the text, owned by the caller. NULL: the text is NULL, or there is an error. */
 char *reader_copy(reader *r, const char *text);

@@ -72,12 +72,38 @@ STAGE static void bend_normals(hit_group *restrict g)
                                    g->bump.P[i]);
         bs_vec3 N = bs_normal(o.Qu, o.Qw),
                 np = lane_unit(bs_perturbed_normal(N, o.Qu, o.Qw, g->bump.Pu[i], g->bump.Pw[i]));
-        int good = bs_regular(n, Qu, Qw) & (bs_dot(n, N) > 0); /* not beyond the centre of curvature */
+        int has = bs_dot(np, np) > R(0.5);                           /* within float's range */
+        int good = bs_regular(n, Qu, Qw) & (bs_dot(n, N) > 0) & has; /* not beyond the centre of curvature */
         np.x = good ? np.x : before.x;
         np.y = good ? np.y : before.y;
         np.z = good ? np.z : before.z;
         lane_set(&g->n_bump, i, np);
     }
+}
+
+STAGE static int count_lost(int n, const real *restrict u, const real *restrict w)
+{
+    int lost = 0;
+    for (int i = 0; i < n; i++)
+        lost += !(real_abs(u[i]) + real_abs(w[i]) < REAL_FAR);
+    return lost;
+}
+
+/* Places whose foot has no (u,w) are shaded at the smooth hit. */
+static void keep_lost(const surface *f, hit_group *g)
+{
+    real u[LANES], w[LANES];
+    int32_t part[LANES];
+    memcpy(part, g->part, sizeof part);
+    f->ops->locate(f, g->n, g->x, g->t, part, u, w);
+    for (int i = 0; i < g->n; i++)
+        if (count_lost(1, g->u + i, g->w + i)) {
+            g->t_moved[i] = g->t[i];
+            g->shade_part[i] = part[i];
+            g->u[i] = u[i];
+            g->w[i] = w[i];
+            shift_undefined(g, i);
+        }
 }
 
 static void place_shifted(const surface *f, const bump *P, bool own, hit_group *g)
@@ -89,6 +115,8 @@ static void place_shifted(const surface *f, const bump *P, bool own, hit_group *
         f->ops->foot(f, g->n, g->x, g->t_shade, g->shade_part, g->u, g->w);
     else
         foot_by_steps(f, g);
+    if (count_lost(g->n, g->u, g->w))
+        keep_lost(f, g);
     f->ops->eval(f, g->n, g->shade_part, g->u, g->w, f->ops->flat ? 1 : 2, &g->q);
     P->ops->eval(P, g->n, g->u, g->w, 1, &g->bump);
     shift_normals(g, P);

@@ -19,6 +19,19 @@ void samples_background(int n, vec3 color, bool layers, samples *o)
     fill_ids(n, -1, o->order);
 }
 
+STAGE static void bound(int n, real *restrict v)
+{
+    for (int i = 0; i < n; i++)
+        v[i] = real_max(real_min(v[i], REAL_FAR), -REAL_FAR);
+}
+
+void samples_bound(int n, vec3s *rgb)
+{
+    bound(n, rgb->x);
+    bound(n, rgb->y);
+    bound(n, rgb->z);
+}
+
 void samples_dark(int n, real *visibility) { fill(n, 0, visibility); }
 
 STAGE static void brightness(const hit_group *restrict g, real *restrict v)

@@ -18,6 +18,9 @@ typedef struct samples {
 void samples_background(int n, vec3 color, bool layers, samples *out);
 void samples_dark(int n, real *visibility);
 
+/* Light that is beyond float's range, or nearly: REAL_FAR at most. */
+void samples_bound(int n, vec3s *rgb);
+
 /* Copy a group's results to its lanes. tinted: the visibility is g->lit times the mean of g->tint. */
 void samples_put(const hit_group *g, bool layers, bool bumped, samples *out);
 void samples_put_visibility(const hit_group *g, bool tinted, real *visibility);

@@ -235,7 +235,8 @@ void secondary_go_on(const ray_queue *on, ray_queue *q)
     vec3s weight;
     for (int i = 0; i < on->n; i++) {
         bs_vec3 w = lane_get(&on->weight, i), before = lane_get(&q->weight, on->lane[i]);
-        bs_vec3 both = {w.x * before.x, w.y * before.y, w.z * before.z};
+        bs_vec3 both = {secondary_weight(w.x * before.x), secondary_weight(w.y * before.y),
+                        secondary_weight(w.z * before.z)};
         lane[i] = q->lane[on->lane[i]];
         lane_set(&weight, i, both);
     }

@@ -26,6 +26,10 @@ typedef struct ray_queue {
     media in;
 } ray_queue;
 
+/* The share of light that comes through. A colour above 1 adds light at each surface; so much is enough, and times any
+ * other colour it is within float's range. */
+static inline real secondary_weight(real x) { return real_min(x, R(1e12)); }
+
 struct scene;
 struct workspace;
 

@@ -30,6 +30,8 @@ void tau_find(const tracer *tr, int32_t id, workspace *v)
         displaced_shift(&v->displaced[id].base, g);
     else
         v->stats->evaluations += shift_group(g, P, tr->shadow, tr->guard);
+    if (P && tr->shadow.kind != METHOD_NONE)
+        shift_known(g);
     if (P)
         stats_orders(v->stats, g->n, g->order, asked);
 }

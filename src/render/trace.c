@@ -28,6 +28,7 @@ static void shape_and_shift(const tracer *tr, int32_t id, workspace *v)
     const bump *P = tr->scene->object[id].bump;
     hit_group *g = &v->g;
     stats *st = v->stats;
+    g->undefined = 0;
     g->flat = f->ops->flat;
     f->ops->locate(f, g->n, g->x, g->t, g->part, g->u, g->w);
     f->ops->eval(f, g->n, g->part, g->u, g->w, tau_partials(tr, id, v), &g->q);
@@ -46,6 +47,7 @@ static void shape_and_shift(const tracer *tr, int32_t id, workspace *v)
 static void shape_displaced(int32_t id, workspace *v)
 {
     v->alone = false;
+    v->g.undefined = 0;
     displaced_shape(v->surface[id], &v->g);
     stats_orders(v->stats, v->g.n, v->g.order, ORDER_EXACT);
     stats_stage(v->stats, STAGE_SURFACE);
@@ -79,10 +81,12 @@ void trace_group(const tracer *tr, int32_t id, workspace *v)
         shape_displaced(id, v);
     else
         shape_and_shift(tr, id, v);
-    if (v->of)
+    if (tr->scene->object[id].bump)
         shift_within(&v->g);
     shift_origins(&v->g);
     place_find(tr, id, v);
+    if (v->g.undefined)
+        stats_undefined(v->stats, id, v->g.undefined);
     light_group(tr, id, v);
 }
 
@@ -135,4 +139,5 @@ void trace(const tracer *tr, int n, workspace *v)
     }
     if (s->sends)
         follow_all(tr, v);
+    samples_bound(n, &v->out.rgb);
 }

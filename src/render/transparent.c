@@ -64,9 +64,9 @@ static void tint(const material *m, const segments *a, hit_group *g)
         if (a->h.id[i] < 0)
             continue;
         bs_vec3 c = m->pattern ? lane_get(&a->color, i) : plain;
-        g->tint.x[at] *= c.x * filter + transmit;
-        g->tint.y[at] *= c.y * filter + transmit;
-        g->tint.z[at] *= c.z * filter + transmit;
+        g->tint.x[at] = secondary_weight(g->tint.x[at] * (c.x * filter + transmit));
+        g->tint.y[at] = secondary_weight(g->tint.y[at] * (c.y * filter + transmit));
+        g->tint.z[at] = secondary_weight(g->tint.z[at] * (c.z * filter + transmit));
     }
 }
 

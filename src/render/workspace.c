@@ -5,13 +5,13 @@
 
 #include "scene/object_bvh.h"
 
-static workspace *chain_new(int lights, int deeper)
+static workspace *chain_new(int lights, int deeper, memory *m)
 {
-    workspace *v = calloc(1, sizeof *v);
+    workspace *v = memory_zeroed(m, sizeof *v);
     if (!v)
         return NULL;
-    v->visibility = malloc((size_t)(lights ? lights : 1) * sizeof *v->visibility);
-    v->deeper = v->visibility && deeper ? chain_new(0, deeper - 1) : NULL;
+    v->visibility = memory_new(m, (size_t)(lights ? lights : 1) * sizeof *v->visibility);
+    v->deeper = v->visibility && deeper ? chain_new(0, deeper - 1, m) : NULL;
     if (v->visibility && (!deeper || v->deeper))
         return v;
     workspace_free(v);
@@ -29,19 +29,19 @@ static void choose_surfaces(const tracer *tr, workspace *v)
     }
 }
 
-workspace *workspace_new(const tracer *tr)
+workspace *workspace_new(const tracer *tr, memory *m)
 {
     const scene *s = tr->scene;
     const size_t objects = (size_t)(s->objects ? s->objects : 1);
     /* depth - 1 levels of secondary rays, and one for rays straight through from a camera's wave */
-    workspace *v = chain_new(s->lights, s->sends && s->depth > 1 ? s->depth : 0);
+    workspace *v = chain_new(s->lights, s->sends && s->depth > 1 ? s->depth : 0, m);
     if (!v)
         return NULL;
     v->left = s->depth - 1;
     v->stats = calloc(1, sizeof *v->stats);
-    v->surface = malloc(objects * sizeof *v->surface);
-    v->displaced = malloc(objects * sizeof *v->displaced);
-    v->candidates = s->object_bvh ? candidates_new(s->object_bvh) : NULL;
+    v->surface = memory_new(m, objects * sizeof *v->surface);
+    v->displaced = memory_new(m, objects * sizeof *v->displaced);
+    v->candidates = s->object_bvh ? candidates_new(s->object_bvh, m) : NULL;
     if (!v->stats || !v->surface || !v->displaced || (s->object_bvh && !v->candidates)) {
         workspace_free(v);
         return NULL;
@@ -60,14 +60,14 @@ void workspace_free(workspace *v)
 {
     if (v) {
         candidates_free(v->candidates);
-        free(v->displaced);
-        free(v->surface);
+        memory_free(v->displaced);
+        memory_free(v->surface);
         free(v->stats);
     }
     while (v) {
         workspace *next = v->deeper;
-        free(v->visibility);
-        free(v);
+        memory_free(v->visibility);
+        memory_free(v);
         v = next;
     }
 }

@@ -46,7 +46,7 @@ struct workspace {
 };
 
 /* For tracers with the same scene and `displaced` as this one. NULL: out of memory. */
-workspace *workspace_new(const tracer *tr);
+workspace *workspace_new(const tracer *tr, memory *m);
 void workspace_free(workspace *v);
 
 #endif

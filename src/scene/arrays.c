@@ -11,7 +11,7 @@ static void drop(scene_array *x)
     if (!x || !shared_drop(&x->others))
         return;
     free(x->name);
-    free(x->memory);
+    memory_free(x->memory);
     free(x);
 }
 
@@ -42,24 +42,24 @@ static bool add(arrays *a, scene_array *x)
     return true;
 }
 
-static scene_array *new_array(const char *name, bool is_mesh, size_t bytes)
+static scene_array *new_array(const char *name, bool is_mesh, size_t bytes, memory *m)
 {
     scene_array *x = calloc(1, sizeof *x);
     if (!x)
         return NULL;
     x->is_mesh = is_mesh;
     x->name = strdup(name);
-    x->memory = malloc(bytes);
+    x->memory = memory_new(m, bytes);
     if (x->name && x->memory)
         return x;
     drop(x);
     return NULL;
 }
 
-bool arrays_add_image(arrays *a, const char *name, const image_array *from)
+bool arrays_add_image(arrays *a, const char *name, const image_array *from, memory *m)
 {
     const size_t size = image_array_size(from);
-    scene_array *x = new_array(name, false, size);
+    scene_array *x = new_array(name, false, size, m);
     if (!x)
         return false;
     memcpy(x->memory, from->samples, size);
@@ -79,11 +79,11 @@ static const double *put(double **at, const double *from, size_t n)
     return to;
 }
 
-bool arrays_add_mesh(arrays *a, const char *name, const mesh_array *mesh)
+bool arrays_add_mesh(arrays *a, const char *name, const mesh_array *mesh, memory *m)
 {
     const size_t n = (size_t)mesh->vertices, numbers = n * (size_t)(3 + (mesh->normals ? 3 : 0) + (mesh->uvs ? 2 : 0));
     const size_t corners = 3 * (size_t)mesh->triangles * sizeof *mesh->corners;
-    scene_array *x = new_array(name, true, numbers * sizeof(double) + corners);
+    scene_array *x = new_array(name, true, numbers * sizeof(double) + corners, m);
     if (!x)
         return false;
     double *at = x->memory;

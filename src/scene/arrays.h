@@ -24,9 +24,10 @@ typedef struct arrays {
     int count;
 } arrays;
 
-/* Add a copy of an image or a model, in place of an array of this kind and name. False: out of memory. */
-bool arrays_add_image(arrays *a, const char *name, const image_array *from);
-bool arrays_add_mesh(arrays *a, const char *name, const mesh_array *mesh);
+/* Add a copy of an image or a model, in place of an array of this kind and name. m: what it is taken from; NULL: no
+ * limit. False: out of memory. */
+bool arrays_add_image(arrays *a, const char *name, const image_array *from, memory *m);
+bool arrays_add_mesh(arrays *a, const char *name, const mesh_array *mesh, memory *m);
 
 /* Add those of another set. They are not copied. */
 bool arrays_add_all(arrays *a, const arrays *from);

@@ -95,26 +95,27 @@ static void curvature_of_row(const surface *f, int part, const table_grid *g, in
 }
 
 /* The horizon over a part's extent. NULL: out of memory. */
-static horizon *over_extent(const object *o, int part, const double u[2], const double w[2], int threads)
+static horizon *over_extent(const object *o, int part, const double u[2], const double w[2], int threads,
+                            const progress *show)
 {
     const surface *f = o->shape;
     table_grid g;
     lay_extent(o, u, w, &g);
     const size_t row = (size_t)g.columns + 1, size = row * ((size_t)g.rows + 1);
-    real *all = malloc(3 * size * sizeof *all);
+    real *all = memory_new(progress_memory(show), 3 * size * sizeof *all);
     if (!all)
         return NULL;
     real *const L = all, *const M = L + size, *const N = M + size;
     for (int j = 0; j <= g.rows; j++)
         curvature_of_row(f, part, &g, j, L + (size_t)j * row, M + (size_t)j * row, N + (size_t)j * row);
     const horizon_curvature c = {L, M, N};
-    horizon *h = horizon_new(o->bump, &g, f->ops->flat, &c, threads);
-    free(all);
+    horizon *h = horizon_new(o->bump, &g, f->ops->flat, &c, threads, show);
+    memory_free(all);
     return h;
 }
 
 /* False: out of memory. */
-static bool build(const object *o, horizon **of, int threads)
+static bool build(const object *o, horizon **of, int threads, const progress *show)
 {
     const surface *f = o->shape;
     if (!o->bump || o->shape_spec.kind == SHAPE_MESH || !(o->bump->Pmax - o->bump->Pmin < REAL_FAR) ||
@@ -127,14 +128,15 @@ static bool build(const object *o, horizon **of, int threads)
         const bool endless = !is_finite(u) || !is_finite(w);
         if (endless && !lay_period(o, &g))
             continue;
-        of[part] = endless ? horizon_new(o->bump, &g, false, NULL, threads) : over_extent(o, part, u, w, threads);
+        of[part] =
+            endless ? horizon_new(o->bump, &g, false, NULL, threads, show) : over_extent(o, part, u, w, threads, show);
         if (!of[part])
             return false;
     }
     return true;
 }
 
-horizons *horizons_new(const scene *s, int threads)
+horizons *horizons_new(const scene *s, int threads, const progress *w)
 {
     horizons *h = calloc(1, sizeof *h);
     if (!h)
@@ -143,7 +145,7 @@ horizons *horizons_new(const scene *s, int threads)
     h->of = calloc((size_t)s->objects + 1, sizeof *h->of);
     bool good = h->of != NULL;
     for (int k = 0; good && k < s->objects; k++)
-        good = build(&s->object[k], h->of[k], threads);
+        good = build(&s->object[k], h->of[k], threads, w);
     if (good)
         return h;
     horizons_free(h);

@@ -10,7 +10,7 @@ typedef struct horizons horizons;
 /* Build them. An object has one for each part of its surface: over the part's extent, or over one period of its map
  * where the surface has no ends. It has none where that is not known: a function on a plane without ends, meshes and
  * patches. The result does not depend on the threads. NULL: out of memory. */
-horizons *horizons_new(const scene *s, int threads);
+horizons *horizons_new(const scene *s, int threads, const progress *w);
 
 /* NULL is allowed. */
 void horizons_free(horizons *h);

@@ -65,21 +65,22 @@ static void measure(object_bvh *c)
     c->space = bvh_space_about(all.lo, all.hi);
 }
 
-static bvh *tree_of(const object_bvh *c, int threads)
+static bvh *tree_of(const object_bvh *c, int threads, const progress *w)
 {
-    bvh_box *b = malloc(sizeof *b * (size_t)c->bounded);
+    bvh_box *b = memory_new(progress_memory(w), sizeof *b * (size_t)c->bounded);
     for (int i = 0; b && i < c->bounded; i++)
         b[i] = bvh_box_in(&c->space, c->box[i].lo, c->box[i].hi);
-    bvh *tree = b ? bvh_new(c->bounded, b, threads, NULL) : NULL;
-    free(b);
+    bvh *tree = b ? bvh_new(c->bounded, b, threads, w) : NULL;
+    memory_free(b);
     return tree;
 }
 
-object_bvh *object_bvh_new(const scene *s, int threads, bool *good)
+object_bvh *object_bvh_new(const scene *s, int threads, const progress *w, bool *good)
 {
     const size_t n = (size_t)s->objects;
     object_bvh *c = calloc(1, sizeof *c);
-    *good = c && (c->object = malloc(sizeof *c->object * n)) && (c->box = malloc(sizeof *c->box * n));
+    memory *m = progress_memory(w);
+    *good = c && (c->object = memory_new(m, sizeof *c->object * n)) && (c->box = memory_new(m, sizeof *c->box * n));
     for (int i = 0; *good && i < s->objects; i++) {
         if (s->object[i].first != i)
             continue;
@@ -94,7 +95,7 @@ object_bvh *object_bvh_new(const scene *s, int threads, bool *good)
         c->of = s;
         c->objects = s->objects;
         measure(c);
-        *good = (c->tree = tree_of(c, threads)) != NULL;
+        *good = (c->tree = tree_of(c, threads, w)) != NULL;
     }
     if (c && c->tree)
         return c;
@@ -107,8 +108,8 @@ void object_bvh_free(object_bvh *c)
     if (!c)
         return;
     bvh_free(c->tree);
-    free(c->object);
-    free(c->box);
+    memory_free(c->object);
+    memory_free(c->box);
     free(c);
 }
 
@@ -116,14 +117,14 @@ void object_bvh_free(object_bvh *c)
 
 static size_t words_for(int objects) { return ((size_t)objects + BITS - 1) / BITS; }
 
-candidates *candidates_new(const object_bvh *c)
+candidates *candidates_new(const object_bvh *c, memory *of)
 {
     candidates *m = calloc(1, sizeof *m);
     if (!m)
         return NULL;
     m->objects = c->objects;
-    m->met = calloc(words_for(c->objects), sizeof *m->met);
-    m->lane = calloc((size_t)c->objects, sizeof *m->lane);
+    m->met = memory_zeroed(of, words_for(c->objects) * sizeof *m->met);
+    m->lane = memory_zeroed(of, (size_t)c->objects * sizeof *m->lane);
     if (m->met && m->lane)
         return m;
     candidates_free(m);
@@ -134,8 +135,8 @@ void candidates_free(candidates *m)
 {
     if (!m)
         return;
-    free(m->met);
-    free(m->lane);
+    memory_free(m->met);
+    memory_free(m->lane);
     free(m);
 }
 

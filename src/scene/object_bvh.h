@@ -6,6 +6,7 @@
 
 #include <stdbool.h>
 
+#include "base/progress.h"
 #include "wave/wave.h"
 
 struct scene;
@@ -13,12 +14,12 @@ typedef struct object_bvh object_bvh;
 
 /* A hierarchy over the boxes of the scene's objects, built with several threads (0: all processors). NULL with *good:
  * few objects, testing all is faster. NULL without: out of memory. */
-object_bvh *object_bvh_new(const struct scene *s, int threads, bool *good);
+object_bvh *object_bvh_new(const struct scene *s, int threads, const progress *w, bool *good);
 void object_bvh_free(object_bvh *c);
 
 /* For each object the rays of a wave that may meet it. One for each thread. */
 typedef struct candidates candidates;
-candidates *candidates_new(const object_bvh *c); /* NULL: out of memory */
+candidates *candidates_new(const object_bvh *c, memory *m); /* NULL: out of memory */
 void candidates_free(candidates *m);
 
 /* Find them, for n rays r + s t, 0 < t < end[i]. own: the object that each ray starts on, always a candidate; NULL:

@@ -15,7 +15,7 @@ static void add_face(tessellation *x, int32_t a, int32_t b, int32_t c)
         return; /* at a pole a side has no length */
     if (x->faces == x->room) {
         long room = x->room ? 2 * x->room : 1 << 16;
-        int32_t(*face)[3] = realloc(x->face, sizeof *face * (size_t)room);
+        int32_t(*face)[3] = memory_resize(progress_memory(x->progress), x->face, sizeof *face * (size_t)room);
         if (!face) {
             x->memory = false;
             x->full = true;

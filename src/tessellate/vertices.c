@@ -96,11 +96,11 @@ static int find(const pov_vertices *v, int64_t key)
 static bool grow(pov_vertices *v)
 {
     const int room = v->room ? 2 * v->room : 1 << 14, slots = 2 * room;
-    pov_vertex *vertex = realloc(v->vertex, sizeof *vertex * (size_t)room);
+    pov_vertex *vertex = memory_resize(v->memory, v->vertex, sizeof *vertex * (size_t)room);
     v->vertex = vertex ? vertex : v->vertex;
-    int64_t *key = realloc(v->key, sizeof *key * (size_t)room);
+    int64_t *key = memory_resize(v->memory, v->key, sizeof *key * (size_t)room);
     v->key = key ? key : v->key;
-    int32_t *slot = realloc(v->slot, sizeof *slot * (size_t)slots);
+    int32_t *slot = memory_resize(v->memory, v->slot, sizeof *slot * (size_t)slots);
     v->slot = slot ? slot : v->slot;
     if (!vertex || !key || !slot)
         return false;
@@ -148,7 +148,7 @@ void pov_vertices_clear(pov_vertices *v)
 
 void pov_vertices_free(pov_vertices *v)
 {
-    free(v->vertex);
-    free(v->key);
-    free(v->slot);
+    memory_free(v->vertex);
+    memory_free(v->key);
+    memory_free(v->slot);
 }

@@ -6,6 +6,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "base/memory.h"
 #include "texture/bump.h"
 #include "pov_text/text.h"
 #include "geometry/surface.h"
@@ -33,6 +34,7 @@ void pov_mesh2(pov_text *t, const pov_vertex *v, int n, bool uv, int faces, cons
 typedef struct pov_vertices {
     const surface *f;
     const bump *P;
+    memory *memory; /* NULL: no limit */
     pov_lattice lattice;
     pov_vertex *vertex;
     int64_t *key;

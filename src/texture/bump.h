@@ -7,6 +7,7 @@
 
 #include <stdbool.h>
 
+#include "base/progress.h"
 #include "expr/expr.h"
 #include "texture/pyramid.h"
 #include "texture/table.h"
@@ -16,7 +17,8 @@ typedef struct bump bump;
 typedef struct bump_ops {
     const char *kind; /* as in the scene file: "map" or "function" */
 
-    /* P at n <= LANES places; order 1: also Pu and Pw; order 2: also Puu and Pww; order 3 (2+): also Puw. Reentrant, no
+    /* P at n <= LANES places; order 1: also Pu and Pw; order 2: also Puu and Pww; order 3 (2+): also Puw. Where P, or
+     * Pu or Pw if asked for, is NaN, infinite or beyond REAL_FAR, all are 0, and h->undefined tells. Reentrant, no
      * allocation. */
     void (*eval)(const bump *p, int n, const real *u, const real *w, int order, bump_values *h);
 
@@ -33,7 +35,7 @@ typedef struct bump_ops {
     void (*range)(const bump *p, int n, const real *u0, const real *u1, const real *w0, const real *w1,
                   bump_ranges *out);
 
-    bool (*prepare)(bump *p); /* bump_prepare */
+    bool (*prepare)(bump *p, const progress *w); /* bump_prepare */
     void (*free)(bump *p);
 } bump_ops;
 
@@ -63,13 +65,14 @@ struct bump {
  * and partials interpolated bilinearly. Beyond the outermost samples of a clamped map P is constant. u is to the right,
  * w down. It is of use once all samples are put in, n of row y from column x on, by any threads, and bump_map_end has
  * laid out what is around them and found the bounds, which do not depend on its threads (0: one for each processor).
- * NULL: out of memory, fewer than 2 x 2 samples, or more than 2^29 (four times as many if mirrored). */
-bump *bump_map_new(int width, int height, const map_layout *layout);
+ * w: what its memory is taken from; NULL: no limit. NULL: out of memory, fewer than 2 x 2 samples, or more than 2^29
+ * (four times as many if mirrored). */
+bump *bump_map_new(int width, int height, const map_layout *layout, const progress *w);
 void bump_map_put(bump *p, int x, int y, int n, const float *samples);
 void bump_map_end(bump *p, int threads);
 
 /* Before bump_map_end: smooth the heights, as heights_smooth. False: out of memory. */
-bool bump_map_smooth(bump *p, double radius, double most, int threads);
+bool bump_map_smooth(bump *p, double radius, double most, int threads, const progress *w);
 
 /* P = scale f(u,w), with exact partials. Owns f, also on failure. Pmin to Pw_max hold for (u,w) in the given range
  * (infinite ends allowed). NULL: out of memory. */
@@ -77,7 +80,7 @@ bump *bump_function_new(expr *f, double scale, const double u[2], const double w
 
 /* Make ready for `range` and set the second partials' bounds. Again: no effect. Several threads may do so, also while
  * others use all else of p. False: out of memory. */
-bool bump_prepare(bump *p);
+bool bump_prepare(bump *p, const progress *w);
 
 /* One owner more, who frees it, too. Returns p. */
 bump *bump_share(bump *p);

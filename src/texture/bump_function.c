@@ -18,6 +18,29 @@ static void function_copy(int n, double scale, const double *restrict from, real
         to[i] = (real)(scale * from[i]);
 }
 
+/* The number of places where P, or from order 1 on its slope, is NaN, infinite or beyond REAL_FAR. */
+STAGE static int count_undefined(int n, int order, const real *restrict P, const real *restrict Pu,
+                                 const real *restrict Pw)
+{
+    int none = 0;
+    if (order == 0)
+        for (int i = 0; i < n; i++)
+            none += !(real_abs(P[i]) < REAL_FAR);
+    else
+        for (int i = 0; i < n; i++)
+            none += !(real_abs(P[i]) + real_abs(Pu[i]) + real_abs(Pw[i]) < REAL_FAR);
+    return none;
+}
+
+static void level_undefined(int n, int order, bump_values *h)
+{
+    for (int i = 0; i < n; i++) {
+        h->none[i] = count_undefined(1, order, h->P + i, h->Pu + i, h->Pw + i);
+        if (h->none[i])
+            h->P[i] = h->Pu[i] = h->Pw[i] = h->Puu[i] = h->Puw[i] = h->Pww[i] = 0;
+    }
+}
+
 static void function_eval(const bump *base, int n, const real *u, const real *w, int order, bump_values *h)
 {
     const function *p = (const function *)base;
@@ -41,6 +64,9 @@ static void function_eval(const bump *base, int n, const real *u, const real *w,
             function_copy(m, p->scale, j.ww, h->Pww + at);
         }
     }
+    h->undefined = count_undefined(n, order, h->P, h->Pu, h->Pw);
+    if (h->undefined)
+        level_undefined(n, order, h);
 }
 
 static void function_jets(const bump *base, int n, const double *u, const double *w, expr_jets *out)
@@ -52,6 +78,8 @@ static void function_jets(const bump *base, int n, const double *u, const double
         out->v[i] *= scale;
         out->u[i] *= scale;
         out->w[i] *= scale;
+        if (!(fabs(out->v[i]) + fabs(out->u[i]) + fabs(out->w[i]) < HUGE_VAL))
+            out->v[i] = out->u[i] = out->w[i] = 0;
     }
 }
 
@@ -153,13 +181,13 @@ static void function_bends(function *p)
     p->base.Pww_max = bump_slope(ww, p->scale);
 }
 
-static bool function_prepare(bump *base)
+static bool function_prepare(bump *base, const progress *w)
 {
     function *p = (function *)base;
     table_grid g = {.columns = parts_of(p->u), .rows = parts_of(p->w)};
     lay_axis(p->u, g.columns, &g.ku, &g.ou);
     lay_axis(p->w, g.rows, &g.kw, &g.ow);
-    p->base.pyramid = pyramid_new(&g, function_part, p);
+    p->base.pyramid = pyramid_new(&g, function_part, p, w);
     if (p->base.pyramid)
         function_bends(p);
     return p->base.pyramid;

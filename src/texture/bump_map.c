@@ -45,6 +45,7 @@ static void clamp_derivatives(const table_grid *g, int n, const real *u, const r
 static void map_eval(const bump *base, int n, const real *u, const real *w, int order, bump_values *h)
 {
     const map *m = (const map *)base;
+    h->undefined = 0;
     heights_look(&m->heights, n, u, w, order, h);
     if (order >= 1 && !m->heights.grid.repeat)
         clamp_derivatives(&m->heights.grid, n, u, w, order, h);
@@ -164,9 +165,9 @@ static cell_range map_cell(const void *user, int row, int column)
                         greater(l, r)};
 }
 
-static bool map_prepare(bump *base)
+static bool map_prepare(bump *base, const progress *w)
 {
-    base->pyramid = pyramid_new(&((const map *)base)->heights.grid, map_cell, base);
+    base->pyramid = pyramid_new(&((const map *)base)->heights.grid, map_cell, base, w);
     return base->pyramid;
 }
 
@@ -174,7 +175,7 @@ static void map_free(bump *base)
 {
     map *m = (map *)base;
     pyramid_free(base->pyramid);
-    free(m->heights.v);
+    memory_free(m->heights.v);
     free(m);
 }
 
@@ -186,10 +187,10 @@ static const bump_ops map_methods = {.kind = "map",
                                      .prepare = map_prepare,
                                      .free = map_free};
 
-bump *bump_map_new(int width, int height, const map_layout *l)
+bump *bump_map_new(int width, int height, const map_layout *l, const progress *w)
 {
     map *m = calloc(1, sizeof *m);
-    if (!m || !heights_new(&m->heights, width, height, l)) {
+    if (!m || !heights_new(&m->heights, width, height, l, w)) {
         free(m);
         return NULL;
     }
@@ -203,9 +204,9 @@ void bump_map_put(bump *p, int x, int y, int n, const float *samples)
     heights_put(&((map *)p)->heights, x, y, n, samples);
 }
 
-bool bump_map_smooth(bump *p, double radius, double most, int threads)
+bool bump_map_smooth(bump *p, double radius, double most, int threads, const progress *w)
 {
-    return heights_smooth(&((map *)p)->heights, radius, most, threads);
+    return heights_smooth(&((map *)p)->heights, radius, most, threads, w);
 }
 
 void bump_map_end(bump *p, int threads)
@@ -219,13 +220,13 @@ void bump_map_end(bump *p, int threads)
     p->Pw_max = bump_slope(b.dw, (double)h->grid.kw);
 }
 
-bool bump_prepare(bump *p)
+bool bump_prepare(bump *p, const progress *w)
 {
     enum { NOT_YET, BEGUN, READY };
     for (int is; (is = __atomic_load_n(&p->ready, __ATOMIC_ACQUIRE)) != READY; sched_yield())
         if (is == NOT_YET &&
             __atomic_compare_exchange_n(&p->ready, &is, BEGUN, false, __ATOMIC_ACQUIRE, __ATOMIC_RELAXED)) {
-            const bool good = p->ops->prepare(p);
+            const bool good = p->ops->prepare(p, w);
             __atomic_store_n(&p->ready, good ? READY : NOT_YET, __ATOMIC_RELEASE);
             return good;
         }

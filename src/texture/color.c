@@ -51,13 +51,13 @@ struct texels {
     real v[]; /* as table.h has it */
 };
 
-texels *texels_new(const image *m, const map_layout *l)
+texels *texels_new(const image *m, const map_layout *l, const progress *w)
 {
     table_grid g;
     if (!table_lay(&g, m->width, m->height, l))
         return NULL;
     const size_t columns = (size_t)g.columns + 1, rows = (size_t)g.rows + 1;
-    texels *t = malloc(sizeof *t + columns * rows * TABLE_VALUES * sizeof *t->v);
+    texels *t = memory_new(progress_memory(w), sizeof *t + columns * rows * TABLE_VALUES * sizeof *t->v);
     if (!t)
         return NULL;
     t->others = 0;
@@ -82,7 +82,7 @@ texels *texels_share(texels *t)
 void texels_free(texels *t)
 {
     if (t && shared_drop(&t->others))
-        free(t);
+        memory_free(t);
 }
 
 typedef struct image_texture {

@@ -27,7 +27,7 @@ typedef struct texels texels;
 
 /* From an image of four values a pixel, which is copied, and the layout's wrap. NULL: out of memory, fewer than 2 x 2
  * pixels, or more than 2^29. */
-texels *texels_new(const image *m, const map_layout *l);
+texels *texels_new(const image *m, const map_layout *l, const progress *w);
 texels *texels_share(texels *t); /* one owner more */
 void texels_free(texels *t);
 

@@ -158,19 +158,20 @@ enum {
 
 /* Memory in pages of 2 MiB, where the system has such: they are touched for the first time, and found at a look-up,
  * with less work. */
-static void *large_pages(size_t size)
+static void *large_pages(memory *m, size_t size)
 {
     enum { PAGE = 1 << 21 };
-    void *p = NULL;
-    if (size < PAGE || posix_memalign(&p, PAGE, size) != 0)
-        return malloc(size);
+    if (size < PAGE)
+        return memory_new(m, size);
+    char *p = memory_aligned(m, PAGE, size);
 #ifdef MADV_HUGEPAGE
-    madvise(p, size, MADV_HUGEPAGE); /* a wish; without it all is the same but slower */
+    if (p)
+        madvise((void *)((uintptr_t)p / PAGE * PAGE), size, MADV_HUGEPAGE); /* a wish; without it all is but slower */
 #endif
     return p;
 }
 
-bool heights_new(heights *h, int width, int height, const map_layout *l)
+bool heights_new(heights *h, int width, int height, const map_layout *l, const progress *w)
 {
     *h = (heights){.layout = *l, .width = width, .height = height};
     if (!table_lay(&h->grid, width, height, l))
@@ -179,7 +180,9 @@ bool heights_new(heights *h, int width, int height, const map_layout *l)
     h->pitch = (lines | 1) * LINE;
     const int64_t numbers = (int64_t)h->pitch * (h->grid.rows + HEIGHTS_BEFORE + HEIGHTS_BEHIND);
     h->large = numbers > LARGE / (int64_t)sizeof *h->v;
-    h->v = numbers <= INT32_MAX ? large_pages((size_t)numbers * sizeof *h->v) : NULL; /* indices have 32 bits */
+    h->v = numbers <= INT32_MAX /* indices have 32 bits */
+               ? large_pages(progress_memory(w), (size_t)numbers * sizeof *h->v)
+               : NULL;
     return h->v;
 }
 

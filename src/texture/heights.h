@@ -7,6 +7,7 @@
 
 #include <stddef.h>
 
+#include "base/progress.h"
 #include "texture/table.h"
 
 enum { HEIGHTS_BEFORE = 1, HEIGHTS_BEHIND = 2 };
@@ -29,9 +30,9 @@ typedef struct heights_bounds {
     bool peaked;
 } heights_bounds;
 
-/* A table for a map of width x height samples, not yet filled. h->v: free(). False: out of memory, or table_lay has
- * refused. */
-bool heights_new(heights *h, int width, int height, const map_layout *l);
+/* A table for a map of width x height samples, not yet filled. h->v: memory_free. w: as all of the maps' memory; NULL:
+ * no limit. False: out of memory, or table_lay has refused. */
+bool heights_new(heights *h, int width, int height, const map_layout *l, const progress *w);
 
 /* Put n samples of row y in, from column x on. Several threads may do so. */
 void heights_put(heights *h, int x, int y, int n, const float *samples);
@@ -39,7 +40,7 @@ void heights_put(heights *h, int x, int y, int n, const float *samples);
 /* Once all samples are in, before heights_wrap: move each toward the mean around it, by a Gaussian with a standard
  * deviation of `radius` samples, but by no more than `most` scene units. False: out of memory, and nothing is moved.
  * (smooth.c) */
-bool heights_smooth(heights *h, double radius, double most, int threads);
+bool heights_smooth(heights *h, double radius, double most, int threads, const progress *w);
 
 /* Once all samples are in: lay out what is around them. The bounds do not depend on the threads. */
 heights_bounds heights_wrap(heights *h, int threads);

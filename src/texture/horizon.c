@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/threads.h"
+#include "base/gate.h"
 #include "wave/lane.h"
 
 #define LEAST 0.005 /* of the steepest slope: a rise that does not matter */
@@ -167,30 +167,38 @@ static void build_block(horizon *h, const bump *P, bool ends, const horizon_curv
 
 static size_t entries(const table_grid *g) { return (size_t)(g->columns + 1) * (size_t)(g->rows + 1) * ENTRIES; }
 
-horizon *horizon_new(const bump *P, const table_grid *grid, bool ends, const horizon_curvature *c, int threads)
+horizon *horizon_new(const bump *P, const table_grid *grid, bool ends, const horizon_curvature *c, int threads,
+                     const progress *w)
 {
     threads = threads_of(threads);
     (void)threads; /* without OpenMP */
     if (entries(grid) > INT32_MAX)
         return NULL;
     horizon *h = calloc(1, sizeof *h);
-    real *rise = h ? malloc(entries(grid) * sizeof *rise) : NULL;
+    real *rise = h ? memory_new(progress_memory(w), entries(grid) * sizeof *rise) : NULL;
     if (!rise) {
         free(h);
         return NULL;
     }
     *h = (horizon){*grid, rise};
+    const int blocks = grid->columns / LANES + 1, all = (grid->rows + 1) * blocks;
+    gate g = {.to = w, .what = "horizons", .all = all};
 #pragma omp parallel for schedule(dynamic) num_threads(threads)
-    for (int row = 0; row <= grid->rows; row++)
-        for (int column = 0; column <= grid->columns; column += LANES)
-            build_block(h, P, ends, c, row, column);
-    return h;
+    for (int k = 0; k < all; k++)
+        if (gate_is_open(&g)) {
+            build_block(h, P, ends, c, k / blocks, k % blocks * LANES);
+            gate_pass(&g, 1);
+        }
+    if (gate_is_open(&g))
+        return h;
+    horizon_free(h);
+    return NULL;
 }
 
 void horizon_free(horizon *h)
 {
     if (h)
-        free(h->rise);
+        memory_free(h->rise);
     free(h);
 }
 

@@ -17,7 +17,8 @@ typedef struct horizon_curvature {
 
 /* The horizon of P at the samples of a grid. ends: there is nothing beyond the grid. c: of the surface under P; NULL:
  * it is flat. The result does not depend on the threads. NULL: out of memory, or more than 2^31 entries. */
-horizon *horizon_new(const bump *P, const table_grid *grid, bool ends, const horizon_curvature *c, int threads);
+horizon *horizon_new(const bump *P, const table_grid *grid, bool ends, const horizon_curvature *c, int threads,
+                     const progress *w);
 
 /* NULL is allowed. */
 void horizon_free(horizon *h);

@@ -79,10 +79,10 @@ static void mirrored_bump_range(const bump *base, int n, const real *u0, const r
 }
 
 /* The original keeps its pyramid. */
-static bool mirrored_bump_prepare(bump *base)
+static bool mirrored_bump_prepare(bump *base, const progress *w)
 {
     const bump *of = ((mirrored_bump *)base)->of;
-    if (!bump_prepare(((mirrored_bump *)base)->of))
+    if (!bump_prepare(((mirrored_bump *)base)->of, w))
         return false;
     base->Puu_max = of->Puu_max;
     base->Puw_max = of->Puw_max;

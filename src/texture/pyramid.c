@@ -242,7 +242,7 @@ static void lay_level(pyramid *y, int level)
 }
 
 pyramid *pyramid_new(const table_grid *grid, cell_range (*cell)(const void *user, int row, int column),
-                     const void *user)
+                     const void *user, const progress *w)
 {
     const int longest = grid->columns > grid->rows ? grid->columns : grid->rows;
     pyramid *y = calloc(1, sizeof *y);
@@ -257,7 +257,8 @@ pyramid *pyramid_new(const table_grid *grid, cell_range (*cell)(const void *user
         nodes_in_all += (int64_t)y->pitch[k] * y->rows[k];
         y->levels = k + 1;
     }
-    y->node = nodes_in_all < INT32_MAX ? malloc(sizeof(real) * NODE * (size_t)nodes_in_all) : NULL;
+    y->node =
+        nodes_in_all < INT32_MAX ? memory_new(progress_memory(w), sizeof(real) * NODE * (size_t)nodes_in_all) : NULL;
     if (!y->node) {
         free(y);
         return NULL;
@@ -271,6 +272,6 @@ pyramid *pyramid_new(const table_grid *grid, cell_range (*cell)(const void *user
 void pyramid_free(pyramid *y)
 {
     if (y)
-        free(y->node);
+        memory_free(y->node);
     free(y);
 }

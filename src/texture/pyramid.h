@@ -5,6 +5,7 @@
 #ifndef KAGE_TEXTURE_PYRAMID_H
 #define KAGE_TEXTURE_PYRAMID_H
 
+#include "base/progress.h"
 #include "texture/table.h"
 
 /* Over each rectangle: P within lo..hi, and its partials within Pu_lo..Pu_hi and Pw_lo..Pw_hi. These bound differences
@@ -22,9 +23,9 @@ typedef struct cell_range {
 typedef struct pyramid pyramid;
 
 /* Over the cells of a grid (1 x 1 at least), whose bounds cell(user, row, column) gives. About 43 bytes a cell in
- * float. NULL: out of memory, or more than 2^29 cells. */
+ * float, from w's. NULL: out of memory, or more than 2^29 cells. */
 pyramid *pyramid_new(const table_grid *grid, cell_range (*cell)(const void *user, int row, int column),
-                     const void *user);
+                     const void *user, const progress *w);
 
 /* Bounds over the n <= LANES rectangles u0..u1 x w0..w1 (infinite ends allowed), rounded outward: they hold for
  * bilinear look-ups in the cells, and for what the cells' bounds hold for. */

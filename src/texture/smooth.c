@@ -77,10 +77,10 @@ static void mean_down(heights *h, const kernel *g, int row, const real *along, d
     }
 }
 
-bool heights_smooth(heights *h, double radius, double most, int threads)
+bool heights_smooth(heights *h, double radius, double most, int threads, const progress *w)
 {
     kernel g;
-    real *along = malloc((size_t)h->width * (size_t)h->height * sizeof *along);
+    real *along = memory_new(progress_memory(w), (size_t)h->width * (size_t)h->height * sizeof *along);
     const bool good = kernel_new(&g, h, radius) && along;
     threads = threads_of(threads);
     (void)threads; /* without OpenMP */
@@ -93,6 +93,6 @@ bool heights_smooth(heights *h, double radius, double most, int threads)
             mean_down(h, &g, row, along, most);
     }
     kernel_free(&g);
-    free(along);
+    memory_free(along);
     return good;
 }

@@ -29,7 +29,10 @@ typedef struct hit_group {
     bump_values bump;
     vec3s n_smooth; /* n = Qu x Qw, not normalised */
     vec3s n_bump;   /* n', unit */
-    bool regular;   /* bs_regular holds for all lanes; only with a bump */
+
+    /* lanes where P, n', the shift or the place has no value (method/shift.h). The caller begins with 0. */
+    int undefined;       /* how many */
+    int32_t none[LANES]; /* 1: this one; only where some are */
 
     /* the method */
     real tau[LANES];      /* the shift */

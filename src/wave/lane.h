@@ -17,9 +17,10 @@ static inline void lane_set(vec3s *v, int i, bs_vec3 x)
     v->z[i] = x.z;
 }
 
+/* v over its length; shorter where that has no digits, and 0 where v is 0. */
 static inline bs_vec3 lane_unit(bs_vec3 v)
 {
-    real il = 1 / real_sqrt(bs_dot(v, v));
+    real il = 1 / real_sqrt(real_max(bs_dot(v, v), REAL_LEAST));
     return (bs_vec3){v.x * il, v.y * il, v.z * il};
 }
 

@@ -83,9 +83,12 @@ typedef struct partials {
     vec3s Q, Qu, Qw, Quu, Quw, Qww;
 } partials;
 
-/* P(u,w), the height along the unit normal in scene units, and its partial derivatives. */
+/* P(u,w), the height along the unit normal in scene units, and its partial derivatives. Where a function has no value
+ * they are 0: there the surface is smooth. */
 typedef struct bump_values {
     real P[LANES], Pu[LANES], Pw[LANES], Puu[LANES], Puw[LANES], Pww[LANES];
+    int undefined;       /* how many lanes are without a value */
+    int32_t none[LANES]; /* 1: this one is; only where some are */
 } bump_values;
 
 /* The closest points of a surface to points in space: (u,w), the height above it along n/|n|, and the gradients of the

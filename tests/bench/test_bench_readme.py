@@ -25,14 +25,15 @@ def test_readme_and_docs_agree_with_the_result(data: dict[str, Any]) -> None:
 
 
 @pytest.mark.parametrize("path, wrong", [
-    (("quality", "scenes", "cube", "0", "mask", "wrong"), {"README.md", "docs/method.md", "docs/cost-error.svg"}),
+    (("quality", "scenes", "cube", "0", "mask", "wrong"),
+     {"docs/accuracy.md", "docs/method.md", "docs/cost-error.svg"}),
     (("quality", "scenes", "waves", "iter:2", "mask", "wrong"), {"docs/method.md"}),
-    (("cost", "scenes", "cube", "methods", "0", "ns", "median"), {"README.md", "docs/design.md"}),
+    (("cost", "scenes", "cube", "methods", "0", "ns", "median"), {"docs/accuracy.md", "docs/design.md"}),
     (("cost", "scenes", "cube", "methods", "1", "added", "median"),
-     {"README.md", "docs/design.md", "docs/cost-error.svg"}),
-    (("claims", 0, "verdict"), {"README.md"}),
-    (("quality", "parity", "sphere", "mask_differs"), {"README.md"}),
-    (("circumstances", "commit"), {"README.md", "docs/design.md"}),
+     {"docs/accuracy.md", "docs/design.md", "docs/cost-error.svg"}),
+    (("claims", 0, "verdict"), {"docs/accuracy.md"}),
+    (("quality", "parity", "sphere", "mask_differs"), {"docs/accuracy.md"}),
+    (("circumstances", "commit"), {"docs/accuracy.md", "docs/design.md"}),
     (("sheets", "figures.png"), {"docs/figures.png"}),
     (("sheets", "gallery.png"), {"docs/gallery.png"}),
 ])
@@ -68,7 +69,8 @@ def test_update_keeps_and_writes(data: dict[str, Any], tmp_path: Path, monkeypat
     for name in (*readme.REGIONS, *(f"docs/{sheet}" for sheet in readme.SHEETS)):
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).write_bytes((TOP / name).read_bytes())
-    (tmp_path / "README.md").write_text((tmp_path / "README.md").read_text().replace("kage, bump only", "kage, some"))
+    page = tmp_path / "docs" / "accuracy.md"
+    page.write_text(page.read_text().replace("kage, bump only", "kage, some"))
     monkeypatch.setattr(readme, "TOP", tmp_path)
     monkeypatch.setattr(readme, "RESULT", tmp_path / "result.json")
     monkeypatch.setattr(readme, "kept", lambda report, sheets: report | {"sheets": sheets})
@@ -76,7 +78,7 @@ def test_update_keeps_and_writes(data: dict[str, Any], tmp_path: Path, monkeypat
     sheets = {sheet: readme.pixels_digest(TOP / "docs" / sheet) for sheet in readme.SHEETS}
     assert json.loads((tmp_path / "result.json").read_text()) == data | {"sheets": sheets}
     assert readme.disagreements(data) == []
-    assert (tmp_path / "README.md").read_text() == (TOP / "README.md").read_text()
+    assert page.read_text() == (TOP / "docs" / "accuracy.md").read_text()
 
 
 def test_whole_pictures(data: dict[str, Any], tmp_path: Path) -> None:

@@ -18,22 +18,23 @@ static const char smoothed[] = HEAD "render: {shadow: exact}\nmaterials: {it: {}
                                     ", bump: {map: {file: %s}, scale: 0.1, zero: 0.5, sign: down, smooth: 1.5, samples:"
                                     " corners, wrap: mirror}}\n";
 
-static const char one_channel[] = HEAD "materials: {it: {}}\n" SQUARE
-                                       ", bump: {map: {file: %s, channel: R}, scale: 0.1, zero: 0.5, sign: up}}\n";
+static const char one_channel[] =
+    HEAD "materials: {it: {}}\n" SQUARE ", bump: {map: {file: %s, channel: R}, scale: 0.1, zero: 0.5, sign: up}}\n";
 
 static const char colours[] = HEAD "materials: {it: {color: {image: {file: %s}}}}\n" SQUARE "}\n";
 
-static const char patches[] = HEAD "render: {shadow: 1}\nmaterials: {it: {}}\n"
-                                   "objects: {it: {patches: {file: %s}, material: it, bump: {function: 0.01*sin(9*u)}}}\n";
+static const char patches[] =
+    HEAD "render: {shadow: 1}\nmaterials: {it: {}}\n"
+         "objects: {it: {patches: {file: %s}, material: it, bump: {function: 0.01*sin(9*u)}}}\n";
 
 static const char copies[] = HEAD "materials: {it: {}, a: {color: [1, 0, 0]}, b: {filter: 0.5}}\n"
                                   "objects:\n  it: {sphere: {center: [0, 0, 0], radius: 0.2}, material: it}\n"
                                   "  all: {copies: {of: it, file: %s}}\n";
 
-static const char coloured_copies[] = HEAD
-    "materials: {it: {}, a: {color: [1, 0, 0]}, b: {filter: 0.5}}\n"
-    "objects:\n  it: {sphere: {center: [0, 0, 0], radius: 0.2}, material: it}\n"
-    "  all: {copies: {of: it, file: %s, materials: [a, b]}, transform: [{scale: 0.5}]}\n";
+static const char coloured_copies[] =
+    HEAD "materials: {it: {}, a: {color: [1, 0, 0]}, b: {filter: 0.5}}\n"
+         "objects:\n  it: {sphere: {center: [0, 0, 0], radius: 0.2}, material: it}\n"
+         "  all: {copies: {of: it, file: %s, materials: [a, b]}, transform: [{scale: 0.5}]}\n";
 
 /* Pixels that the file says it has; 0: unknown. Large ones take long, and are refused elsewhere. */
 static double pixels_of_png(const uint8_t *d, size_t size)

@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "image/exr_join.h"
 #include "image/image.h"
 #include "image/srgb.h"
@@ -29,7 +30,7 @@ static bool never(void *user, const char *what, double share)
     return true;
 }
 
-static const progress show = {never, NULL};
+static const progress show = {.show = never};
 
 static void good(bool holds, errors *e, const char *what) { HOLDS(holds && !e->text, "%s: %s", what, e->text); }
 
@@ -105,18 +106,19 @@ static void read_exr(const picture *p, const char *path)
         bool finite = true;
         for (int k = 0; k < pixels; k++)
             finite = finite && isfinite(p->plane[c][k]);
-        HOLDS(image_read(path, p->name[c], 1, &to, range, &e) == finite, "channel %s: %s", p->name[c], e.text);
+        HOLDS(image_read(path, p->name[c], 1, &show, &to, range, &e) == finite, "channel %s: %s", p->name[c], e.text);
         errors_free(&e);
         for (int k = 0; finite && k < pixels; k++)
-            HOLDS(times[k] == 1 && memcmp(&v[k], &p->plane[c][k], sizeof v[k]) == 0, "sample %d: %g was written, %g read",
-                  k, (double)p->plane[c][k], (double)v[k]);
+            HOLDS(times[k] == 1 && memcmp(&v[k], &p->plane[c][k], sizeof v[k]) == 0,
+                  "sample %d: %g was written, %g read", k, (double)p->plane[c][k], (double)v[k]);
     }
 }
 
 static void read_texts(const picture *p, exr_band *b)
 {
     const image_form *f = exr_band_form(b);
-    HOLDS(f->width == p->form.width && f->channels == p->form.channels && f->texts == p->form.texts, "the band differs");
+    HOLDS(f->width == p->form.width && f->channels == p->form.channels && f->texts == p->form.texts,
+          "the band differs");
     for (int k = 0; k < f->texts; k++)
         for (int j = 0; j < f->texts; j++)
             HOLDS(strcmp(f->text[k].key, p->text[j].key) != 0 || strcmp(f->text[k].value, p->text[j].value) == 0,
@@ -130,7 +132,7 @@ static void read_png(const picture *p, const char *path)
     bool exr = true;
     errors e = {0};
     srgb *codes = srgb_create(p->form.bits);
-    good(codes && image_read_color(path, IMAGE_LINEAR, 1, &i, &exr, &e), &e, "read");
+    good(codes && image_read_color(path, IMAGE_LINEAR, 1, &show, &i, &exr, &e), &e, "read");
     HOLDS(!exr && i.width == p->form.width && i.height == p->form.height, "%d x %d", i.width, i.height);
     HOLDS(image_png_bits(path) == p->form.bits && image_png_is_from(path, "kage"), "its head differs");
     const int pixels = i.width * i.height;
@@ -138,11 +140,11 @@ static void read_png(const picture *p, const char *path)
     for (int c = 0; c < 3; c++) {
         srgb_encode(codes, pixels, p->plane[c], code);
         for (int k = 0; k < pixels; k++)
-            HOLDS((int)lround((double)i.v[4 * k + c] * ((1 << p->form.bits) - 1)) == code[k], "sample %d of %d: %g", k, c,
-                  (double)i.v[4 * k + c]);
+            HOLDS((int)lround((double)i.v[4 * k + c] * ((1 << p->form.bits) - 1)) == code[k], "sample %d of %d: %g", k,
+                  c, (double)i.v[4 * k + c]);
     }
     free(codes);
-    free(i.v);
+    memory_free(i.v);
 }
 
 /* ---- what is done with a picture ---- */
@@ -258,11 +260,13 @@ static void join_bytes(const bytes *b)
     const size_t half = b->left / 2;
     remove(to);
     fuzz_write(path[0], b->at, b->left);
-    fuzz_errors(kage_file_join(path, 1, to, &o, &e), e);
+    kage_status status = kage_file_join(path, 1, to, &o, &e);
+    fuzz_errors(status, e);
     fuzz_write(path[0], b->at, half);
     fuzz_write(path[1], b->at + half, b->left - half);
     e = NULL;
-    fuzz_errors(kage_file_join(path, 2, to, &o, &e), e);
+    status = kage_file_join(path, 2, to, &o, &e);
+    fuzz_errors(status, e);
 }
 
 /* The first byte: PNG of 16 or 8 bits, EXR, or bands. */

@@ -1,5 +1,6 @@
 /* Models: what comes through the pipe from kage-import, as triangles and as a scene, and arrays in memory. Of the
- * importer only its place is taken, by letters.c, as it does not fail on purpose. The bytes are a short form of letters.
+ * importer only its place is taken, by letters.c, as it does not fail on purpose. The bytes are a short form of
+ * letters.
  */
 #include "fuzz/fuzz.h"
 

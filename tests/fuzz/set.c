@@ -25,10 +25,10 @@ static void compare_films(kage_scene *a, kage_scene *b, const char *text)
         return;
     kage_film *f = fuzz_render(a, NULL, KAGE_AS_SCENE, &p), *g = fuzz_render(b, NULL, KAGE_AS_SCENE, &q);
     HOLDS(!f == !g, "one of them is no picture\n%s", text);
-    const size_t bytes = FUZZ_WIDTH * FUZZ_HEIGHT * sizeof(float);
+    const size_t size = FUZZ_WIDTH * FUZZ_HEIGHT * sizeof(float);
     for (int k = 0; f && k < kage_film_plane_count(f); k++) {
         const char *name = kage_film_plane_name(f, k);
-        HOLDS(kage_film_plane(g, name) && memcmp(kage_film_plane(f, name), kage_film_plane(g, name), bytes) == 0,
+        HOLDS(kage_film_plane(g, name) && memcmp(kage_film_plane(f, name), kage_film_plane(g, name), size) == 0,
               "the plane %s differs\n%s", name, text);
     }
     kage_film_free(f);
@@ -58,7 +58,8 @@ static void change_later(kage_scene *all, const char *text, size_t size, int n, 
         const kage_load_options o = {.sets = set + k, .set_count = 1, .progress = fuzz_patience, .user = &p};
         kage_scene *next = NULL;
         kage_errors *e = NULL;
-        fuzz_errors(kage_scene_change(s, &o, &next, &e), e);
+        const kage_status status = kage_scene_change(s, &o, &next, &e);
+        fuzz_errors(status, e);
         kage_scene_free(s);
         s = next;
     }

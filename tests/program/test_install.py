@@ -95,7 +95,10 @@ def test_models_are_read_by_the_installed_reader(installed: Installed, tmp_path:
 def test_uninstall_leaves_nothing(tmp_path: Path, installed: Installed) -> None:
     make("install-files", f"DESTDIR={tmp_path}", "PREFIX=/opt/kage")
     files = {str(path.relative_to(tmp_path)) for path in tmp_path.rglob("*") if not path.is_dir()}
-    assert {"opt/kage/bin/kage", "opt/kage/include/bumpshadow.h", "opt/kage/include/bumpshadow.glsl"} <= files
+    assert {"opt/kage/bin/kage", "opt/kage/include/bumpshadow.h", "opt/kage/include/bumpshadow.glsl",
+            "opt/kage/share/man/man1/kage.1", "opt/kage/share/man/man5/kage-scene.5", "opt/kage/share/man/man3/kage.3",
+            "opt/kage/share/bash-completion/completions/kage", "opt/kage/share/zsh/site-functions/_kage",
+            "opt/kage/share/fish/vendor_completions.d/kage.fish"} <= files
     assert str(tmp_path) not in (tmp_path / "opt/kage/lib/pkgconfig/kage.pc").read_text()
     make("uninstall", f"DESTDIR={tmp_path}", "PREFIX=/opt/kage")
     assert [path for path in tmp_path.rglob("*") if not path.is_dir()] == []

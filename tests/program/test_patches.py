@@ -35,11 +35,11 @@ WRONG = [
     ("u: [-1, 1]", "u: [1, -1]", "a range from 1 to -1, expected the second end above the first"),
     ("u: [-1, 1]", "u: [w, 1]", "an end of a range with u or w in it, expected a number or such as 2*pi"),
     ("u: [-1, 1]", "u: [-1, 1/0]", "the range ends at inf, expected -1000000 to 1000000"),
-    ("u: [-1, 1]", "v: [-1, 1]", "parametric has no 'v', did you mean"),
+    ("u: [-1, 1]", "v: [-1, 1]", "parametric has no 'v', did you mean 'u'?"),
     ('z: "w"', 'z: "1/w"',
-     "11:17: a surface without bounds, or all in one place, expected functions that are bounded over the range of u "
-     "and w"),
-    ('x: "u"', 'x: "log(u)"', "11:17: a surface without bounds, or all in one place, expected functions"),
+     "11:17: the surface has no bounds, or is all in one place; expected x, y and z that are finite, and not all "
+     "constant, over the range of u and w"),
+    ('x: "u"', 'x: "log(u)"', "11:17: the surface has no bounds, or is all in one place; expected x, y and z"),
 ]
 
 
@@ -51,6 +51,11 @@ def test_wrong_parametric(kage: Kage, old: str, new: str, message: str) -> None:
     assert result.returncode == 2
     assert result.stderr.startswith(f"{path}:11:") or result.stderr.startswith("sheet.yaml:11:"), result.stderr
     assert message in result.stderr.splitlines()[0]
+
+
+def test_a_line_can_not_be_transformed(kage: Kage) -> None:
+    path = scene(kage, "parametric: {x: u, y: u, z: u, u: [0, 1], w: [0, 1]}\n    transform: [{scale: 2}]")
+    assert ":12:16: the surface is a line or a point, or has no value" in kage("check", path).stderr
 
 
 @pytest.mark.parametrize(
@@ -65,7 +70,7 @@ def test_wrong_parametric(kage: Kage, old: str, new: str, message: str) -> None:
         (f"patches: {{points: [{PATCH.replace('[-1.5, 1, 1.5]', '[-1.5, 1]')}]}}",
          "2 values, expected a control point [x, y, z]"),
         (f"patches: {{points: [[{', '.join(['[1, 2, 3]'] * 16)}]]}}",
-         "patches that are all in one place, expected some extent"),
+         "the patches are all in one place, expected points that differ"),
     ],
 )
 def test_wrong_patches(kage: Kage, shape: str, message: str) -> None:

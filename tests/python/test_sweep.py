@@ -8,6 +8,7 @@ import functools
 import json
 import os
 import random
+import re
 import signal
 import subprocess
 import sys
@@ -255,3 +256,21 @@ def test_what_is_wrong_is_told(words: list[str], status: int, says: str, tmp_pat
     except SystemExit as error:  # of argparse
         found = int(str(error.code))
     assert found == status and says in capsys.readouterr().err
+
+
+# docs/sweep.md ---------------------------------------------------------------------------------------
+
+
+def test_the_examples_of_the_page(client: Client, tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
+                                  capsys: pytest.CaptureFixture[str]) -> None:
+    """In Python, with this cluster in place of the reader's, and smaller; and the keys of the film."""
+    page = (TOP / "docs" / "sweep.md").read_text()
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "scenes").symlink_to(TOP / "scenes")
+    (block,) = re.findall(r"^```python\n(.*?)^```", page, re.DOTALL | re.MULTILINE)
+    monkeypatch.setattr("distributed.Client", lambda _: client)
+    exec(compile(block.replace("320, 240", "32, 24"), "docs/sweep.md", "exec"), {})  # noqa: S102 - our own
+    assert capsys.readouterr().out.splitlines()[-1] == "4 0 {}"
+    (keys,) = re.findall(r"^```yaml\n(.*?)^```", page, re.DOTALL | re.MULTILINE)
+    made = plan_of(tmp_path / "film", "frame=0:47:48", keys=Keys.parse(keys))
+    assert len(made.pictures) == 48

@@ -107,13 +107,13 @@ def background(driver: Chrome, scheme: str) -> str:
 # The slider -----------------------------------------------------------------------------------------------------
 
 
-def split_of(driver: Chrome) -> float:
+def split_of(driver: Chrome, form: str = ".comparison") -> float:
     """What the range says; what is drawn must say the same."""
     value, drawn = driver.execute_script(
-        "const f = document.querySelector('.comparison');"
+        "const f = document.querySelector(arguments[0]);"
         "const stage = f.querySelector('.stage').getBoundingClientRect();"
         "const line = f.querySelector('.line').getBoundingClientRect();"
-        "return [Number(f.elements.split.value), (line.left + line.width / 2 - stage.left) / stage.width * 100];")
+        "return [Number(f.elements.split.value), (line.left + line.width / 2 - stage.left) / stage.width * 100];", form)
     assert abs(value - drawn) < 0.6, f"the range is at {value} %, the border at {drawn} %"
     return value
 

@@ -23,7 +23,7 @@ static inline scene *scene_text(const char *text)
 static inline workspace *camera_wave(const tracer *tr)
 {
     const scene *s = tr->scene;
-    workspace *v = workspace_new(tr);
+    workspace *v = workspace_new(tr, NULL);
     assert_non_null(v);
     for (int i = 0; i < LANES; i++)
         camera_ray(&s->camera, s->width, s->height, i % s->width + 0.5, i / s->width + 0.5, &v->x, i);

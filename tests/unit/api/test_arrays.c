@@ -46,7 +46,7 @@ static samples samples_of(const char *path, const char *channel)
     samples s;
     float range[2];
     errors e = {0};
-    assert_true(image_read(path, channel, 1, &(image_taker){&s, begin, take}, range, &e));
+    assert_true(image_read(path, channel, 1, NULL, &(image_taker){&s, begin, take}, range, &e));
     return s;
 }
 
@@ -100,9 +100,9 @@ static void floats_are_as_an_exr(void **state)
     const char *const sets[] = {"objects.ball.bump.scale=0.0003", "objects.ball.bump.zero=531"};
     for (int k = 0; k < 2; k++) {
         const kage_image_array a = {"h", s.width, s.height, 1, k ? KAGE_F64 : KAGE_F32, k ? (void *)wide : s.v};
-        const kage_load_options memory = {.sets = sets, .set_count = 2, .images = &a, .image_count = 1},
+        const kage_load_options in_memory = {.sets = sets, .set_count = 2, .images = &a, .image_count = 1},
                                 file = {.sets = sets, .set_count = 2};
-        same_pictures(parse_with(BALL("file: 'array:h'"), DATA, &memory),
+        same_pictures(parse_with(BALL("file: 'array:h'"), DATA, &in_memory),
                       parse_with(BALL("file: jacksboro.exr, channel: elevation"), DATA, &file));
     }
     free(s.v);

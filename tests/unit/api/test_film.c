@@ -21,12 +21,12 @@ static uint8_t *png_bytes(const kage_film *f)
     bool exr;
     errors e = {0};
     assert_int_equal(kage_film_write(f, "kage_test_film.png", NULL, NULL), KAGE_OK);
-    assert_true(image_read_color("kage_test_film.png", IMAGE_LINEAR, 1, &m, &exr, &e));
+    assert_true(image_read_color("kage_test_film.png", IMAGE_LINEAR, 1, NULL, &m, &exr, &e));
     unlink("kage_test_film.png");
     uint8_t *bytes = malloc(4 * pixels_of(f));
     for (size_t k = 0; k < 4 * pixels_of(f); k++)
         bytes[k] = (uint8_t)(m.v[k] * 255 + 0.5f);
-    free(m.v);
+    memory_free(m.v);
     return bytes;
 }
 

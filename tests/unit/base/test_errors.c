@@ -28,6 +28,15 @@ static void test_long_messages_are_whole(void **state)
     errors_free(&e);
 }
 
+static void test_control_characters_are_not_passed_on(void **state)
+{
+    (void)state;
+    errors e = {0};
+    errors_add(&e, "%s", "a\033[2J\x7f\xc2\x9b\xc2\xa0\t\xc3\xa4");
+    assert_string_equal(e.text, "a?[2J???\xc2\xa0\t\xc3\xa4\n");
+    errors_free(&e);
+}
+
 static void test_more_than_fifty_are_only_counted(void **state)
 {
     (void)state;
@@ -55,6 +64,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_messages_are_lines),
         cmocka_unit_test(test_long_messages_are_whole),
+        cmocka_unit_test(test_control_characters_are_not_passed_on),
         cmocka_unit_test(test_more_than_fifty_are_only_counted),
         cmocka_unit_test(test_free_leaves_an_empty_list),
     };

@@ -63,7 +63,7 @@ static void single_rays(void **state)
     boxes *b = random_boxes();
     static int32_t order[BOXES], other[BOXES];
     (void)state;
-    wide_bvh *w = wide_new(BOXES, b->box, order, 1), *parallel = wide_new(BOXES, b->box, other, 4);
+    wide_bvh *w = wide_new(BOXES, b->box, order, 1, NULL), *parallel = wide_new(BOXES, b->box, other, 4, NULL);
     assert_non_null(w);
     assert_non_null(parallel);
     assert_memory_equal(order, other, sizeof order);
@@ -96,7 +96,7 @@ static void shortened_rays(void **state)
     boxes *b = random_boxes();
     static int32_t order[BOXES];
     (void)state;
-    wide_bvh *w = wide_new(BOXES, b->box, order, 2);
+    wide_bvh *w = wide_new(BOXES, b->box, order, 2, NULL);
     assert_non_null(w);
     for (int k = 0; k < RAYS; k++) {
         double r[3], s[3], end = 12, nearest = 12;
@@ -169,7 +169,7 @@ static void beams(void **state)
     static int32_t order[BOXES];
     int met = 0, gave_up = 0;
     (void)state;
-    wide_bvh *w = wide_new(BOXES, b->box, order, 2);
+    wide_bvh *w = wide_new(BOXES, b->box, order, 2, NULL);
     assert_non_null(w);
     for (int k = 0; k < RAYS; k++) {
         const int found = check_beam(w, order, b, k % 2 ? 0.01 : 0.002, k % 4 == 3);
@@ -194,7 +194,7 @@ static void small_and_same(void **state)
     for (int i = 0; i < 1000; i++)
         box[i] = wide_box_of(lo, hi);
     for (int n = 1; n <= 1000; n += 999) {
-        wide_bvh *w = wide_new(n, box, order, 1);
+        wide_bvh *w = wide_new(n, box, order, 1, NULL);
         wide_walk walk;
         int met = 0;
         assert_non_null(w);

@@ -10,11 +10,11 @@ static unsigned char *marks(float grey, double threshold, window part, int threa
 {
     static const scene none = {.lights = 0};
     errors e = {0};
-    film *f = film_new(&none, (window){0, 0, 5, 4}, false, 1, NULL, &e);
+    film *f = film_new(&none, (window){0, 0, 5, 4}, false, 1, NULL, NULL, &e);
     assert_non_null(f);
     for (int k = FILM_R; k <= FILM_B; k++)
         f->plane[k][5 + 2] = grey;
-    unsigned char *found = adaptive_find(f, part, threshold, threads, &e);
+    unsigned char *found = adaptive_find(f, part, threshold, threads, NULL, &e);
     film_free(f);
     assert_non_null(found);
     return found;
@@ -26,7 +26,7 @@ static void the_pixel_and_its_neighbours(void **state)
     (void)state;
     unsigned char *found = marks(1, 0.1, (window){0, 0, 5, 4}, 1);
     assert_memory_equal(found, want, sizeof want);
-    free(found);
+    memory_free(found);
 }
 
 /* In a crop neighbours beyond its edge count, as they are on the film. */
@@ -36,7 +36,7 @@ static void across_a_crop(void **state)
     unsigned char *found = marks(1, 0.1, (window){0, 2, 5, 4}, 1);
     CHECK(found[2], ==, 1); /* below the grey pixel, which is not in the crop */
     CHECK(found[1], ==, 0);
-    free(found);
+    memory_free(found);
 }
 
 /* Linear 0.2158 is 0.5 as displayed: the sum over three colours is 1.5. */
@@ -47,8 +47,8 @@ static void threshold_is_of_displayed_sums(void **state)
     unsigned char *above = marks(0.2158f, 1.51, (window){0, 0, 5, 4}, 1);
     CHECK(below[7], ==, 1);
     CHECK(above[7], ==, 0);
-    free(below);
-    free(above);
+    memory_free(below);
+    memory_free(above);
 }
 
 static void same_by_any_threads(void **state)
@@ -56,8 +56,8 @@ static void same_by_any_threads(void **state)
     (void)state;
     unsigned char *one = marks(0.5f, 0.1, (window){0, 0, 5, 4}, 1), *three = marks(0.5f, 0.1, (window){0, 0, 5, 4}, 3);
     assert_memory_equal(one, three, 20);
-    free(one);
-    free(three);
+    memory_free(one);
+    memory_free(three);
 }
 
 int main(void)

@@ -174,7 +174,7 @@ static void the_formula_is_the_surface(void **state)
     const int32_t part = 0;
     (void)state;
     assert_true(form_ellipsoid.formula(&values, &formula));
-    surface *searched = patch_surface_formula("ellipsoid", &formula, 1);
+    surface *searched = patch_surface_formula("ellipsoid", &formula, 1, NULL);
     assert_non_null(searched);
     p.egg->ops->eval(p.egg, 1, &part, &u, &w, 1, &q);
     searched->ops->eval(searched, 1, &part, &u, &w, 1, &s);

@@ -9,7 +9,9 @@
 static mesh_data triangles(int n)
 {
     static const float corners[3][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
-    mesh_data d = {.n = n, .at = malloc(sizeof *d.at * (size_t)n), .skin = calloc((size_t)n, sizeof *d.skin)};
+    mesh_data d = {.n = n,
+                   .at = memory_new(NULL, sizeof *d.at * (size_t)n),
+                   .skin = memory_zeroed(NULL, (size_t)n * sizeof *d.skin)};
     assert_non_null(d.at);
     assert_non_null(d.skin);
     for (int k = 0; k < n; k++) {
@@ -23,7 +25,7 @@ static mesh_data triangles(int n)
 static void refused(mesh_data *d, const char *expected)
 {
     char why[MESH_WHY];
-    assert_false(mesh_clean(d, MESH_NORMALS_FILE, 40, 1e6, 2, why));
+    assert_false(mesh_clean(d, MESH_NORMALS_FILE, 40, 1e6, 2, NULL, why));
     assert_string_equal(why, expected);
     mesh_data_free(d);
 }
@@ -31,7 +33,7 @@ static void refused(mesh_data *d, const char *expected)
 static void clean(mesh_data *d)
 {
     char why[MESH_WHY];
-    if (!mesh_clean(d, MESH_NORMALS_FILE, 40, 1e6, 2, why))
+    if (!mesh_clean(d, MESH_NORMALS_FILE, 40, 1e6, 2, NULL, why))
         fail_msg("%s", why);
 }
 
@@ -153,7 +155,8 @@ static void triangles_without_a_texture_are_counted(void **state)
  * a corner's normal is the mean of three sides, however these are cut into triangles. */
 static void check_cube(double crease, bool smooth)
 {
-    mesh_data d = {.n = 12, .at = malloc(sizeof *d.at * 12), .skin = calloc(12, sizeof *d.skin)};
+    mesh_data d = {
+        .n = 12, .at = memory_new(NULL, sizeof *d.at * 12), .skin = memory_zeroed(NULL, 12 * sizeof *d.skin)};
     char why[MESH_WHY];
     for (int k = 0; k < 12; k++)
         for (int i = 0; i < 3; i++) {
@@ -163,7 +166,7 @@ static void check_cube(double crease, bool smooth)
             d.at[k][i][(axis + 1) % 3] = (float)(2 * (high ? b : c) - 1);
             d.at[k][i][(axis + 2) % 3] = (float)(2 * (high ? c : b) - 1);
         }
-    assert_true(mesh_clean(&d, MESH_NORMALS_FILE, crease, 1e6, 2, why));
+    assert_true(mesh_clean(&d, MESH_NORMALS_FILE, crease, 1e6, 2, NULL, why));
     for (int k = 0; k < 12; k++)
         for (int i = 0; i < 3; i++)
             for (int a = 0; a < 3; a++) {

@@ -14,7 +14,7 @@ enum { TRIANGLES = 30000 };
 /* Small triangles in a ball of radius 7 far from the origin. */
 static mesh_data soup(double size)
 {
-    mesh_data d = {TRIANGLES, malloc(sizeof *d.at * TRIANGLES), NULL, {0}};
+    mesh_data d = {TRIANGLES, memory_new(NULL, sizeof *d.at * TRIANGLES), NULL, {0}};
     assert_non_null(d.at);
     for (int k = 0; k < TRIANGLES; k++) {
         const double at[3] = {random_in(-4, 4), random_in(-4, 4), random_in(-4, 4)};
@@ -28,7 +28,7 @@ static const bvh_space space = {{100, 100, 100}, 7.5};
 
 static void make(const mesh_data *d, int threads, mesh_clusters *c, bvh_box **box)
 {
-    assert_true(mesh_clusters_new(d, &space, threads, c, box));
+    assert_true(mesh_clusters_new(d, &space, threads, NULL, c, box));
     CHECK(c->n, >, TRIANGLES / 64);
     CHECK(c->n, <, TRIANGLES / 4);
 }
@@ -68,9 +68,9 @@ static void test_each_triangle_is_in_one(void **state)
         }
     CHECK(sum, ==, TRIANGLES);
     mesh_clusters_free(&c);
-    free(box);
+    memory_free(box);
     free(seen);
-    free(d.at);
+    memory_free(d.at);
 }
 
 static void test_threads_make_the_same(void **state)
@@ -87,9 +87,9 @@ static void test_threads_make_the_same(void **state)
     assert_memory_equal(one.cluster, three.cluster, sizeof *one.cluster * (size_t)one.block[one.n - 1].first);
     mesh_clusters_free(&one);
     mesh_clusters_free(&three);
-    free(box[0]);
-    free(box[1]);
-    free(d.at);
+    memory_free(box[0]);
+    memory_free(box[1]);
+    memory_free(d.at);
 }
 
 /* Ray 0 of k through p and q, in scene units, as packet.c has it. */
@@ -105,6 +105,7 @@ static void set_ray(cluster_rays *k, const double p[3], const double q[3])
     const int x = (z + 1) % 3, y = (z + 2) % 3;
     const double sx = s[x] / s[z], sy = s[y] / s[z];
     k->z[0] = z;
+    k->own[0] = -1; /* it starts on no triangle */
     k->sx[0] = (float)sx;
     k->sy[0] = (float)sy;
     k->cx[0] = (float)((p[x] - C[x] - sx * (p[z] - C[z])) / space.radius);
@@ -161,8 +162,8 @@ static void aim(double size, double most)
         }
     CHECK(kept, <, most * others);
     mesh_clusters_free(&c);
-    free(box);
-    free(d.at);
+    memory_free(box);
+    memory_free(d.at);
 }
 
 static void test_no_triangle_is_left_out(void **state)
@@ -201,8 +202,8 @@ static void test_no_cluster_is_left_out(void **state)
                 }
             }
         mesh_clusters_free(&c);
-        free(box);
-        free(d.at);
+        memory_free(box);
+        memory_free(d.at);
     }
 }
 
@@ -237,8 +238,8 @@ static void test_slabs_are_thin(void **state)
         BETWEEN(above ? 0 : 50, clusters, above ? 0 : 1000);
     }
     mesh_clusters_free(&c);
-    free(box);
-    free(d.at);
+    memory_free(box);
+    memory_free(d.at);
 }
 
 int main(void)

@@ -45,8 +45,10 @@ static void floor_of(double a, double b, float at[3], float uv[2])
 /* n x m cells of two triangles; normals as `mesh_clean` finds them. */
 static mesh_data grid(model *of, int n, int m)
 {
-    mesh_data d = {
-        2 * n * m, malloc(sizeof *d.at * 2 * (size_t)(n * m)), malloc(sizeof *d.skin * 2 * (size_t)(n * m)), {0}};
+    mesh_data d = {2 * n * m,
+                   memory_new(NULL, sizeof *d.at * 2 * (size_t)(n * m)),
+                   memory_new(NULL, sizeof *d.skin * 2 * (size_t)(n * m)),
+                   {0}};
     assert_true(d.at && d.skin);
     memset(d.skin, 0, sizeof *d.skin * 2 * (size_t)(n * m));
     for (int k = 0; k < d.n; k++) {
@@ -62,7 +64,7 @@ static mesh_data grid(model *of, int n, int m)
 static mesh *mesh_from(mesh_data d, mesh_normals normals, double crease)
 {
     char why[MESH_WHY];
-    assert_true(mesh_clean(&d, normals, crease, 1e6, 2, why));
+    assert_true(mesh_clean(&d, normals, crease, 1e6, 2, NULL, why));
     surface *f = mesh_new(&d, 1, NULL);
     assert_non_null(f);
     return (mesh *)f;
@@ -73,7 +75,7 @@ static mesh *mesh_of(model *of, int n, int m) { return mesh_from(grid(of, n, m),
 /* Triangles all over the place. */
 static mesh *object_bvh(int n)
 {
-    mesh_data d = {n, malloc(sizeof *d.at * (size_t)n), malloc(sizeof *d.skin * (size_t)n), {0}};
+    mesh_data d = {n, memory_new(NULL, sizeof *d.at * (size_t)n), memory_new(NULL, sizeof *d.skin * (size_t)n), {0}};
     assert_true(d.at && d.skin);
     memset(d.skin, 0, sizeof *d.skin * (size_t)n);
     for (int k = 0; k < n; k++)
@@ -322,7 +324,7 @@ static void images(void **state)
                                   {{-1.2, 0.3, 0}, {-0.2, 0.9, 0.4}, {0.1, 0, 1.1}, {0.3, -0.2, 0.5}}};
     mesh *f = mesh_of(ball, 24, 12);
     for (size_t m = 0; m < 2; m++) {
-        surface *g = surface_transformed(&f->base, &maps[m]), *k = mesh_moved(&f->base, &maps[m], 1);
+        surface *g = surface_transformed(&f->base, &maps[m]), *k = mesh_moved(&f->base, &maps[m], 1, NULL);
         assert_true(g && k);
         static rays x;
         static hits a, b;
@@ -543,7 +545,7 @@ static void error_slopes(void **state)
 
 static mesh_data one(const float at[3][3], int n)
 {
-    mesh_data d = {n, malloc(sizeof *d.at * (size_t)n), calloc((size_t)n, sizeof *d.skin), {0}};
+    mesh_data d = {n, memory_new(NULL, sizeof *d.at * (size_t)n), memory_zeroed(NULL, (size_t)n * sizeof *d.skin), {0}};
     assert_true(d.at && d.skin);
     for (int k = 0; k < n; k++)
         memcpy(d.at[k], at, sizeof d.at[k]);

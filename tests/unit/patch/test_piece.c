@@ -258,7 +258,7 @@ static void pieces_cover_the_patch(void **state)
     const patch *q = made[*(const int *)*state];
     pieces l;
     bool bounded;
-    assert_true(pieces_of(q, 0.3, &l, &bounded));
+    assert_true(pieces_of(q, 0.3, NULL, &l, &bounded));
     double area = 0;
     for (int k = 0; k < l.n; k++)
         area += (l.piece[k].u[1] - l.piece[k].u[0]) * (l.piece[k].w[1] - l.piece[k].w[0]);
@@ -273,7 +273,7 @@ static void box_and_sphere_hold_the_patch(void **state)
     const patch *q = made[*(const int *)*state];
     pieces l;
     bool bounded;
-    assert_true(pieces_of(q, 0.3, &l, &bounded));
+    assert_true(pieces_of(q, 0.3, NULL, &l, &bounded));
     for (int round = 0; round < 2000; round++) {
         const piece f = random_piece(q);
         const point p = random_point(q, &f);
@@ -291,7 +291,7 @@ static void a_point_has_no_pieces(void **state)
     patch *q = function("3", "2 + 0*u", "1", 0, 1, 0, 1);
     pieces l;
     bool bounded = true;
-    assert_false(pieces_of(q, 0.3, &l, &bounded));
+    assert_false(pieces_of(q, 0.3, NULL, &l, &bounded));
     assert_false(bounded);
     pieces_free(&l);
     q->ops->free(q);
@@ -303,7 +303,7 @@ static void no_bounds_no_pieces(void **state)
     patch *q = function("u", "1/u", "w", -1, 1, 0, 1);
     pieces l;
     bool bounded = true;
-    assert_false(pieces_of(q, 0.3, &l, &bounded));
+    assert_false(pieces_of(q, 0.3, NULL, &l, &bounded));
     assert_false(bounded);
     pieces_free(&l);
     q->ops->free(q);

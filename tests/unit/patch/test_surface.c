@@ -30,32 +30,34 @@ static const double pi = 3.14159265358979323846;
 static surface *moebius(void)
 {
     return patch_surface_new(
-        function("(1.2 + w*cos(u/2))*cos(u)", "w*sin(u/2)", "(1.2 + w*cos(u/2))*sin(u)", 0, 2 * pi, -0.4, 0.4));
+        function("(1.2 + w*cos(u/2))*cos(u)", "w*sin(u/2)", "(1.2 + w*cos(u/2))*sin(u)", 0, 2 * pi, -0.4, 0.4), NULL);
 }
 
 static surface *klein(void)
 {
-    return patch_surface_new(function(
-        "(1 + 0.5*cos(u/2)*sin(w) - 0.5*sin(u/2)*sin(2*w))*cos(u)", "0.7*(sin(u/2)*sin(w) + cos(u/2)*sin(2*w))",
-        "(1 + 0.5*cos(u/2)*sin(w) - 0.5*sin(u/2)*sin(2*w))*sin(u)", 0, 2 * pi, 0, 2 * pi));
+    return patch_surface_new(function("(1 + 0.5*cos(u/2)*sin(w) - 0.5*sin(u/2)*sin(2*w))*cos(u)",
+                                      "0.7*(sin(u/2)*sin(w) + cos(u/2)*sin(2*w))",
+                                      "(1 + 0.5*cos(u/2)*sin(w) - 0.5*sin(u/2)*sin(2*w))*sin(u)", 0, 2 * pi, 0, 2 * pi),
+                             NULL);
 }
 
 /* A patch with an edge across it. */
 static surface *roof(void)
 {
-    return patch_surface_new(function("u", "0.3*abs(u - 0.1) + 0.2*sin(3*w)", "w", -1, 1, -1.1, 1.1));
+    return patch_surface_new(function("u", "0.3*abs(u - 0.1) + 0.2*sin(3*w)", "w", -1, 1, -1.1, 1.1), NULL);
 }
 
 static surface *ball(void)
 {
     return patch_surface_new(
-        function("0.3 + 1.2*sin(w)*cos(u)", "1.2*cos(w) - 0.2", "0.1 + 1.2*sin(w)*sin(u)", -pi, pi, 0, pi));
+        function("0.3 + 1.2*sin(w)*cos(u)", "1.2*cos(w) - 0.2", "0.1 + 1.2*sin(w)*sin(u)", -pi, pi, 0, pi), NULL);
 }
 
 static surface *ring(void)
 {
     return patch_surface_new(function("0.1 + (0.9 + 0.4*cos(w))*cos(u)", "-0.1 - 0.4*sin(w)",
-                                      "0.2 + (0.9 + 0.4*cos(w))*sin(u)", -pi, pi, -pi, pi));
+                                      "0.2 + (0.9 + 0.4*cos(w))*sin(u)", -pi, pi, -pi, pi),
+                             NULL);
 }
 
 static surface *teapot(void)
@@ -69,7 +71,7 @@ static surface *teapot(void)
         p[k] = vec3_scale(vec3_sub(p[k], (vec3){0.2, 1.5, 0}), 0.4);
     patch *q = patch_bezier_new(n, p);
     free(p);
-    return patch_surface_new(q);
+    return patch_surface_new(q, NULL);
 }
 
 enum { MOEBIUS, KLEIN, ROOF, BALL, RING, TEAPOT, KINDS };
@@ -648,7 +650,7 @@ static surface *saddle(double k)
     vec3 p[16];
     for (int i = 0; i < 16; i++)
         p[i] = vec3_scale((vec3){0.8 * (i % 4) - 1.2, 0.5 * (i % 3 == 0), 0.8 * (i / 4) - 1.2}, k);
-    return patch_surface_new(patch_bezier_new(1, p));
+    return patch_surface_new(patch_bezier_new(1, p), NULL);
 }
 
 /* How the height, u and w change in space: u and w by one over the scale. */
@@ -765,10 +767,10 @@ static void refused(void **state)
     (void)state;
     const vec3 same[16] = {{1, 2, 3}, {1, 2, 3}, {1, 2, 3}, {1, 2, 3}, {1, 2, 3}, {1, 2, 3}, {1, 2, 3}, {1, 2, 3},
                            {1, 2, 3}, {1, 2, 3}, {1, 2, 3}, {1, 2, 3}, {1, 2, 3}, {1, 2, 3}, {1, 2, 3}, {1, 2, 3}};
-    assert_null(patch_surface_new(patch_bezier_new(1, same)));
-    assert_null(patch_surface_new(function("1", "2", "3", 0, 1, 0, 1)));
-    assert_null(patch_surface_new(function("u", "1/w", "w", 0, 1, -1, 1)));
-    assert_null(patch_surface_new(function("u", "log(w)", "w", 0, 1, -2, -1)));
+    assert_null(patch_surface_new(patch_bezier_new(1, same), NULL));
+    assert_null(patch_surface_new(function("1", "2", "3", 0, 1, 0, 1), NULL));
+    assert_null(patch_surface_new(function("u", "1/w", "w", 0, 1, -1, 1), NULL));
+    assert_null(patch_surface_new(function("u", "log(w)", "w", 0, 1, -2, -1), NULL));
 }
 
 static bool has_closed_form(int kind) { return kind == BALL || kind == RING; }

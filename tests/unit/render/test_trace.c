@@ -29,7 +29,7 @@ static void alone_as_in_a_wave(const char *more, tracer tr)
     scene *s = scene_text(text);
     tr.scene = s;
     tr.self_shadow = tr.layers = true;
-    workspace *v = camera_wave(&tr), *one = workspace_new(&tr);
+    workspace *v = camera_wave(&tr), *one = workspace_new(&tr, NULL);
     const rays all = v->x;
     trace(&tr, LANES, v);
     CHECK(v->stats->secondary_rays, >, LANES / 4);

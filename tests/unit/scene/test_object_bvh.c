@@ -160,11 +160,11 @@ static void random_rays(int wave, workspace *v)
 
 static void same_with(scene *s, const tracer *k, int waves)
 {
-    workspace *a = workspace_new(k);
+    workspace *a = workspace_new(k, NULL);
     object_bvh *c = s->object_bvh;
     int met = 0;
     s->object_bvh = NULL;
-    workspace *b = workspace_new(k);
+    workspace *b = workspace_new(k, NULL);
     for (int wave = 0; wave < waves; wave++) {
         random_rays(wave, a);
         b->x = a->x;

@@ -97,7 +97,7 @@ static texels *pixels(map_wrap wrap, map_layout *l)
         v[4 * k + 3] = 1;
     }
     *l = (map_layout){.size = {3, 2}, .wrap = wrap};
-    texels *t = texels_new(&(image){WIDTH, HEIGHT, v}, l);
+    texels *t = texels_new(&(image){WIDTH, HEIGHT, v}, l, NULL);
     assert_non_null(t);
     return t;
 }
@@ -168,7 +168,7 @@ static void an_image_of_one_row_is_refused(void **state)
     (void)state;
     float v[8] = {0};
     const map_layout l = {.size = {1, 1}};
-    assert_null(texels_new(&(image){2, 1, v}, &l));
+    assert_null(texels_new(&(image){2, 1, v}, &l, NULL));
 }
 
 int main(void)

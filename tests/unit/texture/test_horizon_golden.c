@@ -55,7 +55,7 @@ static int case_at(struct fy_node *c, int finer)
                              .kw = (real)kw,
                              .ou = (real)(COLUMNS / 2 - u * ku),
                              .ow = (real)(ROWS / 2 - w * kw)};
-    horizon *h = horizon_new(p, &grid, false, NULL, 1);
+    horizon *h = horizon_new(p, &grid, false, NULL, 1, NULL);
     assert_non_null(h);
     int near = 0;
     for (int k = 0; k < HORIZON_DIRECTIONS; k++) {

@@ -97,7 +97,7 @@ static void bounds_of_maps(void **state)
     const double places[2] = {-4, 7};
     for (int n = 0; n < LAYOUTS; n++) {
         bump *p = map_of(&layouts[n]);
-        assert_true(bump_prepare(p));
+        assert_true(bump_prepare(p, NULL));
         check_ranges(p, places, places);
         bump_free(p);
     }
@@ -109,7 +109,7 @@ static void bounds_far_away(void **state)
     (void)state;
     const double far[2] = {9000, 9100}, below[2] = {-2200, -2150};
     bump *p = map_of(&layouts[0]);
-    assert_true(bump_prepare(p));
+    assert_true(bump_prepare(p, NULL));
     check_ranges(p, far, below);
     bump_free(p);
 }
@@ -123,7 +123,7 @@ static void bounds_of_functions(void **state)
                  function_of("sin(9*u)*tanh(w)", turn, all), function_of("cos(9*w) + u/100", all, half)};
     for (int k = 0; k < 4; k++) {
         check_ranges(p[k], turn, half); /* by the bounds of the whole */
-        assert_true(bump_prepare(p[k]));
+        assert_true(bump_prepare(p[k], NULL));
         check_ranges(p[k], turn, half);
         bump_free(p[k]);
     }
@@ -134,7 +134,7 @@ static void bounds_of_mirrored_maps(void **state)
     (void)state;
     const double places[2] = {-3, 4}, w[2] = {-1, 2};
     bump *p = bump_mirrored_uv(map_of(&layouts[3]), -0.5, 1.25);
-    assert_true(bump_prepare(p));
+    assert_true(bump_prepare(p, NULL));
     check_ranges(p, places, w);
     bump_free(p);
 }
@@ -149,7 +149,7 @@ static void bounds_are_close(void **state)
     const image m = {64, 64, ramp};
     const map_layout l = {{64, 64}, {0, 0}, MAP_CLAMP, false, 1, 0};
     bump *p = bump_of_map(&m, &l);
-    assert_true(bump_prepare(p));
+    assert_true(bump_prepare(p, NULL));
     for (int k = 0; k < 200; k++) {
         const double size = random_in(0.1, 20), at = random_in(1, 60 - size);
         const real u0 = (real)at, u1 = (real)(at + size), w0 = 30, w1 = R(30.5);
@@ -168,7 +168,7 @@ static void any_rectangle(void **state)
     static bump_ranges b;
     for (int n = 0; n < LAYOUTS; n++) {
         bump *p = map_of(&layouts[n]);
-        assert_true(bump_prepare(p));
+        assert_true(bump_prepare(p, NULL));
         for (int k = 0; k < 8 * 8 * 8; k++) {
             p->ops->range(p, 1, &odd[k & 7], &odd[k >> 3 & 7], &odd[k >> 6], &odd[k & 7], &b);
             BETWEEN((double)p->Pmin - 1e-5, b.lo[0], p->Pmax);
@@ -210,7 +210,7 @@ static void bends_of_functions(void **state)
     bump *p[] = {function_of("sin(6*u)*cos(5*w) + 0.3*u*u*w", turn, half), function_of("sin(u)*cos(3*w)", all, all)};
     for (int k = 0; k < 2; k++) {
         CHECK(p[k]->Puu_max, ==, HUGE_VAL);
-        assert_true(bump_prepare(p[k]));
+        assert_true(bump_prepare(p[k], NULL));
         CHECK(p[k]->Puu_max, <, k ? 0.31 : 14);
         CHECK(p[k]->Pww_max, <, k ? 2.71 : 9);
         check_bends(p[k], turn, half);
@@ -223,8 +223,8 @@ static void no_bends_of_maps_and_kinks(void **state)
     (void)state;
     bump *p[] = {map_of(&layouts[0]), function_of("abs(u)", turn, half)};
     for (int k = 0; k < 2; k++) {
-        assert_true(bump_prepare(p[k]));
-        assert_true(bump_prepare(p[k]));
+        assert_true(bump_prepare(p[k], NULL));
+        assert_true(bump_prepare(p[k], NULL));
         CHECK(p[k]->Puu_max, ==, HUGE_VAL);
         bump_free(p[k]);
     }

@@ -22,7 +22,7 @@ static heights map_of(map_wrap wrap, bool corners, int dx, int dy)
     const map_layout l = {.size = {1, 1}, .wrap = wrap, .corners = corners, .scale = 1};
     heights h;
     float row[WIDTH];
-    assert_true(heights_new(&h, WIDTH, HEIGHT, &l));
+    assert_true(heights_new(&h, WIDTH, HEIGHT, &l, NULL));
     for (int y = 0; y < HEIGHT; y++) {
         for (int x = 0; x < WIDTH; x++)
             row[x] = sample(x, y, dx, dy);
@@ -40,12 +40,12 @@ static void no_height_moves_by_more_than_the_bound(void **state)
         for (int corners = 0; corners <= 1; corners++) {
             heights h = map_of((map_wrap)wrap, corners, 0, 0);
             double moved = 0;
-            assert_true(heights_smooth(&h, 3, STEP / 3, 1));
+            assert_true(heights_smooth(&h, 3, STEP / 3, 1, NULL));
             for (int k = 0; k < N; k++)
                 moved = fmax(moved, fabs(at(&h, k % WIDTH, k / WIDTH) - (double)sample(k % WIDTH, k / WIDTH, 0, 0)));
             CHECK(moved, <=, STEP / 3 + 1e-7);
             CHECK(moved, >, STEP / 4);
-            free(h.v);
+            memory_free(h.v);
         }
 }
 
@@ -54,12 +54,12 @@ static void a_seam_is_no_edge(void **state)
 {
     (void)state;
     heights a = map_of(MAP_REPEAT, false, 0, 0), b = map_of(MAP_REPEAT, false, 17, 9);
-    assert_true(heights_smooth(&a, 2.5, STEP, 1) && heights_smooth(&b, 2.5, STEP, 1));
+    assert_true(heights_smooth(&a, 2.5, STEP, 1, NULL) && heights_smooth(&b, 2.5, STEP, 1, NULL));
     for (int y = 0; y < HEIGHT; y++)
         for (int x = 0; x < WIDTH; x++)
             CHECK(fabs(at(&b, x, y) - at(&a, (x + 17) % WIDTH, (y + 9) % HEIGHT)), <, 1e-7);
-    free(a.v);
-    free(b.v);
+    memory_free(a.v);
+    memory_free(b.v);
 }
 
 /* Closer to the waves than the steps are, by far where slopes are concerned. */
@@ -68,7 +68,7 @@ static void slopes_come_back(void **state)
     (void)state;
     heights h = map_of(MAP_REPEAT, false, 0, 0);
     double before = 0, after = 0;
-    assert_true(heights_smooth(&h, 2, STEP, 2));
+    assert_true(heights_smooth(&h, 2, STEP, 2, NULL));
     for (int y = 0; y < HEIGHT; y++)
         for (int x = 1; x < WIDTH - 1; x++) {
             const double a = 2 * PI / WIDTH, b = 2 * PI * y / HEIGHT,
@@ -77,18 +77,18 @@ static void slopes_come_back(void **state)
             after += fabs(at(&h, x + 1, y) - at(&h, x - 1, y) - truth);
         }
     CHECK(after, <, before / 2.5);
-    free(h.v);
+    memory_free(h.v);
 }
 
 static void threads_change_nothing(void **state)
 {
     (void)state;
     heights a = map_of(MAP_MIRROR, true, 0, 0), b = map_of(MAP_MIRROR, true, 0, 0);
-    assert_true(heights_smooth(&a, 4, STEP, 1) && heights_smooth(&b, 4, STEP, 5));
+    assert_true(heights_smooth(&a, 4, STEP, 1, NULL) && heights_smooth(&b, 4, STEP, 5, NULL));
     for (int k = 0; k < N; k++)
         CHECK(at(&a, k % WIDTH, k / WIDTH), ==, at(&b, k % WIDTH, k / WIDTH));
-    free(a.v);
-    free(b.v);
+    memory_free(a.v);
+    memory_free(b.v);
 }
 
 /* The bounds that methods rely on are those of the smoothed heights. */
@@ -97,11 +97,11 @@ static void bounds_are_of_what_is_left(void **state)
     (void)state;
     const map_layout l = {.size = {1, 1}, .scale = 1};
     const float spike[9] = {0, 0, 0, 0, 1, 0, 0, 0, 0};
-    bump *p = bump_map_new(3, 3, &l);
+    bump *p = bump_map_new(3, 3, &l, NULL);
     assert_non_null(p);
     for (int y = 0; y < 3; y++)
         bump_map_put(p, 0, y, 3, spike + 3 * y);
-    assert_true(bump_map_smooth(p, 1, 0.25, 1));
+    assert_true(bump_map_smooth(p, 1, 0.25, 1, NULL));
     bump_map_end(p, 1);
     CHECK(fabs((double)p->Pmax - 0.75), <, 1e-6);
     CHECK((double)p->Pmin, >, 0.05);

@@ -1,1 +1,0 @@
-"""The fuzzer's seeds and words; its targets in C are beside it."""
