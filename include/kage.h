@@ -151,7 +151,9 @@ typedef struct kage_load_options {
     const kage_mesh_array *meshes;
     int image_count, mesh_count;
     const kage_limits *limits; /* NULL: the defaults; of kage_scene_change: those of `scene` */
-    void *reserved[4];
+    long survey; /* not 0: only what kage_scene_get_info and kage_scene_survey need is built now, and what displaced
+                  * surfaces, `exact` and `horizon` need at the first render: of a map ten times its memory */
+    void *reserved[3];
 } kage_load_options;
 
 /* Read the scene in the file at `path`. options: NULL for the defaults. The list has all errors that were found. */
