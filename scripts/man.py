@@ -120,13 +120,13 @@ def kage_markdown(table: Table) -> str:
              "A value follows its option as the next word, or after an equals sign; after `--` no word is an option.")
     out = ["# The program kage", "", *textwrap.wrap(f"{about} {FROM_STDIN}", 118), ""]
     for command in table["commands"]:
-        out += [f"## kage {command['name']}", "", f"    {synopsis(command)}", "",
+        out += [f"## kage {command['name']}", "", f"`{synopsis(command)}`", "",
                 *textwrap.wrap(command["text"][0].upper() + command["text"][1:] + ".", 118), ""]
         for more in filter(None, command["more"].split("\n\n")):
             out += [*textwrap.wrap(more, 118), ""]
         examples = command["examples"]
         for line, does in zip(examples[::2], examples[1::2], strict=True):
-            out += [f"    {line}  # {does}"]
+            out += [f"    # {does}", f"    {line}"]
         own = [option for option in table["options"] if option["commands"] & command["bit"]]
         out += [*([""] if examples else []), "| option | meaning |", "|---|---|"]
         for option in own:

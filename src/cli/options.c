@@ -81,7 +81,8 @@ const command commands[] = {
      .more = "The scene has the model's camera, lights, materials, images and objects. The triangles stay in the "
              "model's file, which the scene names.",
      .example = {"kage import room.glb -o room.yaml", "the scene of a model",
-                 "kage import room.glb -o room.yaml --bump 'Wall*=bricks.png,scale=0.02'", "with bumps on its walls"}},
+                 "kage import room.glb -o new.yaml --bump Floor=scenes/data/bumps.png,scale=0.2",
+                 "with bumps on its floor"}},
     {.name = "methods", .bit = COMMAND_METHODS, .text = "list the methods"},
     {.name = "help",
      .bit = COMMAND_HELP,
