@@ -35,7 +35,8 @@ FROM_STDIN = "A SCENE `-` is read from standard input."
 SEE = {"kage": "kage(1)", "kage-scene": "kage-scene(5)", "libkage": "kage(3)", "bumpshadow": "bumpshadow(3)"}
 EXIT = (("0", "All is done."), ("1", "An output can't be written."),
         ("2", "Bad input: a scene, a file that it names, or the command line. Messages are on standard error, as "
-              "`file:line:column: what is wrong`."))
+              "`file:line:column: what is wrong`."),
+        ("124", "Stopped by `--max-seconds`."))
 
 
 def read_table(kage: Path) -> Table:

@@ -9,6 +9,19 @@ from numpy.typing import NDArray
 
 
 @dataclass(frozen=True, eq=False)
+class Limits:
+    """What a call may take (docs/limits.md). Zero: the default."""
+
+    #: bytes that a scene, those that are changed from it, and their films may take together while the call
+    #: runs. What would take more is refused before it is taken, with KAGE_NO_MEMORY and the figure that it
+    #: needs. 0: 7/8 of the machine's memory; below 0: no limit
+    memory: int
+    #: of the call, by the wall clock; then it ends as if it were cancelled, with KAGE_OUT_OF_TIME. 0: no
+    #: limit
+    seconds: float
+
+
+@dataclass(frozen=True, eq=False)
 class LightInfo:
     """kage_light_info of kage.h."""
 
@@ -242,6 +255,8 @@ class Probe:
     rows: tuple[ProbeRow, ...]
     #: the material has secondary rays, whose light is in no row
     sends: bool
+    #: P, n' or the surface has no value here: P is 0, n' is n, and no method shifts
+    undefined: int
 
 
 @dataclass(frozen=True, eq=False)
@@ -260,6 +275,8 @@ class BumpSurvey:
     step_slope: float
     #: of the samples from the eye, in the median
     distance: float
+    #: P has no value there, in per cent of the samples; slopes and fell_back are of the others
+    undefined: float
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,7 +10,7 @@
 
 #include "kage.h"
 
-enum { EXIT_OUTPUT = 1, EXIT_INPUT = 2, MAX_OUTPUTS = 16, MAX_SETS = 256, MAX_BUMPS = 256 };
+enum { EXIT_OUTPUT = 1, EXIT_INPUT = 2, EXIT_TIME = 124, MAX_OUTPUTS = 16, MAX_SETS = 256, MAX_BUMPS = 256 };
 
 #if defined(__GNUC__)
 #define CLI_PRINTF(fmt, first) __attribute__((format(printf, fmt, first)))
@@ -52,6 +52,8 @@ typedef struct arguments {
     const char *camera; /* of a model */
     double brightness;
     int frames; /* of view, to measure */
+    kage_limits limits; /* of memory */
+    double seconds;     /* that the command may take; 0: any */
     bool z_up;
     bool stats, quiet, no_cast, overwrite, resume, report, help;
     bool to_stdout; /* an output is -, standard output */
@@ -127,6 +129,9 @@ void print_wrapped(FILE *to, int at, int indent, int width, const char *text);
  * stands. Both say how far it was, unless quiet, and end by the signal. */
 void stop_begin(const char *name, bool quiet);
 bool stop_asked(void);
+
+/* After stop_begin: the command is stopped in so many seconds, as if by Ctrl-C, and ends with EXIT_TIME. */
+void stop_after(double seconds);
 
 /* What is done now, and how much of it. */
 void stop_note(const char *what, double share);

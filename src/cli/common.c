@@ -146,7 +146,9 @@ kage_scene *load_scene(const arguments *a)
                                  .set_count = a->sets,
                                  .threads = a->threads,
                                  .progress = progress_bar_show,
-                                 .user = &p};
+                                 .user = &p,
+                                 .limits = &a->limits,
+                                 .survey = a->command == COMMAND_CHECK};
     const kage_status status = read_given(a->operand[0], &o, &s, &e);
     progress_bar_end(&p);
     if (status != KAGE_OK) {

@@ -63,7 +63,8 @@ int command_import(const arguments *a)
                                    .overwrite = a->overwrite,
                                    .threads = a->threads,
                                    .progress = progress_bar_show,
-                                   .user = &p};
+                                   .user = &p,
+                                   .limits = &a->limits};
     const kage_status status = kage_model_import(a->operand[0], a->output[0], &o, &r, &e);
     progress_bar_end(&p);
     if (status != KAGE_OK)
