@@ -18,6 +18,12 @@ enum {
     EVERY = SCENES | IMPORT | COMMAND_METHODS | COMMAND_HELP
 };
 
+const exit_meaning exit_meanings[] = {{0, "all is done"},
+                                      {EXIT_OUTPUT, "an output can't be written"},
+                                      {EXIT_INPUT, "bad input"},
+                                      {EXIT_TIME, "stopped by --max-seconds"}};
+const int exit_meaning_count = (int)(sizeof exit_meanings / sizeof *exit_meanings);
+
 const char layer_names[] = "color Z P N uw height tau order visibility";
 
 const command commands[] = {
