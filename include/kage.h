@@ -37,7 +37,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#define KAGE_VERSION "0.1.0"
+#define KAGE_VERSION "1.0.0"
 
 #if defined(__GNUC__)
 #define KAGE_API __attribute__((visibility("default")))
