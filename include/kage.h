@@ -143,14 +143,17 @@ typedef struct kage_load_options {
     /* The program that reads models (OBJ, PLY, STL, glTF, OFF, COLLADA, FBX, 3DS). NULL: the environment's KAGE_IMPORT;
      * without that kage-import in the folder of libkage.so (or of the program that libkage.a is in), in ../libexec/kage
      * from there, or in libexec/kage of the prefix that the library was installed to. Without the program a scene with
-     * a model is an error of the scene; other scenes do not need it. It has limited time (3 s and 1 s a MiB) and memory
+     * a model is an error of the scene; other scenes do not need it. It has limited time (3 s of a processor and 1 s a
+     * MiB, ten times as much by the clock) and memory
      * (512 MiB and 96 times the file); a model that crashes it is an error of the scene, too. */
     const char *model_reader;
     const kage_image_array *images;
     const kage_mesh_array *meshes;
     int image_count, mesh_count;
     const kage_limits *limits; /* NULL: the defaults; of kage_scene_change: those of `scene` */
-    void *reserved[4];
+    long survey; /* not 0: only what kage_scene_get_info and kage_scene_survey need is built now, and what displaced
+                  * surfaces, `exact` and `horizon` need at the first render: of a map ten times its memory */
+    void *reserved[3];
 } kage_load_options;
 
 /* Read the scene in the file at `path`. options: NULL for the defaults. The list has all errors that were found. */

@@ -34,10 +34,22 @@ static bool keep(kage_scene *k, const kage_scene *before, const char *folder, co
     return good && k->set && (!before || arrays_add_all(&k->arrays, &before->arrays)) && arrays_take(&k->arrays, o, m);
 }
 
+/* A callback of progress may call the library with the scene that is read again. */
+static bool init_lock(pthread_mutex_t *lock)
+{
+    pthread_mutexattr_t again;
+    if (pthread_mutexattr_init(&again) != 0)
+        return false;
+    const bool good =
+        pthread_mutexattr_settype(&again, PTHREAD_MUTEX_RECURSIVE) == 0 && pthread_mutex_init(lock, &again) == 0;
+    pthread_mutexattr_destroy(&again);
+    return good;
+}
+
 static kage_scene *new_scene(const kage_scene *before, const kage_limits *limits)
 {
     kage_scene *k = calloc(1, sizeof *k);
-    if (!k || pthread_mutex_init(&k->lock, NULL) != 0) {
+    if (!k || !init_lock(&k->lock)) {
         free(k);
         return NULL;
     }
@@ -52,7 +64,7 @@ static kage_scene *new_scene(const kage_scene *before, const kage_limits *limits
 
 /* What may be on shelves: of a scene's readings, which live as long as it does, and what it has to spare. Returns how
  * many. */
-enum { SHELVES = READINGS + 1 };
+enum { SHELVES = READINGS + 2 };
 static int shelves_of(kage_scene *k, const shelf *all[SHELVES])
 {
     int n = 0;
@@ -61,6 +73,11 @@ static int shelves_of(kage_scene *k, const shelf *all[SHELVES])
         if (s)
             all[n++] = &s->shelf;
     }
+    bool kept = false;
+    for (int i = 0; i < n; i++)
+        kept = kept || all[i] == &k->first->shelf;
+    if (!kept) /* it has only what a survey needs */
+        all[n++] = &k->first->shelf;
     all[n++] = &k->spare;
     return n;
 }
@@ -100,11 +117,13 @@ static bool read_first(kage_scene *k, kage_scene *before, scene_source *from, co
     from->threads = k->threads;
     from->model_reader = k->model_reader;
     from->arrays = &k->arrays;
+    from->survey = o->survey != 0;
     scene *s = scene_read(from, e);
     if (!s)
         return false;
     k->first = s;
-    k->reading[reading_index((reading){s->displaced, s->shadow, s->bump_shadow})] = s;
+    if (!from->survey || !(scene_wants_truth(s) || scene_wants_horizons(s)))
+        k->reading[reading_index((reading){s->displaced, s->shadow, s->bump_shadow})] = s;
     k->from_file = before ? before->from_file : !from->text;
     return !before || !k->from_file || files_add_path(&s->made_from, s->path) || errors_add(e, "out of memory");
 }
@@ -156,8 +175,13 @@ void kage_scene_free(kage_scene *k)
     if (!k)
         return;
     scene_forget(k);
-    for (int i = 0; i < READINGS; i++)
+    bool kept = false; /* the first is no reading where it has only what a survey needs */
+    for (int i = 0; i < READINGS; i++) {
+        kept = kept || k->reading[i] == k->first;
         scene_free(k->reading[i]);
+    }
+    if (!kept)
+        scene_free(k->first);
     for (int i = 0; k->set && i < k->sets; i++)
         free(k->set[i]);
     free(k->set);
@@ -216,7 +240,11 @@ const scene *scene_reading(kage_scene *k, reading r, const progress *p, errors *
         return s;
     pthread_mutex_lock(&k->lock);
     s = __atomic_load_n(at, __ATOMIC_ACQUIRE);
-    if (!s && (s = read_again(k, r, p, e)))
+    scene *made = s ? NULL : read_again(k, r, p, e);
+    s = __atomic_load_n(at, __ATOMIC_ACQUIRE);
+    if (s) /* a call by the callback of this one was sooner */
+        scene_free(made);
+    else if ((s = made))
         __atomic_store_n(at, s, __ATOMIC_RELEASE);
     pthread_mutex_unlock(&k->lock);
     return s;

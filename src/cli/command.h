@@ -10,7 +10,7 @@
 
 #include "kage.h"
 
-enum { EXIT_OUTPUT = 1, EXIT_INPUT = 2, MAX_OUTPUTS = 16, MAX_SETS = 256, MAX_BUMPS = 256 };
+enum { EXIT_OUTPUT = 1, EXIT_INPUT = 2, EXIT_TIME = 124, MAX_OUTPUTS = 16, MAX_SETS = 256, MAX_BUMPS = 256 };
 
 #if defined(__GNUC__)
 #define CLI_PRINTF(fmt, first) __attribute__((format(printf, fmt, first)))
@@ -52,6 +52,8 @@ typedef struct arguments {
     const char *camera; /* of a model */
     double brightness;
     int frames; /* of view, to measure */
+    kage_limits limits; /* of memory */
+    double seconds;     /* that the command may take; 0: any */
     bool z_up;
     bool stats, quiet, no_cast, overwrite, resume, report, help;
     bool to_stdout; /* an output is -, standard output */
@@ -98,6 +100,9 @@ int print_errors(kage_errors *e, int status);
 /* Print `kage: ` and a message on stderr. Returns false. */
 bool usage_error(const char *fmt, ...) CLI_PRINTF(1, 2);
 
+/* The same of what is no mistake. */
+void tell(const char *fmt, ...) CLI_PRINTF(1, 2);
+
 /* Remove what killed processes have left in the folder of an output, and say so. */
 void tidy(const arguments *a, const char *output);
 
@@ -125,6 +130,9 @@ void print_wrapped(FILE *to, int at, int indent, int width, const char *text);
 void stop_begin(const char *name, bool quiet);
 bool stop_asked(void);
 
+/* After stop_begin: the command is stopped in so many seconds, as if by Ctrl-C, and ends with EXIT_TIME. */
+void stop_after(double seconds);
+
 /* What is done now, and how much of it. */
 void stop_note(const char *what, double share);
 
@@ -133,6 +141,10 @@ void stop_outcome(const char *fmt, ...) CLI_PRINTF(1, 2);
 
 /* End, if that was asked for. */
 void stop_end(void);
+
+/* Print a message on stderr. On a terminal its first line is broken to the terminal's width; those below show a place
+ * of a file, and stay. Elsewhere it is one line, for editors and scripts. */
+void print_message(const char *message);
 
 /* ---- progress_bar.c ---- */
 

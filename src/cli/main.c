@@ -51,8 +51,10 @@ static int help_command(const arguments *a)
 
 static int run(const arguments *a)
 {
-    if (a->operands && a->command != COMMAND_VIEW && a->command != COMMAND_HELP)
+    if (a->operands && a->command != COMMAND_VIEW && a->command != COMMAND_HELP) {
         stop_begin(base_name(a->operand[0]), a->quiet);
+        stop_after(a->seconds);
+    }
     switch (a->command) {
     case COMMAND_RENDER:
         return command_render(a);

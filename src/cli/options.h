@@ -82,6 +82,8 @@ bool read_aa(arguments *a, const char *name, const char *v);
 bool read_threshold(arguments *a, const char *name, const char *v);
 bool read_crop(arguments *a, const char *name, const char *v);
 bool read_threads(arguments *a, const char *name, const char *v);
+bool read_memory(arguments *a, const char *name, const char *v);
+bool read_seconds(arguments *a, const char *name, const char *v);
 bool read_frames(arguments *a, const char *name, const char *v);
 bool read_layers(arguments *a, const char *name, const char *v);
 bool read_bits(arguments *a, const char *name, const char *v);

@@ -5,6 +5,7 @@
 
 #include "cli/command.h"
 
+#include <math.h>
 #include <signal.h>
 #include <stdarg.h>
 #include <string.h>
@@ -40,8 +41,14 @@ static void end_now(void)
     const struct sigaction usual = {.sa_handler = SIG_DFL};
     sigset_t open;
     const char *text = stop.text[stop.shown];
+    static const char over[] = "kage: the time of --max-seconds is over\n";
     if (!stop.quiet && write(STDERR_FILENO, text, strlen(text)) < 0)
         stop.quiet = true; /* nobody listens */
+    if (signal == SIGALRM) { /* of stop_after */
+        const ssize_t said = write(STDERR_FILENO, over, sizeof over - 1);
+        (void)said;
+        _exit(EXIT_TIME);
+    }
     sigaction(signal, &usual, NULL);
     sigemptyset(&open);
     sigaddset(&open, signal);
@@ -61,9 +68,18 @@ static void on_signal(int signal)
 
 static void on_alarm(int signal)
 {
-    (void)signal;
     if (stop.signal)
         end_now();
+    on_signal(signal); /* the time of stop_after */
+}
+
+void stop_after(double seconds)
+{
+    const double whole = floor(seconds);
+    const struct itimerval wait = {
+        .it_value = {.tv_sec = (time_t)whole, .tv_usec = (suseconds_t)fmax((seconds - whole) * 1e6, 1)}};
+    if (seconds > 0)
+        setitimer(ITIMER_REAL, &wait, NULL);
 }
 
 void stop_begin(const char *name, bool quiet)

@@ -180,6 +180,30 @@ bool read_threads(arguments *a, const char *name, const char *v)
     return true;
 }
 
+/* Bytes, or with K, M, G or T behind it 1024, 1024^2 ... bytes. */
+bool read_memory(arguments *a, const char *name, const char *v)
+{
+    static const char units[] = "KMGT";
+    char *end = NULL;
+    double x = *v >= '0' && *v <= '9' && strspn(v, "0123456789.") > 0 ? strtod(v, &end) : -1;
+    const char *unit = end && *end ? strchr(units, *end) : NULL;
+    if (unit)
+        for (end++; unit >= units; unit--)
+            x *= 1024;
+    if (!(x >= 1 && x <= 1e18) || *end)
+        return usage_error("%s %s: expected a size in bytes, or with K, M, G or T behind it: 4G", name, v);
+    a->limits.memory = (int64_t)x;
+    return true;
+}
+
+bool read_seconds(arguments *a, const char *name, const char *v)
+{
+    char *end = NULL;
+    a->seconds = *v >= '0' && *v <= '9' && strspn(v, "0123456789.") == strlen(v) ? strtod(v, &end) : -1;
+    return (a->seconds > 0 && a->seconds <= 1e6 && !*end) ||
+           usage_error("%s %s: expected a number of seconds above 0 and up to 1000000", name, v);
+}
+
 bool read_frames(arguments *a, const char *name, const char *v)
 {
     if (!whole_numbers(v, 0, 1, &a->frames) || a->frames < 1)

@@ -7,9 +7,11 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -69,12 +71,22 @@ static void limit(int what, rlim_t most)
     }
 }
 
+/* The sanitizers take all addresses for themselves. gcc and clang say in different ways that they are there. */
+#if defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer) || __has_feature(memory_sanitizer)
+#define HAS_SANITIZER 1
+#endif
+#endif
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define HAS_SANITIZER 1
+#endif
+
 /* Limit time and memory to what a valid file of this size needs, or the images of a scene. */
 static void confine(size_t size, bool scene)
 {
     limit(RLIMIT_CORE, 0);
     limit(RLIMIT_CPU, LETTER_SECONDS + size / MIB / LETTER_MIB_A_SECOND + (scene ? LETTER_SCENE_SECONDS : 0));
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) /* which have all addresses for themselves */
+#ifndef HAS_SANITIZER
     limit(RLIMIT_AS, (scene ? SCENE_ROOM_MIB : ROOM_MIB) * MIB + TIMES * size);
 #else
     (void)ROOM_MIB, (void)SCENE_ROOM_MIB, (void)TIMES;
@@ -124,6 +136,7 @@ int main(int argc, char **argv)
         fputs("kage-import: a part of libkage, which starts it to read a model\n", stderr);
         return 2;
     }
+    prctl(PR_SET_PDEATHSIG, SIGKILL); /* nobody waits for what it does when the caller is killed */
     confine(stat(argv[1], &about) == 0 ? (size_t)about.st_size : 0, scene);
     if (scene)
         send_scene(argv[1], argc - 2, argv + 2, &to, &l);

@@ -144,7 +144,8 @@ static void read_object(reader *r, const queue *q, int i)
             place(r, v, o);
         else if (o->own)
             reader_copies(r, v, i);
-        if (o->shape && !o->crowd && o->bump && scene_wants_truth(s) && displaced_has_form(o->shape))
+        if (o->shape && !o->crowd && o->bump && scene_wants_truth(s) && displaced_has_form(o->shape) &&
+            !r->from->survey)
             o->displaced = reader_made(r, reader_displaced(r, o));
     }
     q->state[i] = DONE;

@@ -37,7 +37,7 @@ scene *scene_read(const scene_source *from, errors *e)
                 note_secondary(r.s);
                 bool good = true;
                 r.s->object_bvh = object_bvh_new(r.s, from->threads, from->progress, &good);
-                if (scene_wants_horizons(r.s))
+                if (scene_wants_horizons(r.s) && !from->survey)
                     good = (r.s->horizons = horizons_new(r.s, from->threads, from->progress)) && good;
                 if (!good)
                     reader_made(&r, NULL);

@@ -167,6 +167,7 @@ typedef struct scene_source {
     const arrays *arrays;     /* that the scene may name; NULL: none. They live as long as the scene */
     int shelves;              /* that may have what the scene needs */
     const shelf *const *shelf;
+    bool survey; /* no displaced surfaces and no horizons, which only rendering needs */
     bool again; /* a scene that is changed: keep what further changes need */
 } scene_source;
 
