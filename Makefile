@@ -211,7 +211,7 @@ $(BUILD)/kage: $(PROGRAM:%=$(BUILD)/%.o) $(BUILD)/base/spelling.o $(BUILD)/libka
 	@echo '  LD  $@'
 	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(LIBS)
 
-$(BUILD)/kage-import: $(IMPORT:%=$(BUILD)/%.o)
+$(BUILD)/kage-import: $(IMPORT:%=$(BUILD)/%.o) $(BUILD)/base/files.o
 	@echo '  LD  $@'
 	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(IMPORT_LIBS)
 
@@ -375,7 +375,7 @@ $(UNITS:%=run-%): run-%: $(BUILD)/% $(BUILD)/kage-import
 	@KAGE_IMPORT=$(BUILD)/kage-import $< >$<.log 2>&1 && echo '  OK  $<' || { cat $<.log; echo '  FAILED  $<'; exit 1; }
 
 program-tests: programs python $(BUILD)/fuzz/replay
-	@$(MAKE) --no-print-directory $(JOBS) REAL=double build/double/kage
+	@$(MAKE) --no-print-directory $(JOBS) REAL=double build/double/kage python
 	scripts/venv python -m pytest -q -n auto --dist loadfile tests # a file's tests share what they make
 
 # What POV-Ray, valgrind or a Python package would tell is left out where they are missing and can't be installed.

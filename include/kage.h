@@ -143,7 +143,8 @@ typedef struct kage_load_options {
     /* The program that reads models (OBJ, PLY, STL, glTF, OFF, COLLADA, FBX, 3DS). NULL: the environment's KAGE_IMPORT;
      * without that kage-import in the folder of libkage.so (or of the program that libkage.a is in), in ../libexec/kage
      * from there, or in libexec/kage of the prefix that the library was installed to. Without the program a scene with
-     * a model is an error of the scene; other scenes do not need it. It has limited time (3 s and 1 s a MiB) and memory
+     * a model is an error of the scene; other scenes do not need it. It has limited time (3 s of a processor and 1 s a
+     * MiB, ten times as much by the clock) and memory
      * (512 MiB and 96 times the file); a model that crashes it is an error of the scene, too. */
     const char *model_reader;
     const kage_image_array *images;

@@ -31,6 +31,7 @@ ABOUT = {
     "libkage": "the library of kage",
     "bumpshadow": "shadows on bump-mapped surfaces, to copy into a renderer",
 }
+FROM_STDIN = "A SCENE `-` is read from standard input."
 SEE = {"kage": "kage(1)", "kage-scene": "kage-scene(5)", "libkage": "kage(3)", "bumpshadow": "bumpshadow(3)"}
 EXIT = (("0", "All is done."), ("1", "An output can't be written."),
         ("2", "Bad input: a scene, a file that it names, or the command line. Messages are on standard error, as "
@@ -88,7 +89,7 @@ def kage_page(page: Page, table: Table) -> None:
         page.text(escaped(synopsis(command), code=True))
     page.heading("DESCRIPTION")
     page.text("\\fBkage\\fR renders shadows of other objects on bump-mapped surfaces, by Sumi and Noma's method. "
-              "Scenes are files in YAML.")
+              "Scenes are files in YAML, which \\fBkage\\-scene\\fR(5) describes. " + inline(FROM_STDIN))
     page.heading("COMMANDS")
     for command in table["commands"]:
         page.heading(escaped(synopsis(command).removesuffix(" [OPTIONS]"), code=True), 2)
@@ -115,9 +116,9 @@ def kage_page(page: Page, table: Table) -> None:
 
 
 def kage_markdown(table: Table) -> str:
-    out = ["# The program kage", "",
-           "Made by `scripts/man.py` from the program's own table, as are `kage --help` and the manual page "
-           "kage(1).", ""]
+    about = ("Made by `scripts/man.py` from the program's own table, as are `kage --help` and the manual page kage(1). "
+             "A value follows its option as the next word, or after an equals sign; after `--` no word is an option.")
+    out = ["# The program kage", "", *textwrap.wrap(f"{about} {FROM_STDIN}", 118), ""]
     for command in table["commands"]:
         out += [f"## kage {command['name']}", "", f"    {synopsis(command)}", "",
                 *textwrap.wrap(command["text"][0].upper() + command["text"][1:] + ".", 118), ""]

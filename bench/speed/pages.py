@@ -6,6 +6,7 @@ import html
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
+from bench.data import BUMP_ONLY
 from bench.readme import generated, table
 from bench.speed.plan import GIB, PARTS
 from bench.speed.rounds import Job, Results
@@ -75,13 +76,18 @@ PEERS = (
 )
 
 
+def shown(name: str) -> str:
+    """A measurement's name, as a reader should see it."""
+    return name.replace("kage none", f"kage {BUMP_ONLY}")
+
+
 def peers_table(results: Results) -> Table:
     """In times kage's time, round by round; those that were not measured are left out."""
     rows = []
     for peer, own, figure in PEERS:
         found = results.ratio(f"{peer}: {figure}", f"{own}: {figure}")
         if found:
-            rows.append((peer, FIGURES[figure][0], own.removesuffix(", whole"), scaled(found, 1)))
+            rows.append((peer, FIGURES[figure][0], shown(own).removesuffix(", whole"), scaled(found, 1)))
     return Table("Peers", ("peer", "what", "kage's", "times kage's time"), rows)
 
 
@@ -93,7 +99,7 @@ def figure_table(part: str, jobs: Sequence[Job], results: Results) -> Table:
             found = results.interval(key)
             if name == job.name and found:
                 what, unit, by = FIGURES.get(figure, (figure, "ns a pixel", 1))
-                rows.append((job.name, what, scaled(found, by), unit, str(len(values))))
+                rows.append((shown(job.name), what, scaled(found, by), unit, str(len(values))))
     return Table(part, ("", "what", "median (interval)", "unit", "rounds"), rows)
 
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from bench import programs
+from bench.data import BUMP_ONLY, label
 from bench.programs import Size
 from bench.speed import inputs
 
@@ -86,10 +87,12 @@ EXR_BYTES = 34.9  # a pixel of figure 5's scene at that size, all layers, by zli
 
 
 def trace_bounds() -> list[Bound]:
-    found = [Bound("trace", f"{method} over the fused loop", f"kage {method}: ns", f"fused: {method}", 1.15, "times")
+    found = [Bound("trace", f"{label(method)} over the fused loop", f"kage {method}: ns", f"fused: {method}", 1.15,
+                   "times")
              for method in ("none", "0")]
     for method, limit in (("1", 1.05), ("2", 1.12), ("march:4", 1.6), ("march:8", 2.1)):
-        found.append(Bound("trace", f"{method} over none", f"kage {method}: ns", "kage none: ns", limit, "times"))
+        found.append(Bound("trace", f"{method} over {BUMP_ONLY}", f"kage {method}: ns", "kage none: ns", limit,
+                           "times"))
     return [*found, Bound("trace", "order 0: one thread over two", "kage 0: ns", "kage 0, 2 threads: ns", 1.9, "times",
                           at_least=True)]
 

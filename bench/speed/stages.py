@@ -16,6 +16,7 @@ from pathlib import Path
 
 from bench import callgrind, programs
 from bench.callgrind import Counts
+from bench.data import label
 from bench.programs import MeasureError, Word
 from bench.speed import inputs, parts
 from bench.speed.plan import About
@@ -48,7 +49,7 @@ class Scene:
 
 def scenes(about: About) -> dict[str, list[Word]]:
     """Each with its command, without the size."""
-    found: dict[str, list[Word]] = {f"figure 5's scene by {method}": [parts.CUBE, "--shadow", method]
+    found: dict[str, list[Word]] = {f"figure 5's scene by {label(method)}": [parts.CUBE, "--shadow", method]
                                     for method in ("none", "0", "2", "march:8")}
     found["terrain by auto"] = ["scenes/terrain.yaml", "--shadow", "auto"]
     found["mesh"] = [inputs.mesh_scene(about.inputs, about.level.quads)]

@@ -255,6 +255,8 @@ class Probe:
     rows: tuple[ProbeRow, ...]
     #: the material has secondary rays, whose light is in no row
     sends: bool
+    #: P, n' or the surface has no value here: P is 0, n' is n, and no method shifts
+    undefined: int
 
 
 @dataclass(frozen=True, eq=False)
@@ -273,6 +275,8 @@ class BumpSurvey:
     step_slope: float
     #: of the samples from the eye, in the median
     distance: float
+    #: P has no value there, in per cent of the samples; slopes and fell_back are of the others
+    undefined: float
 
 
 @dataclass(frozen=True, eq=False)

@@ -137,8 +137,8 @@ static bool make_wishes(wishes *w, const char *model, const char *file, const ch
 
 static bool has_bytes(const char *path, const void *bytes, size_t size)
 {
-    struct stat about; /* a pipe would be waited for */
-    FILE *f = stat(path, &about) == 0 && S_ISREG(about.st_mode) ? fopen(path, "rb") : NULL;
+    const char *why;
+    FILE *f = files_open_input(path, &why);
     char *there = f ? malloc(size + 1) : NULL;
     const bool same = there && fread(there, 1, size + 1, f) == size && memcmp(there, bytes, size) == 0;
     free(there);

@@ -34,10 +34,22 @@ static bool keep(kage_scene *k, const kage_scene *before, const char *folder, co
     return good && k->set && (!before || arrays_add_all(&k->arrays, &before->arrays)) && arrays_take(&k->arrays, o, m);
 }
 
+/* A callback of progress may call the library with the scene that is read again. */
+static bool init_lock(pthread_mutex_t *lock)
+{
+    pthread_mutexattr_t again;
+    if (pthread_mutexattr_init(&again) != 0)
+        return false;
+    const bool good =
+        pthread_mutexattr_settype(&again, PTHREAD_MUTEX_RECURSIVE) == 0 && pthread_mutex_init(lock, &again) == 0;
+    pthread_mutexattr_destroy(&again);
+    return good;
+}
+
 static kage_scene *new_scene(const kage_scene *before, const kage_limits *limits)
 {
     kage_scene *k = calloc(1, sizeof *k);
-    if (!k || pthread_mutex_init(&k->lock, NULL) != 0) {
+    if (!k || !init_lock(&k->lock)) {
         free(k);
         return NULL;
     }
@@ -228,7 +240,11 @@ const scene *scene_reading(kage_scene *k, reading r, const progress *p, errors *
         return s;
     pthread_mutex_lock(&k->lock);
     s = __atomic_load_n(at, __ATOMIC_ACQUIRE);
-    if (!s && (s = read_again(k, r, p, e)))
+    scene *made = s ? NULL : read_again(k, r, p, e);
+    s = __atomic_load_n(at, __ATOMIC_ACQUIRE);
+    if (s) /* a call by the callback of this one was sooner */
+        scene_free(made);
+    else if ((s = made))
         __atomic_store_n(at, s, __ATOMIC_RELEASE);
     pthread_mutex_unlock(&k->lock);
     return s;

@@ -4,6 +4,7 @@
 #define KAGE_BASE_FILES_H
 
 #include <stdbool.h>
+#include <stdio.h>
 #include <sys/stat.h>
 #include <sys/types.h>
 
@@ -17,6 +18,10 @@ typedef struct files {
     file_id *id; /* owned */
     int count;
 } files;
+
+/* Open an input to read it. A pipe would be waited for, a device may have no end: what is no regular file is not
+ * opened. NULL, with a reason in *why. */
+FILE *files_open_input(const char *path, const char **why);
 
 static inline file_id file_id_of(const struct stat *about) { return (file_id){about->st_dev, about->st_ino}; }
 

@@ -100,6 +100,9 @@ int print_errors(kage_errors *e, int status);
 /* Print `kage: ` and a message on stderr. Returns false. */
 bool usage_error(const char *fmt, ...) CLI_PRINTF(1, 2);
 
+/* The same of what is no mistake. */
+void tell(const char *fmt, ...) CLI_PRINTF(1, 2);
+
 /* Remove what killed processes have left in the folder of an output, and say so. */
 void tidy(const arguments *a, const char *output);
 
@@ -138,6 +141,10 @@ void stop_outcome(const char *fmt, ...) CLI_PRINTF(1, 2);
 
 /* End, if that was asked for. */
 void stop_end(void);
+
+/* Print a message on stderr. On a terminal its first line is broken to the terminal's width; those below show a place
+ * of a file, and stay. Elsewhere it is one line, for editors and scripts. */
+void print_message(const char *message);
 
 /* ---- progress_bar.c ---- */
 

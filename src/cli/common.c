@@ -8,15 +8,41 @@
 #include <string.h>
 #include <strings.h>
 
+static void print_text(const char *fmt, va_list args) CLI_PRINTF(1, 0);
+static void print_text(const char *fmt, va_list args)
+{
+    va_list again;
+    va_copy(again, args);
+    const int n = vsnprintf(NULL, 0, fmt, args);
+    char *text = n < 0 ? NULL : malloc((size_t)n + sizeof "kage: ");
+    if (text) {
+        memcpy(text, "kage: ", sizeof "kage: ");
+        vsnprintf(text + strlen(text), (size_t)n + 1, fmt, again);
+        print_message(text);
+    } else {
+        fputs("kage: ", stderr);
+        vfprintf(stderr, fmt, again);
+        fputs("\n", stderr);
+    }
+    va_end(again);
+    free(text);
+}
+
 bool usage_error(const char *fmt, ...)
 {
     va_list args;
     va_start(args, fmt);
-    fputs("kage: ", stderr);
-    vfprintf(stderr, fmt, args);
-    fputs("\n", stderr);
+    print_text(fmt, args);
     va_end(args);
     return false;
+}
+
+void tell(const char *fmt, ...)
+{
+    va_list args;
+    va_start(args, fmt);
+    print_text(fmt, args);
+    va_end(args);
 }
 
 const char *base_name(const char *path)
@@ -29,7 +55,7 @@ int print_errors(kage_errors *e, int status)
 {
     const int found = kage_errors_found(e), count = kage_errors_count(e);
     for (int k = 0; k < count; k++)
-        fprintf(stderr, "%s\n", kage_errors_get(e, k)->message);
+        print_message(kage_errors_get(e, k)->message);
     if (status == EXIT_INPUT && found > 1)
         fprintf(stderr, "%d errors%s\n", found, found > count ? ", the first of them above" : "");
     kage_errors_free(e);
@@ -42,8 +68,8 @@ static void print_flat(const kage_scene_info *s)
     for (int k = 0; k < s->object_count; k++) {
         const kage_model_info *m = s->objects[k].model;
         if (m && m->flat)
-            fprintf(stderr, "kage: object %s: %d of the %d triangles in %s have no area; they are left out\n",
-                    s->objects[k].name, m->flat, m->triangles + m->flat, m->file);
+            tell("object %s: %d of the %d triangles in %s have no area; they are left out", s->objects[k].name, m->flat,
+                 m->triangles + m->flat, m->file);
     }
 }
 

@@ -8,7 +8,7 @@ static void print_report(const arguments *a, const kage_import_report *r)
 {
     const kage_scene_info *s = kage_scene_get_info(r->scene);
     for (int k = 0; k < r->note_count; k++)
-        fprintf(stderr, "kage: %s\n", r->notes[k]);
+        tell("%s", r->notes[k]);
     if (a->quiet)
         return;
     for (int k = 0; k < r->file_count; k++)
@@ -24,12 +24,10 @@ static void print_steps(const kage_scene *scene, const kage_survey *v)
     for (int k = 0; k < v->warning_count; k++) {
         const kage_warning *w = &v->warnings[k];
         if (w->code == KAGE_WARN_STEPS)
-            fprintf(
-                stderr,
-                "kage: object %s: the map %s has %d bits: its steps of %.3g scene units are seen as stairs, slopes of "
-                "%.3f beside its own of %.3f; use a map of 16 bits, or smooth=2\n",
-                o[w->object].name, o[w->object].map, o[w->object].map_bits, v->objects[w->object].step, w->value,
-                v->objects[w->object].slope_median);
+            tell("object %s: the map %s has %d bits: its steps of %.3g scene units are seen as stairs, slopes of %.3f "
+                 "beside its own of %.3f; use a map of 16 bits, or smooth=2",
+                 o[w->object].name, o[w->object].map, o[w->object].map_bits, v->objects[w->object].step, w->value,
+                 v->objects[w->object].slope_median);
     }
 }
 

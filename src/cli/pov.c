@@ -43,10 +43,8 @@ static int write_scene(kage_scene *s, const arguments *a)
     if (status != KAGE_OK)
         return print_errors(e, status == KAGE_BAD_INPUT ? EXIT_INPUT : EXIT_OUTPUT);
     if (r.coarse)
-        fprintf(stderr,
-                "kage: object %s: coarse mesh: heights are off by up to %.3g, %.3g pixels; a finer one has too many "
-                "triangles\n",
-                r.coarse, r.height, r.pixels);
+        tell("object %s: coarse mesh: heights are off by up to %.3g, %.3g pixels; a finer one has too many triangles",
+             r.coarse, r.height, r.pixels);
     return 0;
 }
 

@@ -19,11 +19,23 @@ void progress_bar_start(progress_bar *p, bool quiet, const char *name, long pixe
     p->shown = p->start;
 }
 
+/* In one line of the terminal, with a shorter bar where it is narrow. */
+static void draw(progress_bar *p, double share, const char *tail)
+{
+    enum { WIDTH = 30, LEAST = 4, NAME = 24 };
+    char bar[WIDTH + 1] = "", line[160];
+    const int around = snprintf(line, sizeof line, "%.*s [] %3.0f %%  %s ", NAME, p->name, 100 * share, tail);
+    const int room = terminal_columns(stderr) - 1 - around, width = room < LEAST ? LEAST : room < WIDTH ? room : WIDTH;
+    for (int k = 0; k < width; k++)
+        bar[k] = k < (int)(share * width) ? '#' : '.';
+    fprintf(stderr, "\r%.*s [%s] %3.0f %%  %s \033[K", NAME, p->name, bar, 100 * share, tail);
+    p->drawn = true;
+}
+
 int progress_bar_show(void *user, const char *what, double share)
 {
-    enum { WIDTH = 30 };
     progress_bar *p = user;
-    char bar[WIDTH + 1] = "", rate[64];
+    char rate[64];
     stop_note(what, share);
     if (stop_asked())
         return 1;
@@ -40,13 +52,10 @@ int progress_bar_show(void *user, const char *what, double share)
     if (now - p->shown < 0.1 && (p->pixels || !first))
         return 0;
     p->shown = now;
-    for (int k = 0; k < WIDTH; k++)
-        bar[k] = k < (int)(share * WIDTH) ? '#' : '.';
+    const bool rated = p->pixels && done > 0 && strcmp(what, "rendering") == 0;
     snprintf(rate, sizeof rate, "%.1f Mpixel/s  %.1f s left", done * (double)p->pixels / gone / 1e6,
              gone / done * (1 - share));
-    const bool rated = p->pixels && done > 0 && strcmp(what, "rendering") == 0;
-    p->drawn = true;
-    fprintf(stderr, "\r%.24s [%s] %3.0f %%  %s \033[K", p->name, bar, 100 * share, rated ? rate : what);
+    draw(p, share, rated ? rate : what);
     return 0;
 }
 

@@ -42,3 +42,17 @@ void print_wrapped(FILE *to, int at, int indent, int width, const char *text)
     }
     fputs("\n", to);
 }
+
+void print_message(const char *message)
+{
+    enum { INDENT = 4, LONGEST = 4096 };
+    char first[LONGEST];
+    const size_t n = strcspn(message, "\n");
+    snprintf(first, sizeof first, "%.*s", (int)n, message);
+    if (n < sizeof first)
+        print_wrapped(stderr, 0, INDENT, terminal_columns(stderr), first);
+    else
+        fprintf(stderr, "%.*s\n", (int)n, message);
+    if (message[n])
+        fprintf(stderr, "%s\n", message + n + 1);
+}

@@ -115,7 +115,7 @@ exr_band *exr_band_open(const char *path, errors *e)
         return NULL;
     }
     b->path = path;
-    b->reader = (exr_reader){open(path, O_RDONLY | O_CLOEXEC), b->why};
+    b->reader = (exr_reader){open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC), b->why};
     if (b->reader.fd < 0 || fstat(b->reader.fd, &st) != 0)
         image_refuse(b->why, "%s", strerror(errno));
     else if (!S_ISREG(st.st_mode))

@@ -309,6 +309,12 @@ static void decode_all(int fd, const exr_plan *p, int threads, exr_failure *bad)
 #pragma omp for schedule(dynamic)
         for (int k = 0; k < p->chunks; k++) {
             int first;
+            if (is_callers_thread() && !image_goes_on(p->to, (int)((double)k / p->chunks * p->to->height), why))
+#pragma omp critical
+            {
+                bad->chunk = -1;
+                memcpy(bad->why, why, sizeof why);
+            }
 #pragma omp critical
             first = bad->chunk;
             if (k < first && !(ready && decode_numbered(&w, k)))

@@ -103,6 +103,11 @@ const char *image_refuse_form(const image_form *form)
 
 int image_writer_rows(const image_writer *w) { return w->rows; }
 
+bool image_goes_on(const image_stream *s, int rows, char *why)
+{
+    return progress_show(s->progress, "reading", (double)rows / s->height) || image_refuse(why, "cancelled");
+}
+
 bool image_writer_add(image_writer *w, int rows, const float *const *plane, const progress *p)
 {
     w->failed = w->failed || !w->add(w, rows, plane, p);

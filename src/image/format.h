@@ -43,6 +43,9 @@ bool image_begin(image_stream *s, int64_t width, int64_t height, char *why);
  * reason: a value is NaN or infinite. */
 bool image_pass(const image_stream *s, int x, int y, int n, const float *v, float range[2], char *why);
 
+/* Show how many rows are decoded. False, with a reason: the caller has ended the reading. */
+bool image_goes_on(const image_stream *s, int rows, char *why);
+
 /* Whole numbers as samples, 0..1. */
 static inline float image_of_u8(int x) { return (float)x / 255.0f; }
 static inline float image_of_u16(int x) { return (float)x / 65535.0f; }

@@ -36,5 +36,6 @@ bool grey_found(const grey_colours *c, char *why)
     return is_normal_map(c)
                ? image_refuse(why, "the PNG is a normal map, which has slopes but no heights; a grey height map is "
                                    "expected, and docs/models.md tells how to make one")
-               : image_refuse(why, "the PNG is in colour; a grey one is expected, of 8 or 16 bits");
+               : image_refuse(why, "the PNG is in colour; a grey one is expected, of 8 or 16 bits: save it in grey, if "
+                                   "bright means high");
 }

@@ -7,6 +7,8 @@
 #include <string.h>
 
 #include "base/file_writer.h"
+
+#include "base/files.h"
 #include "base/real.h"
 #include "base/threads.h"
 #include "image/format.h"
@@ -166,12 +168,14 @@ static bool read_rows(png_job *job, int passes, int threads)
     if (!job->packed || !job->row)
         return image_refuse_memory(job->to, job->why);
     if (relayed && relay_begin(job)) {
-        for (int y = 0; y < height; y += RELAYED)
+        for (int y = 0; y < height && image_goes_on(job->to, y, job->why); y += RELAYED)
             relay_rows(job, y, height - y < RELAYED ? height - y : RELAYED, y / RELAYED % 2);
-        return true;
+        return !*job->why;
     }
     for (int pass = 1; pass <= passes; pass++)
         for (int y = 0; y < height; y++) {
+            if (y % IMAGE_ROWS == 0 && !image_goes_on(job->to, y, job->why))
+                return false;
             unsigned char *row = job->packed + (passes > 1 ? (size_t)y * job->row_bytes : 0);
             png_read_row(job->png, row, NULL);
             if (pass == passes)
@@ -281,7 +285,8 @@ bool image_png_is_from(const char *path, const char *program)
 {
     char why[IMAGE_WHY] = "";
     png_job job = {.why = why};
-    FILE *file = fopen(path, "rb");
+    const char *reason;
+    FILE *file = files_open_input(path, &reason);
     if (!file)
         return false;
     const char *text = software(&job, file);

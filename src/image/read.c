@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/files.h"
 #include "image/srgb.h"
 
 static bool read_any(FILE *file, const char *channel, int threads, image_stream *to, bool *is_exr, char *why)
@@ -32,9 +33,10 @@ static bool read_any(FILE *file, const char *channel, int threads, image_stream 
 
 static bool read_file(const char *path, const char *channel, int threads, image_stream *to, bool *is_exr, errors *e)
 {
-    FILE *file = fopen(path, "rb");
+    const char *reason;
+    FILE *file = files_open_input(path, &reason);
     if (!file)
-        return errors_add(e, "%s", strerror(errno));
+        return errors_add(e, "%s", reason);
     char why[IMAGE_WHY] = "";
     bool ok = read_any(file, channel, threads, to, is_exr, why);
     fclose(file);
@@ -44,7 +46,8 @@ static bool read_file(const char *path, const char *channel, int threads, image_
 int image_png_bits(const char *path)
 {
     unsigned char head[25]; /* the signature, then the chunk IHDR: its size, its name, the image's size, the bits */
-    FILE *file = fopen(path, "rb");
+    const char *why;
+    FILE *file = files_open_input(path, &why);
     const bool good = file && fread(head, 1, sizeof head, file) == sizeof head && memcmp(head + 1, "PNG", 3) == 0 &&
                       memcmp(head + 12, "IHDR", 4) == 0;
     if (file)

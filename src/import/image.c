@@ -3,6 +3,8 @@
  */
 #include "import/scene.h"
 
+#include "base/files.h"
+
 #include "import/picture.h"
 
 #include <stdio.h>
@@ -55,8 +57,8 @@ static char *join(const char *a, size_t n, const char *b)
 static unsigned char *read_whole(const char *path, size_t *size)
 {
     enum { MOST = 1 << 29 };
-    struct stat about; /* a pipe would be waited for */
-    FILE *f = stat(path, &about) == 0 && S_ISREG(about.st_mode) ? fopen(path, "rb") : NULL;
+    const char *why;
+    FILE *f = files_open_input(path, &why);
     long n = f && fseek(f, 0, SEEK_END) == 0 ? ftell(f) : -1;
     unsigned char *bytes = n > 0 && n < MOST && fseek(f, 0, SEEK_SET) == 0 ? malloc((size_t)n) : NULL;
     if (bytes && fread(bytes, 1, (size_t)n, f) != (size_t)n) {

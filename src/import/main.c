@@ -7,9 +7,11 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -134,6 +136,7 @@ int main(int argc, char **argv)
         fputs("kage-import: a part of libkage, which starts it to read a model\n", stderr);
         return 2;
     }
+    prctl(PR_SET_PDEATHSIG, SIGKILL); /* nobody waits for what it does when the caller is killed */
     confine(stat(argv[1], &about) == 0 ? (size_t)about.st_size : 0, scene);
     if (scene)
         send_scene(argv[1], argc - 2, argv + 2, &to, &l);

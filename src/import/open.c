@@ -3,6 +3,8 @@
  */
 #include "import/open.h"
 
+#include "base/files.h"
+
 #include <assimp/cfileio.h>
 #include <assimp/cimport.h>
 #include <assimp/config.h>
@@ -93,7 +95,8 @@ static struct aiFile *open_one(struct aiFileIO *io, const char *path, const char
 {
     reading *of = (reading *)(void *)io->UserData;
     const bool may = of->buffers || strcmp(path, of->path) == 0 || (of->materials && import_ends_with(path, ".mtl"));
-    FILE *f = mode[0] == 'r' && may ? fopen(path, "rb") : NULL;
+    const char *why;
+    FILE *f = mode[0] == 'r' && may ? files_open_input(path, &why) : NULL;
     source *s = f && report_file(f, of->to) ? malloc(sizeof *s) : NULL;
     if (!s) {
         if (f)

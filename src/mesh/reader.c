@@ -5,9 +5,12 @@
 
 #include "mesh/reader.h"
 
+#include "base/files.h"
+
 #include <dlfcn.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <poll.h>
 #include <signal.h>
 #include <spawn.h>
 #include <stdio.h>
@@ -16,6 +19,7 @@
 #include <strings.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
 
 #ifndef KAGE_LIBEXEC
@@ -25,6 +29,7 @@
 enum {
     MOST_MIB = 1024, /* of a file: no model of MESH_MOST triangles is larger */
     PATH_SIZE = 4096,
+    PATIENCE = 10, /* the limit of its time by the clock, in those of its processor time */
 };
 
 /* ---- where kage-import is ---- */
@@ -79,10 +84,47 @@ static bool find_reader(const char *asked, char path[PATH_SIZE], char why[MESH_W
 
 /* ---- its letters ---- */
 
-static bool receive(int from, void *to, size_t size)
+static double seconds_now(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static bool stop_waiting(reader_pipe *p, const char *why)
+{
+    p->stopped = true;
+    return reader_fails(p, why);
+}
+
+/* Wait until there is something to read. Its processor time is limited, but a program may also sleep, or wait for a
+ * file. False: the time is over, or the caller has ended the call. */
+static bool wait_for_bytes(reader_pipe *p)
+{
+    const double between = 0.02; /* seconds */
+    struct pollfd ready = {.fd = p->from, .events = POLLIN};
+    for (int n = 0; n <= 0;) {
+        n = poll(&ready, 1, (int)(1e3 * between));
+        if (n < 0 && errno != EINTR)
+            return stop_waiting(p, strerror(errno));
+        const double now = seconds_now();
+        if (n <= 0 && now > p->end)
+            return stop_waiting(p, "its reader waits for too long, expected a file that can be read at once");
+        if (now - p->asked < between)
+            continue;
+        p->asked = now;
+        if (!progress_show(p->show, p->share < 1 ? "reading" : "unpacking", p->share))
+            return stop_waiting(p, "cancelled");
+    }
+    return true;
+}
+
+static bool receive(reader_pipe *p, void *to, size_t size)
 {
     for (char *at = to; size > 0;) {
-        const ssize_t n = read(from, at, size);
+        if (!wait_for_bytes(p))
+            return false;
+        const ssize_t n = read(p->from, at, size);
         if (n == 0 || (n < 0 && errno != EINTR))
             return false;
         at += n > 0 ? n : 0;
@@ -93,7 +135,7 @@ static bool receive(int from, void *to, size_t size)
 
 bool reader_receive(reader_pipe *p, void *to, size_t size)
 {
-    return receive(p->from, to, size) || reader_fails(p, "its reader ended too soon");
+    return receive(p, to, size) || (!p->stopped && reader_fails(p, "its reader ended too soon"));
 }
 
 bool reader_fails(reader_pipe *p, const char *why)
@@ -105,9 +147,9 @@ bool reader_fails(reader_pipe *p, const char *why)
 
 /* The next letter. The program has read a file that may have broken it, so what it sends need not make sense. False:
  * there is none that does. */
-static bool receive_letter(int from, letter *l)
+static bool receive_letter(reader_pipe *p, letter *l)
 {
-    return receive(from, l, sizeof *l) && l->magic == LETTER_MAGIC && l->is >= LETTER_OPENED && l->is <= LETTER_DONE &&
+    return receive(p, l, sizeof *l) && l->magic == LETTER_MAGIC && l->is >= LETTER_OPENED && l->is <= LETTER_DONE &&
            memchr(l->why, 0, sizeof l->why) && l->share >= 0 && l->share <= 1;
 }
 
@@ -116,11 +158,12 @@ static bool receive_all(const reader_call *c, reader_pipe *p)
 {
     letter *l = &p->letter;
     bool good;
-    while ((good = receive_letter(p->from, l)) && l->is != LETTER_WRONG) {
+    while ((good = receive_letter(p, l)) && l->is != LETTER_WRONG) {
         if (l->is == LETTER_OPENED) {
             if (!files_add(c->opened, l->opened))
                 return reader_fails(p, "out of memory");
         } else if (l->is == LETTER_READ) {
+            p->share = l->share;
             if (!progress_show(c->show, l->share < 1 ? "reading" : "unpacking", l->share))
                 return reader_fails(p, "cancelled");
         } else if (!c->take(c->user, p))
@@ -128,7 +171,7 @@ static bool receive_all(const reader_call *c, reader_pipe *p)
         else if (l->is == LETTER_DONE)
             return true;
     }
-    l->is = good ? LETTER_WRONG : LETTER_READ;
+    l->is = good || p->stopped ? LETTER_WRONG : LETTER_READ;
     return false;
 }
 
@@ -148,16 +191,15 @@ static bool can_open(const char *path, size_t *size, char why[MESH_WHY])
     bool known = false;
     for (size_t k = 0; dot && k < sizeof ends / sizeof *ends; k++)
         known |= strcasecmp(dot, ends[k]) == 0;
-    FILE *f = fopen(path, "rb");
+    const char *reason;
+    FILE *f = files_open_input(path, &reason);
     struct stat about;
     if (!f || fstat(fileno(f), &about) != 0)
-        snprintf(why, MESH_WHY, "%s", strerror(errno));
+        snprintf(why, MESH_WHY, "%s", f ? strerror(errno) : reason);
     else if (!known)
         snprintf(why, MESH_WHY,
                  "no known kind of model, expected a name that ends in .obj, .ply, .stl, .gltf, .glb, .off, .dae, "
                  ".fbx or .3ds");
-    else if (!S_ISREG(about.st_mode))
-        snprintf(why, MESH_WHY, "no regular file");
     else if (about.st_size == 0)
         snprintf(why, MESH_WHY, "the file is empty");
     else if ((size_t)about.st_size > MOST_MIB * MIB)
@@ -227,7 +269,12 @@ static bool run(const reader_call *c, char **argv, int seconds, char why[MESH_WH
     }
     fcntl(ends[0], F_SETPIPE_SZ, (int)MIB); /* a wish: 16 times fewer turns between the two programs */
     argv[0] = program;
-    reader_pipe p = {.from = ends[0], .letter = {.is = LETTER_READ}};
+    const double now = seconds_now();
+    reader_pipe p = {.from = ends[0],
+                     .letter = {.is = LETTER_READ},
+                     .show = c->show,
+                     .end = now + (double)PATIENCE * seconds,
+                     .asked = now};
     const int error = start(program, argv, ends[1], &pid);
     close(ends[1]);
     const bool good = !error && receive_all(c, &p);

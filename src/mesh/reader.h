@@ -8,6 +8,10 @@
 typedef struct reader_pipe {
     int from;
     letter letter;
+    const progress *show;
+    bool stopped;      /* waiting for it has ended; the letter says why */
+    double share;      /* of the file, that is read */
+    double end, asked; /* by the monotonic clock: when the time is over, and when `show` was last asked */
 } reader_pipe;
 
 typedef struct reader_call {

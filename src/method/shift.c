@@ -142,6 +142,9 @@ void shift_known(hit_group *g)
                 shift_undefined(g, i);
                 drop(g, i);
             }
+    for (int i = 0; g->bump.undefined && i < g->n; i++)
+        if (g->bump.none[i])
+            drop(g, i);
 }
 
 /* One lane. `order` is constant in each loop below, so derivatives that it does not use are not loaded. */

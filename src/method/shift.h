@@ -17,10 +17,12 @@ void shift_normals(hit_group *g, const bump *bump);
  * often P was evaluated. */
 long shift_group(hit_group *g, const bump *bump, method m, bool guard);
 
-/* Where tau has no value, as for a ray along the surface, it becomes 0, by order none, and the lane is counted. */
+/* Where P or tau has no value (for a ray along the surface tau has none), tau becomes 0, by order none. The lane is
+ * counted. */
 void shift_known(hit_group *g);
 
-/* For secondary rays: tau >= -t, so that the shifted place is not before the ray's start. */
+/* tau >= -t, so that the shifted place is not before the ray's start: an eye can be inside the slab of P, and secondary
+ * rays start there. */
 void shift_within(hit_group *g);
 
 /* g->t0 = t_hit + tau. */

@@ -1,6 +1,8 @@
 /* Reads files of Bezier patches; errors have line and column. */
 #include "patch/patch_file.h"
 
+#include "base/files.h"
+
 #include "yaml/text.h"
 
 #include <errno.h>
@@ -12,13 +14,15 @@ enum { MAX_BYTES = 1 << 22, COUNT_MAX = PATCHES_MAX * 16 * 3, SHOWN = 40 };
 
 static char *read_all(const char *path, const char *name, errors *e)
 {
-    FILE *f = fopen(path, "rb");
+    const char *why;
+    FILE *f = files_open_input(path, &why);
     char *text = f ? malloc(MAX_BYTES + 2) : NULL;
     size_t n = 0;
-    errno = f ? 0 : errno;
+    errno = 0;
     if (text)
         n = fread(text, 1, MAX_BYTES + 1, f);
-    const char *why = text && !ferror(f) ? NULL : strerror(errno ? errno : ENOMEM);
+    if (f && (!text || ferror(f)))
+        why = strerror(errno ? errno : ENOMEM);
     if (f)
         fclose(f);
     if (!why && n > MAX_BYTES)

@@ -1,6 +1,8 @@
 /* Reads a list of points, of either kind. */
 #include "points/parts.h"
 
+#include "base/files.h"
+
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -18,15 +20,11 @@ bool points_error(const points *p, const char *name, int32_t row, const char *me
 
 static char *read_all(const char *path, const char *name, memory *m, size_t *size, errors *e)
 {
-    struct stat about;
-    if (stat(path, &about) == 0 && !S_ISREG(about.st_mode)) { /* a pipe could wait forever, a device never end */
-        errors_add(e, "%s: can't read the list: no regular file", name);
-        return NULL;
-    }
-    FILE *f = fopen(path, "rb");
+    const char *reason;
+    FILE *f = files_open_input(path, &reason);
     char *text = NULL;
     size_t n = 0, room = 0;
-    errno = f ? 0 : errno;
+    errno = 0;
     while (f && !ferror(f) && !feof(f)) {
         if (n + 1 >= room) {
             char *more = memory_resize(m, text, room = room ? 2 * room : 1 << 16);
@@ -37,8 +35,7 @@ static char *read_all(const char *path, const char *name, memory *m, size_t *siz
         n += fread(text + n, 1, room - n - 1, f);
     }
     char words[MEMORY_WORDS];
-    const bool failed = !f || ferror(f);
-    const char *why = failed ? strerror(errno ? errno : EIO) : feof(f) ? NULL : memory_words(m, words);
+    const char *why = !f ? reason : ferror(f) ? strerror(errno ? errno : EIO) : feof(f) ? NULL : memory_words(m, words);
     if (f)
         fclose(f);
     if (why) {

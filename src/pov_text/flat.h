@@ -39,4 +39,7 @@ void pov_levels(const object *o, double y[2]);
  * cast shadows there. (region.c) */
 void pov_plane_region(const scene *s, const object *o, double u[2], double w[2]);
 
+/* Whether the object is a plane without ends whose horizon is in the picture. (region.c) */
+bool pov_has_horizon(const scene *s, const object *o);
+
 #endif

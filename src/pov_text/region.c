@@ -112,3 +112,21 @@ void pov_plane_region(const scene *s, const object *o, double u[2], double w[2])
     w[0] = r.w[0] - margin_w;
     w[1] = r.w[1] + margin_w;
 }
+
+/* Some corners look down on the plane and some up: how far a ray falls is linear over the picture. */
+bool pov_has_horizon(const scene *s, const object *o)
+{
+    const camera *c = &s->camera;
+    double u[2], w[2], least = HUGE_VAL, most = -HUGE_VAL;
+    o->shape->ops->extent(o->shape, 0, u, w);
+    if (u[1] < HUGE_VAL || c->orthographic)
+        return false;
+    const pov_flat f = pov_flat_of(o, 0);
+    for (int k = 0; k < 4; k++) {
+        const vec3 off = vec3_add(vec3_scale(c->right, k & 1 ? 1 : -1), vec3_scale(c->up, k & 2 ? 1 : -1));
+        const double rises = vec3_dot(f.y, vec3_add(c->forward, off));
+        least = fmin(least, rises);
+        most = fmax(most, rises);
+    }
+    return least <= 0 && most >= 0;
+}

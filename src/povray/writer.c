@@ -1,4 +1,5 @@
 /* The POV-Ray file as a whole: camera, lights, materials, and each object by the file that can write it. */
+#include "pov_text/flat.h"
 #include "povray/parts.h"
 
 #include <stdio.h>
@@ -83,7 +84,8 @@ static bool put_displaced(pov_text *t, const scene *s, const pov_options *how, i
     double gradient = 0;
     for (int part = 0; part < o->shape->ops->parts; part++)
         gradient = fmax(gradient, pov_isosurface_gradient(o, part));
-    if (gradient < HUGE_VAL && pov_function(t, o, P.text)) {
+    /* toward a horizon POV-Ray's isosurface lets light through */
+    if (gradient < HUGE_VAL && !pov_has_horizon(s, o) && pov_function(t, o, P.text)) {
         pov_isosurface(t, s, o, P.text);
         return true;
     }

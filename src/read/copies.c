@@ -229,7 +229,7 @@ static void make_crowd(reader *r, node *at, int i, const surface *from, const bo
     if (list.n == 0)
         return;
     if (list.n > crowd_most(parts)) {
-        yaml_error(r->y, at, "%d copies of a surface of %d parts, expected at most %d of it", (int)list.n, (int)parts,
+        yaml_error(r->y, at, "%d copies of a surface of %d parts, expected at most %d copies", (int)list.n, (int)parts,
                    (int)crowd_most(parts));
         return;
     }
@@ -274,7 +274,7 @@ static bool can_be_copied(reader *r, node *at, const object *o, const surface *f
     double lo[3], hi[3];
     from->ops->box(from, lo, hi);
     if (!(hi[0] - lo[0] < HUGE_VAL && hi[1] - lo[1] < HUGE_VAL && hi[2] - lo[2] < HUGE_VAL))
-        return yaml_error(r->y, at, "a %s has no end, expected copies of an object that has", from->ops->kind);
+        return yaml_error(r->y, at, "a %s has no end, expected copies of an object that has one", from->ops->kind);
     if (o->bump && scene_wants_truth(r->s))
         return yaml_error(r->y, at,
                           "a list of copies with a bump can't be displaced, expected objects with 'copy' for %s",

@@ -53,7 +53,7 @@ static void read_area(reader *r, node *at, light *l)
     good = reader_vector(r, at, "w", "the other side of the area, [x, y, z]", &l->w) && good;
     reader_counts(r, at, "samples", LIGHT_MAX_SIDE, "how many samples [along u, along w], 1 to 64 each", l->samples);
     if (good && l->kind == LIGHT_PARALLEL)
-        yaml_error(r->y, at, "an area of a parallel light, expected a point light or a spot");
+        yaml_error(r->y, at, "a parallel light has no area, expected 'area' only in a point light or a spot");
 }
 
 static void read_light(reader *r, node *v, light *l)

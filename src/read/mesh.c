@@ -62,8 +62,9 @@ static bool read_triangles(reader *r, const model *m, mesh_data *d)
     d->part = NULL;
     if (!good)
         return yaml_error(r->y, m->part ? m->part : m->file, "'%s' can't be used: %s", m->from.name, why);
-    return is_large(d) || yaml_error(r->y, m->file, "'%s' can't be used: it is smaller than %g, expected some size",
-                                     m->from.name, SMALL);
+    return is_large(d) ||
+           yaml_error(r->y, m->file, "'%s' can't be used: the model is smaller than %g, expected some size",
+                      m->from.name, SMALL);
 }
 
 /* A glTF may have its numbers in other files, which may have changed. */

@@ -1,6 +1,8 @@
 /* Surfaces without closed forms: three functions of u and w, and Bezier patches. */
 #include "read/parts.h"
 
+#include "base/files.h"
+
 #include "patch/patch_file.h"
 #include "patch/surface.h"
 
@@ -162,12 +164,13 @@ static vec3 *read_file(reader *r, node *at, int *patches)
     const char *name = yaml_text(r->y, at, "the file of the patches");
     char *path = name ? reader_beside(r, name) : NULL;
     vec3 *point = NULL;
-    FILE *there = path ? fopen(path, "rb") : NULL;
+    const char *why = NULL;
+    FILE *there = path ? files_open_input(path, &why) : NULL;
     if (there) {
         fclose(there);
         point = patch_file_read(path, path, BIG, patches, r->e);
     } else if (path)
-        yaml_error(r->y, at, "'%s' can't be used: %s", name, strerror(errno));
+        yaml_error(r->y, at, "'%s' can't be used: %s", name, why);
     free(path);
     return point;
 }

@@ -97,7 +97,12 @@ bool reader_place(reader *r, node *at, object *o)
     whole = affine_then(&whole, m);
     if (!(o->shape = reader_made(r, image_of(r, o, &values, &whole, truth))))
         return false;
-    if (!(is_mesh ? is_mesh_sized(o->own, m, &wrong) : is_sized(o->shape, &wrong)))
+    const bool sized = is_mesh ? is_mesh_sized(o->own, m, &wrong) : is_sized(o->shape, &wrong);
+    if (!sized && isnan(wrong))
+        return yaml_error(r->y, at,
+                          "the surface is a line or a point, or has no value in the middle of its range of u "
+                          "and w; expected one with an area there, to transform it");
+    if (!sized)
         return yaml_error(r->y, at, "an edge or a radius of %.4g scene units after the transform, expected 1e-6 to 1e6",
                           wrong);
     if (truth && !displaced_has_form(o->shape))

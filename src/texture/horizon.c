@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/threads.h"
+#include "base/gate.h"
 #include "wave/lane.h"
 
 #define LEAST 0.005 /* of the steepest slope: a rise that does not matter */
@@ -181,11 +181,18 @@ horizon *horizon_new(const bump *P, const table_grid *grid, bool ends, const hor
         return NULL;
     }
     *h = (horizon){*grid, rise};
+    const int blocks = grid->columns / LANES + 1, all = (grid->rows + 1) * blocks;
+    gate g = {.to = w, .what = "horizons", .all = all};
 #pragma omp parallel for schedule(dynamic) num_threads(threads)
-    for (int row = 0; row <= grid->rows; row++)
-        for (int column = 0; column <= grid->columns; column += LANES)
-            build_block(h, P, ends, c, row, column);
-    return h;
+    for (int k = 0; k < all; k++)
+        if (gate_is_open(&g)) {
+            build_block(h, P, ends, c, k / blocks, k % blocks * LANES);
+            gate_pass(&g, 1);
+        }
+    if (gate_is_open(&g))
+        return h;
+    horizon_free(h);
+    return NULL;
 }
 
 void horizon_free(horizon *h)

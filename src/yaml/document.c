@@ -1,6 +1,8 @@
 /* Opening and closing: reads the file, checks its bytes, and loads the one document in it. */
 #include "yaml/document.h"
 
+#include "base/files.h"
+
 #include <errno.h>
 #include <libfyaml.h>
 #include <stdio.h>
@@ -41,7 +43,8 @@ static bool is_text(const char *path, const char *text, size_t n, errors *e)
 /* A copy of the file, or of `text`, ended by a 0. The caller frees it. NULL: an error is added. */
 static char *read_bytes(const char *path, const char *text, size_t *size, errors *e)
 {
-    FILE *f = text ? NULL : fopen(path, "rb");
+    const char *why = NULL;
+    FILE *f = text ? NULL : files_open_input(path, &why);
     const size_t most = YAML_MAX_BYTES + 1, n = text && *size < most ? *size : most;
     char *bytes = text || f ? malloc(n + 1) : NULL;
     bool good = bytes != NULL;
@@ -51,11 +54,12 @@ static char *read_bytes(const char *path, const char *text, size_t *size, errors
         errno = 0;
         *size = fread(bytes, 1, n, f);
         good = !ferror(f);
+        why = strerror(errno);
     }
     if (!good && (text || f) && !bytes)
         errors_add(e, "%s: out of memory", path);
     else if (!good)
-        errors_add(e, "%s: can't read the scene: %s", path, strerror(errno));
+        errors_add(e, "%s: can't read the scene: %s", path, why);
     else
         bytes[*size] = 0;
     if (f)

@@ -167,8 +167,9 @@ def test_reach_stops_at_the_first_that_is_too_wrong() -> None:
 
 
 @pytest.mark.parametrize(("cells", "expected"), [
-    (({"none": 0.5, "0": 0.1, "2": 0.0}, {"none": 2.0, "0": 0.9, "2": 0.9}), "none to 0.1, order 0 to the end (0.2)"),
-    (({"none": 0.5, "0": 0.1, "2": 0.0}, {"none": 2.0, "0": 2.0, "2": 1.1}), "none to 0.1; beyond, none of these"),
+    (({"none": 0.5, "0": 0.1, "2": 0.0}, {"none": 2.0, "0": 0.9, "2": 0.9}),
+     "bump only to 0.1, order 0 to the end (0.2)"),
+    (({"none": 0.5, "0": 0.1, "2": 0.0}, {"none": 2.0, "0": 2.0, "2": 1.1}), "bump only to 0.1; beyond, none of these"),
     (({"none": 5.0, "0": 4.0, "2": 3.0}, {"none": 2.0, "0": 2.0, "2": 1.1}), "none of these is good enough"),
     ((None, None), "nothing measured"),
 ])
@@ -262,7 +263,7 @@ def test_missing_picture(sample: tuple[dict, Path], tmp_path: Path) -> None:
     page = (tmp_path / "index.html").read_text(encoding="utf-8")
     assert all(message.split(":")[0] in page for message in messages)
     assert 'data-name="order 0"' in page
-    assert 'data-name="none"' not in page.split('id="sheets"')[1]
+    assert 'data-name="bump only"' not in page.split('id="sheets"')[1]
 
 
 def hide(monkeypatch: pytest.MonkeyPatch, package: str) -> None:
@@ -348,6 +349,26 @@ def test_labels_keep_apart() -> None:
     assert all(box.overlap(plots.Box(x - 3, y - 3, x + 3, y + 3)) == 0 for box in placed for x, y in at)
 
 
+def test_bars_do_not_strike_through_labels(sample: tuple[dict, Path], monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where the intervals are as wide as on a busy machine."""
+    data, placed = deepcopy(sample[0]), []
+    for entry in data["cost"]["scenes"]["cube"]["methods"].values():
+        if entry["added"]:
+            entry["added"] |= {"low": 0.6 * entry["added"]["low"] - 3, "high": 1.5 * entry["added"]["high"] + 3}
+    spread = plots.spread_labels
+
+    def watched(at: list, sizes: list, frame: plots.Box, lines: list) -> list:
+        found = spread(at, sizes, frame, lines)
+        placed.append((found, [line for line in lines if line[1] == line[3]]))
+        return found
+
+    monkeypatch.setattr(plots, "spread_labels", watched)
+    plots.cost_error(data, "cube")
+    ((spots, bars),) = placed
+    assert len(bars) >= len(data["methods"]) - 1
+    assert sum(plots.crosses(spot.box, bar) for spot in spots for bar in bars) <= 1  # one may have no other place
+
+
 @pytest.mark.parametrize(("line", "expected"), [
     ((0, 5, 20, 5), True), ((5, -5, 5, 30), True), ((4, 4, 6, 6), True), ((0, 20, 20, 20), False),
     ((-5, 0, 0, -5), False)])
@@ -361,11 +382,45 @@ def test_sweep_map_names_and_hatches(sample: tuple[dict, Path]) -> None:
     cells = [cell for row in sweep["wrong"] for cell in row if cell is not None]
     for method in sweep["by_cost"][:3]:
         told = sum(tables.cheapest(cell, sweep["by_cost"], 1.0) == method for cell in cells)
-        assert len(re.findall(f">{re.escape(method)}</text>", drawn)) == told
+        assert len(re.findall(f">{re.escape(plots.cell_name(method))}</text>", drawn)) == told
     assert "<pattern" in drawn
 
 
 # In the browser -------------------------------------------------------------------------------------------------
+
+
+def test_five_scenes_fit_a_desk(sample: tuple[dict, Path], tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The main table is seen whole, with intervals as wide as they get, and the slider before all else."""
+    from bench import page
+
+    data = deepcopy(sample[0]) | {"sweeps": [], "slopes": {}}
+    for part in (data["scenes"], data["cost"]["scenes"], data["quality"]["scenes"], data["whole"]["scenes"]):
+        part["torus"] = deepcopy(part["sphere"])
+    for scene in data["cost"]["scenes"].values():
+        for entry in scene["methods"].values():
+            entry["added"] = entry["added"] and {"median": 408.2, "low": -258.4, "high": 681.3, "n": 7}
+    monkeypatch.setattr(page, "make_plots", lambda _: page.Plots())
+    text, _ = page.render(data, sample[1])
+    (tmp_path / "index.html").write_text(text, encoding="utf-8")
+    with browser.browser() as driver:
+        browser.resize(driver, browser.DESKTOP)
+        driver.get((tmp_path / "index.html").as_uri())
+        for table in ("#main-table", "#whole table.main"):
+            wide, frame = driver.execute_script(
+                "const t = document.querySelector(arguments[0]).parentElement; return [t.scrollWidth, t.clientWidth];",
+                table)
+            assert wide <= frame, f"{table}: {wide} px in a frame of {frame}"
+        assert driver.find_element("css selector", ".stage").rect["y"] < browser.DESKTOP[1] / 2
+
+
+def test_none_is_no_word_of_the_page(written: Path) -> None:
+    """The method has a name that cannot be taken for the English word, wherever a reader sees it."""
+    page = (written / "index.html").read_text(encoding="utf-8")
+    seen = re.sub(r"<(style|script).*?</\1>", "", page, flags=re.DOTALL)
+    seen = re.sub(r"<(?:td class=\"words\"|code)>[^<]*</(?:td|code)>", "", seen)  # commands, as they are typed
+    words = re.findall(r">[^<]*\b[Nn]one\b[^<]*<", seen)
+    assert [word for word in words if "none of these" not in word] == []
+    assert "bump only" in seen
 
 
 def test_page_in_a_browser(written: Path) -> None:

@@ -217,7 +217,7 @@ def test_pages() -> None:
 
 def test_peers_are_compared_round_by_round() -> None:
     values = {"POV-Ray smooth: ns": [100.0, 900.0], "kage none, whole: ns": [10.0, 90.0], "embree mesh: ns": [1.0]}
-    assert pages.peers_table(Results(values)).rows == [("POV-Ray smooth", "trace", "kage none", "10")]
+    assert pages.peers_table(Results(values)).rows == [("POV-Ray smooth", "trace", "kage bump only", "10")]
 
 
 def test_docs_get_the_bounds() -> None:
@@ -250,7 +250,7 @@ def test_all_parts_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: 
     said = capsys.readouterr()
     report = json.loads((tmp_path / "report.json").read_text())
     assert (status == 0) == (not report["missing"]), said.err
-    absent = {"peers, povray": "povray", "stages, figure 5's scene by none": "valgrind"}
+    absent = {"peers, povray": "povray", "stages, figure 5's scene by bump only": "valgrind"}
     assert set(report["missing"]) == {name for name, needed in absent.items() if not shutil.which(needed)}
     verdict = {one["verdict"] for one in report["bounds"]}
     assert verdict <= {"met", "missed", "undecided"} and len(report["bounds"]) == len(plan.bounds(TINY))

@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "image/exr_join.h"
 #include "image/image.h"
 #include "image/srgb.h"
@@ -29,7 +30,7 @@ static bool never(void *user, const char *what, double share)
     return true;
 }
 
-static const progress show = {never, NULL};
+static const progress show = {.show = never};
 
 static void good(bool holds, errors *e, const char *what) { HOLDS(holds && !e->text, "%s: %s", what, e->text); }
 
@@ -105,7 +106,7 @@ static void read_exr(const picture *p, const char *path)
         bool finite = true;
         for (int k = 0; k < pixels; k++)
             finite = finite && isfinite(p->plane[c][k]);
-        HOLDS(image_read(path, p->name[c], 1, &to, range, &e) == finite, "channel %s: %s", p->name[c], e.text);
+        HOLDS(image_read(path, p->name[c], 1, &show, &to, range, &e) == finite, "channel %s: %s", p->name[c], e.text);
         errors_free(&e);
         for (int k = 0; finite && k < pixels; k++)
             HOLDS(times[k] == 1 && memcmp(&v[k], &p->plane[c][k], sizeof v[k]) == 0,
@@ -131,7 +132,7 @@ static void read_png(const picture *p, const char *path)
     bool exr = true;
     errors e = {0};
     srgb *codes = srgb_create(p->form.bits);
-    good(codes && image_read_color(path, IMAGE_LINEAR, 1, &i, &exr, &e), &e, "read");
+    good(codes && image_read_color(path, IMAGE_LINEAR, 1, &show, &i, &exr, &e), &e, "read");
     HOLDS(!exr && i.width == p->form.width && i.height == p->form.height, "%d x %d", i.width, i.height);
     HOLDS(image_png_bits(path) == p->form.bits && image_png_is_from(path, "kage"), "its head differs");
     const int pixels = i.width * i.height;
@@ -143,7 +144,7 @@ static void read_png(const picture *p, const char *path)
                   c, (double)i.v[4 * k + c]);
     }
     free(codes);
-    free(i.v);
+    memory_free(i.v);
 }
 
 /* ---- what is done with a picture ---- */

@@ -217,7 +217,7 @@ def test_wrong_lists(kage: Kage, text: str, message: str) -> None:
         ("of: stone, ", "", "copies lacks its 'of'"),
         (", file: list.csv", "", "copies lacks its 'file'"),
         ("file: list.csv", "file: none.csv", "none.csv: can't read the list: No such file"),
-        ("of: stone", "of: ground", "a plane has no end, expected copies of an object that has"),
+        ("of: stone", "of: ground", "a plane has no end, expected copies of an object that has one"),
         ("{copies:", "{copy: stone, copies:", "'copies' beside 'copy', expected one of them"),
         ("stones:", "more: {copy: stones}\n  stones:", "'stones' is a list of copies, expected an object of one shape"),
         ("file: list.csv}", f"file: list.csv}}, {SPHERE}", "a shape, 'sphere', beside 'copies', expected one of them"),

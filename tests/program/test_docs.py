@@ -116,7 +116,7 @@ NOT_RUN = {
     "spirv-cross ": "tests/shaders/test_glsl.py",
     "pip ": "needs a network", "apt ": "needs a network; tests/verify/deb.py installs the packages",
     "scripts/bootstrap ": "installs packages: tests/program/test_scripts.py",
-    "scripts/deb": "takes minutes: tests/verify/deb.py",
+    "scripts/fuzz": "takes minutes: `make fuzz` in CI", "scripts/deb": "takes minutes: tests/verify/deb.py",
     "git show": "an archive has no history",
     "dask ": "needs machines", "python -m kage.sweep": "tests/python/test_sweep.py",
     "python examples/mitsuba_shadows.py": "tests/python/test_mitsuba.py",
@@ -131,7 +131,7 @@ def commands() -> list[tuple[str, str]]:
         if page.startswith(("docs/", "README", "CONTRIBUTING", "SECURITY")):
             code = "\n".join(docs_pages.BLOCK.findall(text)).replace("\\\n", " ")
             found += [(page, line.strip()) for line in code.splitlines() if COMMAND.match(line.strip())
-                      and not re.match(r"\s*kage\.|\s*python/|\s*make\w", line)]
+                      and not re.match(r"\s*kage\.|\s*python/|\s*make\w", line) and "[OPTIONS]" not in line]
     return found
 
 
@@ -165,6 +165,7 @@ def desk(tmp_path_factory: pytest.TempPathFactory) -> Path:
     first = re.findall(r"```yaml\n(.*?)```", TEXTS["docs/scene.md"], re.DOTALL)[0]
     (folder / "scene.yaml").write_text(first)
     shutil.copy(TOP / "scenes" / "models" / "corner.glb", folder / "room.glb")
+    shutil.copy(TOP / "scenes" / "models" / "sand-8.png", folder / "bricks.png")
     return folder
 
 

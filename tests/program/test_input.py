@@ -62,7 +62,7 @@ REPLACED = [
      "5:37: a single value, expected one side of the area, [x, y, z]"),
     ("area-parallel", "color: [1, 1, 1]",
      "parallel: {to: [0, 0, 0]}, area: {u: [1, 0, 0], w: [0, 0, 1], samples: [4, 4]}",
-     "5:60: an area of a parallel light, expected a point light or a spot"),
+     "5:60: a parallel light has no area, expected 'area' only in a point light or a spot"),
     ("material-key", "diffuse: 0.8", "difuse: 0.8", "7:48: a material has no 'difuse', did you mean 'diffuse'?"),
     ("object-key", "    box: {", "    brick: {",
      "19:5: an object has no 'brick', expected one of: plane rectangle disc box sphere cylinder cone torus ellipsoid "
@@ -351,6 +351,8 @@ REPLACED = [
     ("no-light-at", "at: [-4, 5, -2], ", "", "5:9: a light lacks its 'at'"),
     ("no-lights", "lights:\n  lamp: {at: [-4, 5, -2], color: [1, 1, 1]}\n", "",
      "1:1: the scene lacks its 'lights'"),
+    ("v-for-w", "u: [1, 0, 0], w: [0, -1, 0]}", "u: [1, 0, 0], v: [0, -1, 0]}",
+     "15:50: rectangle has no 'v', did you mean 'w'?"),
     ("no-origin", "origin: [0, 0, 0], ", "", "10:12: plane lacks its 'origin'"),
     ("no-to", ", to: [0, 1.5, 0]", "", "19:10: box lacks its 'to'"),
     ("no-radius", ", radius: 0.5", "", "22:13: sphere lacks its 'radius'"),
@@ -382,7 +384,8 @@ REPLACED = [
      "17:24: 'scene.yaml' can't be used: its first bytes are those of neither a PNG nor an OpenEXR file"),
     ("map-empty", "file: map.png", "file: empty.png", "17:24: 'empty.png' can't be used: the file is empty"),
     ("map-color", "file: map.png", "file: color.png",
-     "17:24: 'color.png' can't be used: the PNG is in colour; a grey one is expected, of 8 or 16 bits"),
+     "17:24: 'color.png' can't be used: the PNG is in colour; a grey one is expected, of 8 or 16 bits: "
+     "save it in grey, if bright means high"),
     ("map-normals", "file: map.png", "file: normals.png",
      "17:24: 'normals.png' can't be used: the PNG is a normal map, which has slopes but no heights; a grey height map "
      "is expected, and docs/models.md tells how to make one"),
@@ -583,6 +586,13 @@ def test_replaced(bench: Kage, old: str, new: str, message: str) -> None:
     check_caret(lines, text)
     count = len(errors_in(lines))
     assert len(lines) == 3 * count + (count > 1)
+
+
+def test_the_errors_of_a_bump_come_with_its_shapes(bench: Kage) -> None:
+    lines = refused_scene(bench, SCENE.replace("box: {", "bump: {function: sin(q)}\n    box: {far: 1, "))
+    assert [line for line in lines if line.startswith("scene.yaml:")] == [
+        "scene.yaml:20:11: box has no 'far', expected one of: from to",
+        "scene.yaml:19:26: unknown name 'q', expected u, w, pi or a function"]
 
 
 # ---- the file as a whole ----
@@ -850,11 +860,14 @@ COMMAND = [
     *[(f"lacks{name}", ["render", "scene.yaml", name], f"{name} lacks its value; see kage render --help")
       for name in ("-o", "--shadow", "--size", "--aa", "--aa-threshold", "--crop", "--threads", "--bits", "--set")],
     ("ending", ["render", "scene.yaml", "-o", "out.jpg"],
-     "-o out.jpg: no such kind of picture, expected a name that ends in .png or .exr"),
+     "-o out.jpg: no such kind of picture, expected a name that ends in .png or .exr, or - for a PNG to standard "
+     "output"),
     ("ending-none", ["render", "scene.yaml", "-o", "out"],
-     "-o out: no such kind of picture, expected a name that ends in .png or .exr"),
+     "-o out: no such kind of picture, expected a name that ends in .png or .exr, or - for a PNG to standard "
+     "output"),
     ("ending-alone", ["render", "scene.yaml", "-o", ".png"],
-     "-o .png: no such kind of picture, expected a name that ends in .png or .exr"),
+     "-o .png: no such kind of picture, expected a name that ends in .png or .exr, or - for a PNG to standard "
+     "output"),
     ("shadow", ["render", "scene.yaml", "--shadow", "3"],
      "--shadow 3: no such method, expected none, 0, 1, 2, 2+, iter:K, march:N, exact or auto[:E]"),
     ("shadow-steps", ["render", "scene.yaml", "--shadow", "march:0"],

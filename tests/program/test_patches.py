@@ -53,6 +53,11 @@ def test_wrong_parametric(kage: Kage, old: str, new: str, message: str) -> None:
     assert message in result.stderr.splitlines()[0]
 
 
+def test_a_line_can_not_be_transformed(kage: Kage) -> None:
+    path = scene(kage, "parametric: {x: u, y: u, z: u, u: [0, 1], w: [0, 1]}\n    transform: [{scale: 2}]")
+    assert ":12:16: the surface is a line or a point, or has no value" in kage("check", path).stderr
+
+
 @pytest.mark.parametrize(
     ("shape", "message"),
     [

@@ -38,7 +38,7 @@ MADE = [(pattern, row[1]) for row in rows("Data made here") for pattern in named
 def is_data(name: str) -> bool:
     if name.startswith(FOLDERS_OF_DATA):
         return not name.endswith((".py", ".md", ".yaml"))
-    folder_of_sources = name.startswith(("src/", "include/", "debian/", "man/")) or "/" not in name
+    folder_of_sources = name.startswith(("src/", "include/", "debian/", "man/", "completions/")) or "/" not in name
     return not (folder_of_sources or name.endswith(WRITTEN) or is_script(name))
 
 

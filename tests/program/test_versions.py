@@ -24,6 +24,11 @@ def kept() -> dict[str, Any]:
     return json.loads(abi.KEPT.read_text())
 
 
+def breaks(kept: dict[str, Any]) -> bool:
+    """Whether this is no release of the major version that was kept: 0 promises nothing, and a new one may break."""
+    return abi.major() in (0, kept["major"] + 1)
+
+
 def version() -> str:
     return re.findall(r'define KAGE_VERSION "([^"]+)"', HEADER)[0]
 
@@ -33,7 +38,7 @@ def version() -> str:
 
 def test_programs_built_with_the_last_release_still_run(kept: dict[str, Any]) -> None:
     assert len(kept["kage.h"]["functions"]) > 40 and len(kept["kage.h"]["structs"]) > 20
-    assert abi.broken(kept["kage.h"], abi.of_header(HEADER)) == []
+    assert abi.broken(kept["kage.h"], abi.of_header(HEADER)) == [] or breaks(kept)
 
 
 @pytest.mark.parametrize(("old", "new", "words"), [
@@ -44,30 +49,31 @@ def test_programs_built_with_the_last_release_still_run(kept: dict[str, Any]) ->
     ("KAGE_U8, KAGE_U16", "KAGE_U16, KAGE_U8", "KAGE_U8 was 0"),
     ("typedef int kage_progress(void *user,", "typedef int kage_progress(int line, void *user,", "kage_progress was"),
 ])
-def test_a_change_of_the_header_is_noticed(kept: dict[str, Any], old: str, new: str, words: str) -> None:
+def test_a_change_of_the_header_is_noticed(old: str, new: str, words: str) -> None:
     assert old in HEADER
-    found = abi.broken(kept["kage.h"], abi.of_header(HEADER.replace(old, new, 1)))
+    found = abi.broken(abi.of_header(HEADER), abi.of_header(HEADER.replace(old, new, 1)))
     assert [line for line in found if line.startswith(words)], found
 
 
-def test_an_addition_is_no_change(kept: dict[str, Any]) -> None:
+def test_an_addition_is_no_change() -> None:
     """A function, an option in place of a reserved field, a field at the end of what only the library makes."""
     text = HEADER.replace("KAGE_API int kage_errors_count(", "KAGE_API int kage_more(void);\nKAGE_API int "
                           "kage_errors_count(", 1)
     text, options = re.subn(r"void \*reserved\[(\d)\];(\s*\} kage_write_options;)",
                             lambda m: f"const char *more; void *reserved[{int(m[1]) - 1}];{m[2]}", text)
     text, stats = re.subn(r"\} kage_stats;", "int64_t more; } kage_stats;", text)
-    assert (options, stats) == (1, 1) and abi.broken(kept["kage.h"], abi.of_header(text)) == []
+    assert (options, stats) == (1, 1) and abi.broken(abi.of_header(HEADER), abi.of_header(text)) == []
 
 
 def test_the_formulas_keep_their_parameters(kept: dict[str, Any]) -> None:
     now = json.loads(json.dumps(abi.of_formulas()))
-    assert len(now) > 30 and {name: now.get(name) for name in kept["bumpshadow.h"]} == kept["bumpshadow.h"]
+    assert len(now) > 30
+    assert {name: now.get(name) for name in kept["bumpshadow.h"]} == kept["bumpshadow.h"] or breaks(kept)
 
 
 def test_the_package_keeps_its_names(kept: dict[str, Any]) -> None:
     assert len(kept["python"]) > 40
-    assert abi.broken_package(kept["python"], abi.of_package()) == []
+    assert abi.broken_package(kept["python"], abi.of_package()) == [] or breaks(kept)
 
 
 def test_a_change_of_the_package_is_noticed(kept: dict[str, Any]) -> None:

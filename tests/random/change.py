@@ -1,4 +1,4 @@
-"""Changes of a whole scene after which its picture is known: moved, turned, scaled, mirrored, with u and w exchanged."""
+"""Changes of a whole scene after which its picture is known: moved, turned, mirrored, with u and w exchanged."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tests.random.draw import Draw, Scene, Tree, shape_of, variables
 Steps = list[Tree]
 
 
-class Cannot(Exception):
+class CannotError(Exception):
     """The change is not defined for this scene."""
 
 
@@ -115,8 +115,8 @@ def mirrored_bump(made: Scene, bump: Tree, shape: str) -> None:
     one = 1 if shape in ("rectangle", "box") else 0
     if "function" in bump:
         bump["function"] = variables(bump["function"], f"{one} - u", "w")
-    elif shape in ("parametric", "patches", "mesh") or bump["wrap"] == "clamp" and "size" in bump:
-        raise Cannot("where a map begins on the other side")
+    elif shape != "plane" and bump["wrap"] != "repeat":
+        raise CannotError("where a map begins that comes from the other end")
     else:
         name = bump["map"]["file"]
         made.files[f"mirrored_{name}"] = mirror_file(made.files[name], name)
@@ -136,13 +136,13 @@ def mirrored(scene: Scene) -> Scene:
     made = moved(scene, Move(1, [0.0, 0.0, 0.0], [0.0, 0.0, 0.0], mirrors=True))
     shape = shapes(made)
     if any(isinstance(material["color"], dict) for material in made.tree["materials"].values()):
-        raise Cannot("one material's pattern on several shapes")
+        raise CannotError("one material's pattern on several shapes")
     if any("copies" in thing for thing in made.tree["objects"].values()):
-        raise Cannot("heights of a list of copies are those of the hidden original")
+        raise CannotError("heights of a list of copies are those of the hidden original")
     for name, thing in made.tree["objects"].items():
         if "bump" in thing:
             if shape[name] in ("parametric", "patches", "mesh"):
-                raise Cannot("no rule for where u goes there")
+                raise CannotError("no rule for where u goes there")
             mirrored_bump(made, thing["bump"], shape[name])
     return made
 
@@ -189,14 +189,16 @@ def exchanged(scene: Scene) -> Scene:
             continue
         if any(thing is made.tree["objects"].get(other.get("copy")) for other in made.tree["objects"].values()):
             continue  # a copy may have a bump or a material of its own
+        if any(step.get("scale") == [-1, 1, 1] for step in thing.get("transform", [])):
+            continue  # u, whichever it is, runs the other way there
         exchanged_shape(thing, kind)
         if "bump" in thing:
             exchanged_bump(made, thing["bump"])
         done = True
     if not done:
-        raise Cannot("no such shape")
+        raise CannotError("no such shape")
     if made.tree["render"].get("bump_shadow") == "horizon":
-        raise Cannot("surfaces seen from behind have the march in place of the table")
+        raise CannotError("surfaces seen from behind have the march in place of the table")
     return made
 
 
@@ -217,7 +219,7 @@ def written_out(scene: Scene) -> Scene:
             objects[f"{name}{k}"] = {"copy": thing["copies"]["of"], **({"material": material} if material else {}),
                                      "transform": [{"scale": scale}, {"rotate": [a, b, c]}, {"translate": [x, y, z]}]}
     if len(objects) == len(made.tree["objects"]):
-        raise Cannot("no list of copies with several copies")
+        raise CannotError("no list of copies with several copies")
     made.tree["objects"] = objects
     return made
 
@@ -253,13 +255,14 @@ QUARTER = Move(1, [0.0, 90.0, 0.0], [0.0, 0.0, 0.0])
 
 
 def symmetric(scene: Scene) -> Scene:
-    """Up to two things of the scene, each four times, on a ground that is the same after a quarter turn; from above."""
+    """Up to two things of the scene, each four times, on a ground that is the same after a quarter turn; from above.
+    They are tilted, as faces of two copies in one plane would be met in any order."""
     made = scene.copy()
     old = made.tree["objects"]
     things = {name: thing for name, thing in old.items() if name.startswith("thing") and "copy" not in thing}
     objects: Tree = {}
     for name, thing in list(things.items())[:2]:
-        objects[name] = thing
+        objects[name] = thing | {"transform": [{"rotate": [11, 3, 7]}, *thing.get("transform", [])]}
         for k in (1, 2, 3):
             objects[f"{name}_{k}"] = {"copy": name, "transform": [{"rotate": [0, 90 * k, 0]}]}
     f = "sin(3*u + 1)*cos(2*w) + 0.5*sin(u)"

@@ -207,8 +207,8 @@ def mesh(r: Draw, made: Scene) -> Tree:
 
 
 SHAPES: dict[str, Callable[[Draw, Scene], Tree]] = {
-    "rectangle": rectangle, "disc": disc, "box": box, "sphere": sphere, "cylinder": cylinder, "cone": cone, "torus": torus,
-    "ellipsoid": ellipsoid, "parametric": parametric, "patches": patches, "mesh": mesh}
+    "rectangle": rectangle, "disc": disc, "box": box, "sphere": sphere, "cylinder": cylinder, "cone": cone,
+    "torus": torus, "ellipsoid": ellipsoid, "parametric": parametric, "patches": patches, "mesh": mesh}
 PLANE = {"origin": [0, -0.9, 0], "u": [0, 0, 1], "w": [1, 0, 0]}
 
 

@@ -21,11 +21,11 @@ TOP = Path(__file__).resolve().parents[2]
 Planes = dict[str, np.ndarray]
 
 
-class Refused(Exception):
+class RefusedError(Exception):
     """The library says that the scene or an option is wrong."""
 
 
-class Lost(Exception):
+class LostError(Exception):
     """The library crashed, or gave no answer in time."""
 
 
@@ -47,7 +47,7 @@ class Worker:
     def ask(self, request: dict[str, Any]) -> Planes:
         process = self.started()
         if process.stdin is None or process.stdout is None:
-            raise Lost("no pipes")
+            raise LostError("no pipes")
         late = threading.Timer(self.seconds, process.kill)
         late.start()
         try:
@@ -62,10 +62,10 @@ class Worker:
         finally:
             late.cancel()
         if "error" in answer:
-            raise Refused(answer["error"])
+            raise RefusedError(answer["error"])
         if "planes" not in answer or any(len(plane) < 4 * shape[0] * shape[1] for plane in data):
             self.end()
-            raise Lost(f"{self.build.name}: no answer in {self.seconds:g} s" if late.finished.is_set() and
+            raise LostError(f"{self.build.name}: no answer in {self.seconds:g} s" if late.finished.is_set() and
                        process.returncode == -9 else f"{self.build.name}: exit status {process.returncode}")
         return {name: np.frombuffer(plane, "<f4").reshape(shape)
                 for name, plane in zip(answer["planes"], data, strict=True)}

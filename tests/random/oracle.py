@@ -133,14 +133,14 @@ def nearest(scene: Scene) -> np.ndarray:
     tree = scene.tree
     rays, found = camera_rays(tree), []
     for thing in tree["objects"].values():
-        steps = list(thing.get("transform", []))
-        while "copy" in thing:
-            thing = tree["objects"][thing["copy"]]
-            steps = [*thing.get("transform", []), *steps]
+        of, steps = thing, list(thing.get("transform", []))
+        while "copy" in of:
+            of = tree["objects"][of["copy"]]
+            steps = [*of.get("transform", []), *steps]
         m, v = matrix(steps)
         back = np.linalg.inv(m)
         with np.errstate(invalid="ignore", divide="ignore"):
-            t = first(meet(((rays[0] - v) @ back.T, rays[1] @ back.T), shape_of(thing), thing[shape_of(thing)]))
+            t = first(meet(((rays[0] - v) @ back.T, rays[1] @ back.T), shape_of(of), of[shape_of(of)]))
         found.append(np.where(np.isnan(t), FAR, t))
     width, height = tree["image"]["size"]
     return np.min(found, axis=0).reshape(height, width)

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
-from tests.random.draw import Scene, Tree
+from tests.random.draw import Scene
 
 FOUND = Path(__file__).parent / "found"
 Key = str | int
@@ -33,9 +33,10 @@ def without(scene: Scene, path: tuple[Key, ...]) -> Scene | None:
             at = at[key]
         except (KeyError, IndexError):
             return None  # gone with something else
-    if path[-1] not in at and not isinstance(at, list) or isinstance(at, list) and path[-1] >= len(at):
+    try:
+        del at[path[-1]]
+    except (KeyError, IndexError):
         return None
-    del at[path[-1]]
     return made
 
 
@@ -88,6 +89,3 @@ def kept(folder: Path = FOUND) -> list[tuple[str, int, Path]]:
         found.append((name, int(seed), path))
     return found
 
-
-def size(tree: Tree) -> int:
-    return sum(1 for _ in paths(tree))

@@ -122,9 +122,15 @@ def broken(old: dict[str, Any], new: dict[str, Any]) -> list[str]:
     return wrong
 
 
+def major() -> int:
+    """Of the version, for which the promise is."""
+    return int(re.findall(r'define KAGE_VERSION "(\d+)', HEADER.read_text())[0])
+
+
 def present() -> dict[str, Any]:
-    """What this tree has."""
-    return {"kage.h": of_header(HEADER.read_text()), "bumpshadow.h": of_formulas(), "python": of_package()}
+    """What this tree has, and its major version."""
+    return {"major": major(), "kage.h": of_header(HEADER.read_text()), "bumpshadow.h": of_formulas(),
+            "python": of_package()}
 
 
 def main() -> None:

@@ -190,11 +190,11 @@ def make_claims() -> list[dict]:
     for i, (name, who, sentence, source) in enumerate(SENTENCES):
         verdict = VERDICTS[i % len(VERDICTS)]
         cases = [{"case": scene, "verdict": VERDICTS[(i + j) % len(VERDICTS)],
-                  "detail": f"none: edge {1.5 * j + 2:.1f} px from the truth; 0.0 px from that without bumps"}
+                  "detail": f"bump only: edge {1.5 * j + 2:.1f} px from the truth; 0.0 px from that without bumps"}
                  for j, scene in enumerate(SCENES)]
         claims.append({
             "id": name, "who": who, "sentence": sentence, "source": source, "verdict": verdict, "cases": cases,
-            "test": "the shadow's edge by `none` against that without bumps (at most 0.5 px) and against the truth "
+            "test": "the shadow's edge by bump only against that without bumps (at most 0.5 px) and against the truth "
                     "(at least 2 px)"})
     return claims
 

@@ -31,7 +31,7 @@ SHAPES = ("plane", "rectangle", "disc", "box", "sphere", "cylinder", "cone", "to
 HEIGHTS = ("0", "0.1*sin(7*u)*cos(5*w)", "0.2*noise(3*u, 3*w)", "1e-30*sin(u)", "max(0, 0.1*sin(5*u))",
            "0.05*sin(1e6*u)", "0.1*sin(1e20*u)", "-0.3 + 0.1*cos(w)", "1", "0.1*floor(3*u)", "0.1*abs(sin(4*u))^0.5",
            "0.1*tanh(1e5*sin(3*u))")
-WITHOUT = ("ln(u)", "1/u", "sqrt(u)", "u^w", "1/0", "1e300*u*1e300", "0.1*ln(sin(9*u))", "tan(5*w)", "acos(3*u)",
+WITHOUT = ("log(u)", "1/u", "sqrt(u)", "u^w", "1/0", "1e300*u*1e300", "0.1*log(sin(9*u))", "tan(5*w)", "acos(3*u)",
            "1e30*u^9", "0.1*sqrt(sin(3*w))", "exp(900*u)", "0.1*sin(1/u)", "asin(2*w) + sqrt(u - 0.3)")
 Scene = dict[str, Any]
 #: A mesh as the library takes it: a tetrahedron, one of whose triangles has no area on the texture.

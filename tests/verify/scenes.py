@@ -3,8 +3,8 @@
     python -m tests.verify.scenes --count 1000      the first 1000 seeds
     python -m tests.verify.scenes --first 77 --count 1 --all
 
-The builds are gcc and clang with -O0 and -O3, one without hierarchies, and double; they go to build/random. A scene that
-breaks something is made small and kept in tests/random/found.
+The builds are gcc and clang with -O0 and -O3, one without hierarchies, and double; they go to build/random. A scene
+that breaks something is made small and kept in tests/random/found.
 """
 
 from __future__ import annotations
@@ -19,9 +19,9 @@ from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 
-from tests.random.draw import Draw, Scene, draw
-from tests.random.lab import Lab, Lost, Refused
-from tests.random.properties import PROPERTIES, check
+from tests.random.draw import Scene, draw
+from tests.random.lab import Lab, LostError, RefusedError
+from tests.random.properties import check, chosen
 from tests.random.shrink import keep, shrunk
 from tests.verify.record import TOP, record
 
@@ -46,29 +46,23 @@ def make(build: str, jobs: int) -> None:
                     f"BUILD={folder_of(build)}", *how, "python"], cwd=TOP, check=True)
 
 
-def chosen(seed: int, few: int) -> list[str]:
-    """The properties of a seed: the builds always, of the others `few`, each as often as any other."""
-    others = [name for name in PROPERTIES if name != "builds"]
-    return ["builds", *Draw(seed).sample(others, min(few, len(others)))]
-
-
 def tried(lab: Lab, scene: Scene, name: str, seed: int) -> str | None:
     """As check; a crash or an endless render is wrong, too, and so is a refusal, as all scenes are valid."""
     try:
         return check(lab, scene, name, seed)
-    except (Refused, Lost) as wrong:
+    except (RefusedError, LostError) as wrong:
         return f"{type(wrong).__name__}: {wrong}"
 
 
 def made_small(lab: Lab, scene: Scene, name: str, seed: int, wrong: str) -> Scene:
-    refused = wrong.startswith("Refused")
+    refused = wrong.startswith("RefusedError")
 
     def fails(other: Scene) -> bool:
         try:
             found = tried(lab, other, name, seed)
         except (KeyError, ValueError, IndexError):
             return False  # it lacks what the property changes
-        return bool(found) and found.startswith("Refused") == refused
+        return bool(found) and found.startswith("RefusedError") == refused
 
     return shrunk(scene, fails)
 
@@ -79,7 +73,7 @@ def run(lab: Lab, seeds: Sequence[int], few: int) -> tuple[Counter[str], int]:
     bad = 0
     for done, seed in enumerate(seeds):
         scene = draw(seed)
-        for name in chosen(seed, few):
+        for name in ["builds", *chosen(seed, few)]:
             wrong = tried(lab, scene, name, seed)
             looked[name] += wrong is not None
             if wrong:

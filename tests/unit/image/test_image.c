@@ -1000,7 +1000,7 @@ static void nonsense_is_refused(void **state)
     const char *path = in_folder("nonsense");
     assert_refused(in_folder("absent.png"), NULL, "No such file or directory");
     assert_refused(folder, NULL, "Is a directory");
-    assert_refused("/dev/null", NULL, "empty");
+    assert_refused("/dev/null", NULL, "no regular file");
     spill(path, "P5 1 1 255\n0", 12);
     assert_refused(path, NULL, "neither a PNG nor an OpenEXR file");
     spill(path, "\x76\x2f\x31\x01", 4);
