@@ -43,7 +43,7 @@ static void end_now(void)
     const char *text = stop.text[stop.shown];
     static const char over[] = "kage: the time of --max-seconds is over\n";
     if (!stop.quiet && write(STDERR_FILENO, text, strlen(text)) < 0)
-        stop.quiet = true; /* nobody listens */
+        stop.quiet = true;   /* nobody listens */
     if (signal == SIGALRM) { /* of stop_after */
         const ssize_t said = write(STDERR_FILENO, over, sizeof over - 1);
         (void)said;

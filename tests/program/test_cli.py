@@ -495,7 +495,7 @@ def test_progress_on_a_terminal(kage: Kage) -> None:
 @pytest.mark.parametrize("columns", [60, 80, 100])
 def test_a_terminal_is_not_wider_than_it_is(kage: Kage, columns: int) -> None:
     """Messages are broken at words, but not the lines of a scene; the bar is shorter."""
-    arguments = ("render", CUBE, "--set", "render.shadow=best")
+    arguments = ("render", CUBE, "--set", "render.shadow=best", "--quiet")
     said = kage(*arguments).stderr
     assert max(map(len, said.splitlines())) > 100
     status, shows = on_terminal(kage, *arguments, columns=columns)
