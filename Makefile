@@ -130,7 +130,7 @@ help:
 	@echo 'make accept     show regression pictures that have changed, and keep them if you confirm'
 	@echo 'make counts     count the instructions of eight renders again, and keep them for the test'
 	@echo 'make reference  render stale reference pictures with POV-Ray, into reference/'
-	@echo 'make sanitize   unit tests, and some program tests, under ASan, UBSan and TSan'
+	@echo 'make sanitize   unit and some program tests under ASan, UBSan and TSan, then make fuzz'
 	@echo 'make fuzz       fuzz the targets of tests/fuzz, FUZZ_SECONDS=30 each; make fuzz-replay runs its finds'
 	@echo 'make lint       check style, likely mistakes and types; make format applies the style'
 	@echo 'make same       compare all pictures with another commit, REV=COMMIT, ONLY=TEXT in their names'

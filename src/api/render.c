@@ -200,6 +200,7 @@ static void set_stats(kage_film *f, const stats *t, double seconds)
         .orders = f->orders,
         .undefined = t->undefined,
         .undefined_object = t->undefined_object - 1,
+        .memory = budget_peak(f->memory.budget),
     };
 }
 

@@ -173,6 +173,7 @@ static void print_stats(FILE *to, const kage_stats *t, double output)
                 fprintf(to, "  %s: %ld", t->orders[k].order, (long)t->orders[k].samples);
     }
     fprintf(to, "\n");
+    fprintf(to, "memory    %9.2f MB at most\n", (double)t->memory / (1 << 20));
     if (t->undefined)
         fprintf(to, "samples without a value, smooth there: %ld\n", (long)t->undefined);
     if (t->unconfirmed)

@@ -185,12 +185,13 @@ bool read_memory(arguments *a, const char *name, const char *v)
 {
     static const char units[] = "KMGT";
     char *end = NULL;
-    double x = *v >= '0' && *v <= '9' && strspn(v, "0123456789.") > 0 ? strtod(v, &end) : -1;
+    const size_t digits = strspn(v, "0123456789.");
+    double x = *v >= '0' && *v <= '9' ? strtod(v, &end) : -1;
     const char *unit = end && *end ? strchr(units, *end) : NULL;
-    if (unit)
-        for (end++; unit >= units; unit--)
-            x *= 1024;
-    if (!(x >= 1 && x <= 1e18) || *end)
+    for (const char *k = units; unit && k <= unit; k++)
+        x *= 1024;
+    end = unit ? end + 1 : end;
+    if (!(x >= 1 && x <= 1e18) || *end || digits + (unit != NULL) != strlen(v))
         return usage_error("%s %s: expected a size in bytes, or with K, M, G or T behind it: 4G", name, v);
     a->limits.memory = (int64_t)x;
     return true;

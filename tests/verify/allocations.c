@@ -1,6 +1,6 @@
-/* Preloaded into the program: makes its N-th allocation fail. Only calls from the program's own code count, not those of
- * the libraries that it uses. At the end it says on KAGE_ALLOCATIONS_TO how many there were, and how many blocks of the
- * program's are left.
+/* Preloaded into the program: makes its N-th allocation fail. Only calls from the program's own code count, not those
+ * of the libraries that it uses. At the end it says on KAGE_ALLOCATIONS_TO how many there were, and how many blocks of
+ * the program's are left.
  *
  * KAGE_ALLOCATION=N: fail the N-th; KAGE_ALLOCATIONS_TO=FILE: "calls left".
  */

@@ -36,7 +36,7 @@ materials:
   skin: {color: {image: {file: %(data)s/bumps.png}}}
   glass: {color: [0.1, 0.1, 0.1], filter: 0.9, ior: 1.5}
 objects:
-  floor: {rectangle: {at: [-3, -1, -3], u: [6, 0, 0], w: [0, 0, 6]}, material: clay,
+  floor: {rectangle: {origin: [-3, -1, -3], u: [6, 0, 0], w: [0, 0, 6]}, material: clay,
           bump: {function: 0.05*sin(5*u)*cos(5*w)}}
   model: {mesh: {file: %(data)s/lantern.obj}, material: clay}
   ball: {sphere: {center: [0, 0, 0], radius: 0.5}, material: glass}
@@ -85,7 +85,8 @@ class Trial:
     def __init__(self, kage: Path, folder: Path) -> None:
         self.kage, self.folder, self.library = kage, folder, folder / "fail.so"
         source = Path(__file__).with_name("allocations.c")
-        subprocess.run(["gcc", "-O1", "-fno-builtin", "-shared", "-fPIC", "-o", self.library, source, "-ldl"], check=True)
+        subprocess.run(["gcc", "-O1", "-fno-builtin", "-shared", "-fPIC", "-o", self.library, source, "-ldl"],
+                       check=True)
 
     def run(self, command: Command, failing: int | None) -> tuple[subprocess.CompletedProcess[str], int, int, bytes]:
         """The result, the calls, the blocks that are left, and the output's bytes."""
