@@ -58,7 +58,7 @@ $(error SANITIZE=thread needs CLONES=no: functions that choose their copy run be
 endif
 endif
 # Names of files with spaces would be two for make.
-$(foreach v,BUILD PREFIX LIBDIR LIBEXEC DESTDIR,$(if $(word 2,$($v)),\
+$(foreach v,BUILD PREFIX LIBDIR LIBEXEC SHARE DESTDIR,$(if $(word 2,$($v)),\
     $(error $v=$($v): a name with spaces, expected one without)))
 ifneq ($(SANITIZE),)
 SANITIZER = -fsanitize=$(SANITIZE) -fno-sanitize-recover=all -fno-omit-frame-pointer -g
