@@ -85,6 +85,7 @@ void print_help(FILE *to)
           "\n"
           "Manuals: man kage; man kage-scene describes scene files. The same and more is\n"
           "in docs/.\n"
-          "Exit status: 0; 1 where a picture can't be written; 2 for bad input; 124 after --max-seconds.\n",
+          "Exit status: 0; 1 where a picture can't be written; 2 for bad input;\n"
+          "124 after --max-seconds.\n",
           to);
 }
