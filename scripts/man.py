@@ -33,15 +33,17 @@ ABOUT = {
 }
 FROM_STDIN = "A SCENE `-` is read from standard input."
 SEE = {"kage": "kage(1)", "kage-scene": "kage-scene(5)", "libkage": "kage(3)", "bumpshadow": "bumpshadow(3)"}
-EXIT = (("0", "All is done."), ("1", "An output can't be written."),
-        ("2", "Bad input: a scene, a file that it names, or the command line. Messages are on standard error, as "
-              "`file:line:column: what is wrong`."))
+MESSAGES = "Messages are on standard error; of a scene they are `file:line:column: what is wrong`, and show the place."
 
 
 def read_table(kage: Path) -> Table:
     found: Table = json.loads(subprocess.run([kage, "table"], check=True, capture_output=True, text=True).stdout)
     found["commands"] = [command for command in found["commands"] if not command["hidden"]]
     return found
+
+
+def capital(text: str) -> str:
+    return text[0].upper() + text[1:]
 
 
 def synopsis(command: Table) -> str:
@@ -64,7 +66,7 @@ def words(option: Table) -> str:
     """What an option does, as sentences."""
     text = option["text"]
     if not re.match(r"\w+:", text):  # a value
-        text = text[0].upper() + text[1:]
+        text = capital(text)
     return f"{text}. {option['more']}".strip()
 
 
@@ -93,7 +95,7 @@ def kage_page(page: Page, table: Table) -> None:
     page.heading("COMMANDS")
     for command in table["commands"]:
         page.heading(escaped(synopsis(command).removesuffix(" [OPTIONS]"), code=True), 2)
-        page.text(escaped(command["text"][0].upper() + command["text"][1:] + "."))
+        page.text(escaped(capital(command["text"]) + "."))
         for more in filter(None, command["more"].split("\n\n")):
             page.paragraph(inline(more))
         for line, does in zip(command["examples"][::2], command["examples"][1::2], strict=True):
@@ -111,8 +113,10 @@ def kage_page(page: Page, table: Table) -> None:
     for method in table["methods"]:
         page.entry(f"\\fB{escaped(method['name'], code=True)}\\fR", escaped(method["text"]))
     page.heading("EXIT STATUS")
-    for number, meaning in EXIT:
-        page.entry(f"\\fB{number}\\fR", inline(meaning))
+    for end in table["exit"]:
+        page.entry(f"\\fB{end['status']}\\fR", inline(capital(end["text"]) + "."))
+    page.heading("DIAGNOSTICS")
+    page.text(inline(MESSAGES))
 
 
 def kage_markdown(table: Table) -> str:
@@ -120,13 +124,13 @@ def kage_markdown(table: Table) -> str:
              "A value follows its option as the next word, or after an equals sign; after `--` no word is an option.")
     out = ["# The program kage", "", *textwrap.wrap(f"{about} {FROM_STDIN}", 118), ""]
     for command in table["commands"]:
-        out += [f"## kage {command['name']}", "", f"    {synopsis(command)}", "",
-                *textwrap.wrap(command["text"][0].upper() + command["text"][1:] + ".", 118), ""]
+        out += [f"## kage {command['name']}", "", f"`{synopsis(command)}`", "",
+                *textwrap.wrap(capital(command["text"]) + ".", 118), ""]
         for more in filter(None, command["more"].split("\n\n")):
             out += [*textwrap.wrap(more, 118), ""]
         examples = command["examples"]
         for line, does in zip(examples[::2], examples[1::2], strict=True):
-            out += [f"    {line}  # {does}"]
+            out += [f"    # {does}", f"    {line}"]
         own = [option for option in table["options"] if option["commands"] & command["bit"]]
         out += [*([""] if examples else []), "| option | meaning |", "|---|---|"]
         for option in own:
@@ -137,7 +141,8 @@ def kage_markdown(table: Table) -> str:
     out += ["## Methods", "", "| method | what it does |", "|---|---|"]
     out += [f"| `{method['name']}` | {method['text']} |" for method in table["methods"]]
     out += ["", "## Exit status", "", "| status | meaning |", "|---|---|"]
-    return "\n".join(out + [f"| {number} | {meaning} |" for number, meaning in EXIT]) + "\n"
+    out += [f"| {end['status']} | {end['text']} |" for end in table["exit"]]
+    return "\n".join([*out, "", MESSAGES]) + "\n"
 
 
 # Headers --------------------------------------------------------------------------------------------

@@ -51,7 +51,7 @@ typedef struct arguments {
     int bumps;
     const char *camera; /* of a model */
     double brightness;
-    int frames; /* of view, to measure */
+    int frames;         /* of view, to measure */
     kage_limits limits; /* of memory */
     double seconds;     /* that the command may take; 0: any */
     bool z_up;

@@ -85,7 +85,12 @@ void print_help(FILE *to)
           "\n"
           "Manuals: man kage; man kage-scene describes scene files. The same and more is\n"
           "in docs/.\n"
-          "Exit status: 0; 1 where a picture can't be written; 2 for bad input;\n"
-          "124 after --max-seconds.\n",
+          "Exit status: ",
           to);
+    char text[256] = "";
+    size_t used = 0;
+    for (int k = 0; k < exit_meaning_count && used < sizeof text; k++)
+        used += (size_t)snprintf(text + used, sizeof text - used, "%s%d %s", k ? "; " : "", exit_meanings[k].status,
+                                 exit_meanings[k].text);
+    print_wrapped(to, (int)strlen("Exit status: "), 0, COLUMNS, text);
 }

@@ -18,6 +18,12 @@ enum {
     EVERY = SCENES | IMPORT | COMMAND_METHODS | COMMAND_HELP
 };
 
+const exit_meaning exit_meanings[] = {{0, "all is done"},
+                                      {EXIT_OUTPUT, "an output can't be written"},
+                                      {EXIT_INPUT, "bad input"},
+                                      {EXIT_TIME, "stopped by --max-seconds"}};
+const int exit_meaning_count = (int)(sizeof exit_meanings / sizeof *exit_meanings);
+
 const char layer_names[] = "color Z P N uw height tau order visibility";
 
 const command commands[] = {
@@ -81,7 +87,8 @@ const command commands[] = {
      .more = "The scene has the model's camera, lights, materials, images and objects. The triangles stay in the "
              "model's file, which the scene names.",
      .example = {"kage import room.glb -o room.yaml", "the scene of a model",
-                 "kage import room.glb -o room.yaml --bump 'Wall*=bricks.png,scale=0.02'", "with bumps on its walls"}},
+                 "kage import room.glb -o new.yaml --bump Floor=scenes/data/bumps.png,scale=0.2",
+                 "with bumps on its floor"}},
     {.name = "methods", .bit = COMMAND_METHODS, .text = "list the methods"},
     {.name = "help",
      .bit = COMMAND_HELP,

@@ -57,6 +57,14 @@ extern const option options[];
 extern const int option_count;
 extern const char *const option_headings[OPTION_GROUPS];
 
+/* Numbers and what they mean. */
+typedef struct exit_meaning {
+    int status;
+    const char *text;
+} exit_meaning;
+extern const exit_meaning exit_meanings[];
+extern const int exit_meaning_count;
+
 /* The planes' names for --layers, with spaces between them. */
 extern const char layer_names[];
 

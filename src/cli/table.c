@@ -62,6 +62,12 @@ int command_table(void)
         print_field("more", o->more);
         printf("\"commands\": %d, \"about\": %d}", o->commands, (int)o->about);
     }
+    printf("],\n\"exit\": [");
+    for (int k = 0; k < exit_meaning_count; k++) {
+        printf("%s{\"status\": %d, \"text\": ", k ? ", " : "", exit_meanings[k].status);
+        print_text(exit_meanings[k].text);
+        printf("}");
+    }
     printf("],\n\"methods\": [");
     for (int k = 0; k < kage_method_count(); k++) {
         printf("%s\n  {", k ? "," : "");

@@ -92,8 +92,9 @@ static void displaced_free(surface *f)
     free(d);
 }
 
-surface *displaced_new(const surface *f, bump *P, const progress *w)
+surface *displaced_new(const surface *f, bump *P, const progress *w, bool *bounded)
 {
+    *bounded = true;
     displaced *d = bump_prepare(P, w) ? calloc(1, sizeof *d) : NULL;
     if (!d)
         return NULL;
@@ -103,6 +104,7 @@ surface *displaced_new(const surface *f, bump *P, const progress *w)
     d->P = P;
     if (!d->form->prepare || d->form->prepare(d, w))
         return &d->base;
+    *bounded = !d->unbounded;
     displaced_free(&d->base);
     return NULL;
 }

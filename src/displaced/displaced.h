@@ -27,6 +27,7 @@ typedef struct displaced {
     const bump *P;
     displaced_counts *counts; /* what this copy's searches add to; NULL: they are not counted */
     surface *offset;          /* over a patch: X as a patch surface */
+    bool unbounded;           /* it has no bounds, and is not made */
     struct bvh *prisms;       /* over a mesh: what the surface over each triangle lies in */
 } displaced;
 
@@ -35,8 +36,9 @@ bool displaced_has_form(const surface *f);
 bool displaced_has_bounds(const bump *P);
 
 /* X over f by P, which is prepared for it. Both must outlive it, and the two functions above must be true of them.
- * w: as bump_prepare. NULL: out of memory. */
-surface *displaced_new(const surface *f, bump *P, const progress *w);
+ * w: as bump_prepare. NULL: out of memory, or *bounded is false: over a patch X has no bounds, as f is a line or has no
+ * normal. */
+surface *displaced_new(const surface *f, bump *P, const progress *w, bool *bounded);
 
 /* Whether a surface is one. It has no `eval`: Q and its partials are not known, displaced_shape stands for it. */
 bool displaced_is(const surface *f);

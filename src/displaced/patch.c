@@ -12,8 +12,9 @@ static const patch_surface *offset_of_patch(const displaced *d) { return (const 
 static bool over_patch_prepare(displaced *d, const progress *w)
 {
     patch *q = patch_offset_new(((const patch_surface *)d->smooth)->q, d->P);
-    bool bounded;
+    bool bounded = true;
     patch_surface *shape = q ? patch_surface_make(q, FLAT, w, &bounded) : NULL;
+    d->unbounded = !bounded;
     if (!shape)
         return false;
     shape->broken = true;

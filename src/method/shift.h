@@ -22,7 +22,7 @@ long shift_group(hit_group *g, const bump *bump, method m, bool guard);
 void shift_known(hit_group *g);
 
 /* tau >= -t, so that the shifted place is not before the ray's start: an eye can be inside the slab of P, and secondary
- * rays start there. */
+ * rays start there. Without the guard a camera ray's tau is the bare formula's. */
 void shift_within(hit_group *g);
 
 /* g->t0 = t_hit + tau. */

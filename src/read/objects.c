@@ -146,7 +146,7 @@ static void read_object(reader *r, const queue *q, int i)
             reader_copies(r, v, i);
         if (o->shape && !o->crowd && o->bump && scene_wants_truth(s) && displaced_has_form(o->shape) &&
             !r->from->survey)
-            o->displaced = reader_made(r, reader_displaced(r, o));
+            o->displaced = reader_displaced(r, v, o);
     }
     q->state[i] = DONE;
     r->now = NULL;

@@ -53,8 +53,8 @@ bump *reader_keep_bump(reader *r, const char *key, bump *p);
 /* The object's own mesh or patches mapped by m, as a mesh or patches. NULL: out of memory. */
 surface *reader_moved(reader *r, const object *o, const affine *m);
 
-/* The object's displaced surface. NULL: out of memory. */
-surface *reader_displaced(reader *r, const object *o);
+/* The object's displaced surface; `at` is the object. NULL: an error is told. */
+surface *reader_displaced(reader *r, node *at, const object *o);
 
 /* ---- layout.c: where a height map or an image lies in (u,w) ---- */
 

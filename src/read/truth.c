@@ -58,14 +58,26 @@ surface *reader_moved(reader *r, const object *o, const affine *m)
     return f;
 }
 
-surface *reader_displaced(reader *r, const object *o)
+/* NULL: an error. */
+static surface *make_displaced(reader *r, node *at, const object *o)
+{
+    bool bounded;
+    surface *f = displaced_new(o->shape, o->bump, r->from->progress, &bounded);
+    if (bounded)
+        return reader_made(r, f);
+    yaml_error(r->y, at, "the surface has no normal to displace it along, expected one with an area everywhere for %s",
+               scene_truth_name(r->s));
+    return NULL;
+}
+
+surface *reader_displaced(reader *r, node *at, const object *o)
 {
     if (o->shape_spec.kind == SHAPE_CLOSED) /* takes no time */
-        return displaced_new(o->shape, o->bump, r->from->progress);
+        return make_displaced(r, at, o);
     char *key = reader_key(r, "displaced %p %p", (const void *)o->shape, (const void *)o->bump);
     surface *f = found(r, key);
     if (!f && key)
-        f = keep(r, key, displaced_new(o->shape, o->bump, r->from->progress), o->shape, o->bump);
+        f = keep(r, key, make_displaced(r, at, o), o->shape, o->bump);
     free(key);
     return f;
 }

@@ -81,7 +81,7 @@ void trace_group(const tracer *tr, int32_t id, workspace *v)
         shape_displaced(id, v);
     else
         shape_and_shift(tr, id, v);
-    if (tr->scene->object[id].bump)
+    if (v->of || (tr->guard && tr->scene->object[id].bump))
         shift_within(&v->g);
     shift_origins(&v->g);
     place_find(tr, id, v);

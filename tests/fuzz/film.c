@@ -228,8 +228,9 @@ static void take_samples(bytes *b, picture *p)
 static void write_picture(bytes *b, int kind)
 {
     static const char *const names[] = {"R", "G", "B", "N.X"};
-    picture p = {.form = {.width = bytes_between(b, 1, SIDE),
-                          .height = bytes_between(b, 1, SIDE),
+    const int width = bytes_between(b, 1, SIDE), height = bytes_between(b, 1, SIDE);
+    picture p = {.form = {.width = width,
+                          .height = height,
                           .channels = bytes_between(b, 1, CHANNELS),
                           .texts = 2,
                           .bits = kind % 2 ? 8 : 16,

@@ -79,7 +79,8 @@ static void put_triangles(bytes *b, room *r, const mesh_data *d)
     for (size_t k = 0; k < n && !r->full; k++)
         put_floats(b, r, 15);
     for (size_t k = 0; k < parts && !r->full; k++) {
-        mesh_part p = {.first = take_count(b), .n = take_count(b)};
+        mesh_part p = {.first = take_count(b)};
+        p.n = take_count(b);
         take_text(b, p.name, sizeof p.name);
         put(r, &p, sizeof p);
     }
@@ -97,8 +98,11 @@ static void put_letter(bytes *b, room *r, bool as_scene)
         l.share = bytes_number(b);
     if (is == LETTER_WRONG || is == LETTER_NOTE || is == LETTER_FILE)
         take_text(b, l.why, sizeof l.why);
-    if (is == LETTER_DONE && !as_scene)
-        l.data = (mesh_data){.n = take_count(b), .parts = take_count(b), .notes = {.flat = take_count(b)}};
+    if (is == LETTER_DONE && !as_scene) {
+        l.data.n = take_count(b);
+        l.data.parts = take_count(b);
+        l.data.notes.flat = take_count(b);
+    }
     const int size = is == LETTER_FILE || is == LETTER_DONE ? take_count(b) : 0;
     l.size = is == LETTER_DONE && size >= 0 && size < 8 ? b->left : size < -(1 << 30) ? SIZE_MAX : (size_t)abs(size);
     put(r, &l, sizeof l);
@@ -189,9 +193,11 @@ static void read_arrays(bytes *b, int use)
     static double at[VERTICES][3], normal[VERTICES][3], uv[VERTICES][2];
     static uint32_t corner[TRIANGLES][3];
     const int what = bytes_one(b);
+    const int vertices = bytes_between(b, what & 8 ? 0 : 3, VERTICES);
+    const int triangles = bytes_between(b, what & 8 ? 0 : 1, TRIANGLES);
     const kage_mesh_array mesh = {.name = what & 4 ? "it" : "m",
-                                  .vertex_count = bytes_between(b, what & 8 ? 0 : 3, VERTICES),
-                                  .triangle_count = bytes_between(b, what & 8 ? 0 : 1, TRIANGLES),
+                                  .vertex_count = vertices,
+                                  .triangle_count = triangles,
                                   .positions = at[0],
                                   .normals = what & 1 ? normal[0] : NULL,
                                   .uvs = what & 2 ? uv[0] : NULL,

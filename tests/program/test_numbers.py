@@ -67,7 +67,7 @@ def test_random_hostile_scenes(kage: Kage) -> None:
 
 WILD = """\
 camera: {from: [0, 2, -3], at: [0, 0, 0], fov: 40}
-image: {size: [16, 12]}
+image: {size: [6, 4]}
 lights: {lamp: {at: [-4, 5, -2]}}
 materials: {clay: {color: [0.8, 0.7, 0.6]}}
 objects:
@@ -117,10 +117,23 @@ def test_a_plane_with_a_horizon_is_a_mesh_for_povray(kage: Kage) -> None:
 
 
 def test_the_shift_is_not_behind_an_eye_in_the_slab(kage: Kage) -> None:
-    (kage.folder / "in.yaml").write_text(HORIZON.replace("[0, 1.2, -5]", "[0, 0.04, -5]").replace("surface: displaced",
-                                                                                                 "shadow: 0"))
+    (kage.folder / "in.yaml").write_text(
+        HORIZON.replace("[0, 1.2, -5]", "[0, 0.04, -5]").replace("surface: displaced", "shadow: 0")
+    )
     for method in ("0", "1", "2+", "iter:3", "march:4", "exact"):
         kage("render", "in.yaml", "--shadow", method, "-o", "in.exr")
         picture = finite(kage.folder / "in.exr")
         hit = picture["Z"] < np.inf
         assert (picture["Z"] + picture["tau"])[hit].min() >= 0, method
+
+
+@pytest.mark.parametrize("q", ['x: u, y: "0", z: "0"', "x: u-u, y: w, z: 0*u"])
+def test_a_line_has_no_displaced_surface(kage: Kage, q: str) -> None:
+    (kage.folder / "line.yaml").write_text(
+        WILD.replace("x: u, y: 0.2*sin(3*u), z: w", q).replace("FUNCTION", "0.1*sin(u)")
+    )
+    done = kage("render", "line.yaml", "--shadow", "exact", "-o", "x.exr")
+    assert done.returncode == 2 and "the surface has no normal to displace it along" in done.stderr, done.stderr
+    done = kage("render", "line.yaml", "-o", "x.exr")
+    assert done.returncode == 0
+    finite(kage.folder / "x.exr")

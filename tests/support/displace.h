@@ -9,7 +9,7 @@
 static inline surface *displace(const surface *f, bump *P, displaced_counts *c)
 {
     assert_true(displaced_has_form(f) && displaced_has_bounds(P));
-    surface *d = displaced_new(f, P, NULL);
+    surface *d = displaced_new(f, P, NULL, &(bool){true});
     assert_non_null(d);
     ((displaced *)d)->counts = c;
     return d;

@@ -7,6 +7,7 @@ import signal
 import subprocess
 from pathlib import Path
 
+import numpy as np
 import OpenEXR
 from PIL import Image
 
@@ -40,3 +41,77 @@ def whole_or_absent(path: Path) -> bool:
     with Image.open(path) as image:
         image.load()
     return True
+
+
+# ---- all stages of all commands ----
+
+#: The threads of each command, as COMMANDS says.
+THREADS = 2
+
+#: Read and build (model, maps, horizons, displaced surfaces), render (waves and bands), write each kind.
+COMMANDS = [
+    ["render", "small.yaml", "--size", "1600x1200", "--threads", "2", "-o", "a.exr", "-o", "b.png"],
+    ["render", "small.yaml", "--size", "900x700", "--aa", "3", "--surface", "displaced", "--threads", "2", "-o",
+     "a.exr"],
+    ["render", "map.yaml", "--bump-shadow", "horizon", "--threads", "2", "-o", "b.png"],
+    ["render", "small.yaml", "--size", "2000x1500", "--resume", "--threads", "2", "-o", "c.exr"],
+    ["render", "model.yaml", "--threads", "2", "-o", "b.png"],
+    ["check", "map.yaml"],
+    ["check", "model.yaml"],
+    ["pixel", "map.yaml", "20,15"],
+    ["pov", "map.yaml", "--surface", "displaced", "-o", "d.pov"],
+    ["import", "model.obj", "-o", "e.yaml", "--overwrite"],
+]
+
+#: What the commands write.
+OUTPUTS = ("a.exr", "b.png", "c.exr", "d.pov", "e.yaml")
+
+SCENE = """\
+camera: {from: [0, 3, -5], at: [0, 0, 0], up: [0, 1, 0], fov: 40}
+image: {size: [40, 30], background: [0, 0, 0]}
+render: {shadow: 0, guard: true, aa: 1}
+lights:
+  lamp: {at: [-4, 5, -2], color: [1, 1, 1]}
+materials:
+  clay: {color: [0.8, 0.7, 0.6], ambient: 0.1, diffuse: 0.8}
+objects:
+  ball:
+    sphere: {center: [1, 1, 0], radius: 0.5}
+    material: clay
+"""
+
+
+def make_inputs(folder: Path, top: Path) -> None:
+    """The scenes of COMMANDS, a large map and a model."""
+    rng = np.random.default_rng(1)
+    coarse = Image.fromarray((rng.random((64, 64)) * 255).astype(np.uint8))
+    coarse.resize((2048, 2048), Image.Resampling.BICUBIC).save(folder / "map.png")
+    (folder / "small.yaml").write_text((top / "tests" / "data" / "cube.yaml").read_text())
+    for path in (top / "tests" / "data").glob("*.png"):
+        (folder / path.name).write_bytes(path.read_bytes())
+    ground = "  ground:\n    {}\n    material: clay\n"
+    (folder / "map.yaml").write_text(SCENE + ground.format(
+        "rectangle: {origin: [-3, 0, 3], u: [6, 0, 0], w: [0, 0, -6]}")
+        + "    bump: {map: {file: map.png}, scale: 0.1, zero: 0.5, sign: up}\n")
+    (folder / "model.yaml").write_text(SCENE + ground.format("mesh: {file: model.obj}"))
+    side = 150
+    points = [f"v {x / side * 6 - 3} {rng.random() * 0.1} {z / side * 6 - 3}\n"
+              for z in range(side) for x in range(side)]
+    faces = [f"f {k + 1} {k + 1 + side} {k + 2}\nf {k + 2} {k + 1 + side} {k + 2 + side}\n"
+             for z in range(side - 1) for k in range(z * side, z * side + side - 1)]
+    (folder / "model.obj").write_text("".join(points + faces))
+
+
+def make_outputs(folder: Path) -> None:
+    """Older good files where COMMANDS write."""
+    program = os.environ.get("KAGE", "build/float/kage")
+    for name in ("a.exr", "b.png", "c.exr"):
+        subprocess.run([str(Path(program).resolve()), "render", "small.yaml", "--size", "40x30", "--quiet", "-o", name],
+                       cwd=folder, check=True)
+    (folder / "d.pov").write_text("// older\n")
+    (folder / "e.yaml").write_text("# older\n")
+
+
+def left_over(folder: Path) -> list[str]:
+    """Names of temporary files."""
+    return [path.name for path in folder.glob(".kage-*")]

@@ -60,18 +60,20 @@ def made_small(lab: Lab, scene: Scene, name: str, seed: int, wrong: str) -> Scen
     def fails(other: Scene) -> bool:
         try:
             found = tried(lab, other, name, seed)
-        except (KeyError, ValueError, IndexError):
+        except (LookupError, ValueError, TypeError, StopIteration):
             return False  # it lacks what the property changes
         return bool(found) and found.startswith("RefusedError") == refused
 
     return shrunk(scene, fails)
 
 
-def run(lab: Lab, seeds: Sequence[int], few: int) -> tuple[Counter[str], int]:
-    """How often each property was looked at, and how many were broken."""
+def run(lab: Lab, seeds: Sequence[int], few: int, seconds: float) -> tuple[Counter[str], int, int]:
+    """How often each property was looked at, how many were broken, and of how many scenes."""
     looked: Counter[str] = Counter()
-    bad = 0
+    bad, end = 0, time.monotonic() + seconds
     for done, seed in enumerate(seeds):
+        if time.monotonic() > end:
+            return looked, bad, done
         scene = draw(seed)
         for name in ["builds", *chosen(seed, few)]:
             wrong = tried(lab, scene, name, seed)
@@ -82,28 +84,32 @@ def run(lab: Lab, seeds: Sequence[int], few: int) -> tuple[Counter[str], int]:
                 print(f"seed {seed}, {name}: {wrong}\n  {path.relative_to(TOP)}", flush=True)
         if done % 50 == 49:
             print(f"{done + 1} scenes, {lab.pictures} pictures, {bad} failed", flush=True)
-    return looked, bad
+    return looked, bad, len(seeds)
 
 
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--count", type=int, default=1000, help="scenes (1000)")
+    parser.add_argument("--seconds", type=float, default=float("inf"), help="no new scene after these (no bound)")
     parser.add_argument("--first", type=int, default=0, help="the first seed (0)")
     parser.add_argument("--few", type=int, default=3, help="properties a scene, besides the builds (3)")
     parser.add_argument("--all", action="store_true", help="all properties of each scene")
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1)
+    parser.add_argument("--builds", default=",".join(BUILDS), help="those of them that are compared (all)")
     parser.add_argument("--built", action="store_true", help="the builds are fresh")
     asked = parser.parse_args()
-    for build in () if asked.built else BUILDS:
+    builds = asked.builds.split(",")
+    for build in () if asked.built else builds:
         make(build, asked.jobs)
     begun = time.monotonic()
     with tempfile.TemporaryDirectory() as folder:
-        lab = Lab({build: folder_of(build) for build in BUILDS}, Path(folder))
-        looked, bad = run(lab, range(asked.first, asked.first + asked.count), 99 if asked.all else asked.few)
+        lab = Lab({build: folder_of(build) for build in builds}, Path(folder))
+        seeds = range(asked.first, asked.first + asked.count)
+        looked, bad, scenes = run(lab, seeds, 99 if asked.all else asked.few, asked.seconds)
         lab.end()
     print(", ".join(f"{name} {count}" for name, count in sorted(looked.items())))
     return record("scenes", f"python -m tests.verify.scenes --count {asked.count}",
-                  {"random scenes": asked.count, "builds": len(BUILDS), "comparisons": sum(looked.values()),
+                  {"random scenes": scenes, "builds": len(builds), "comparisons": sum(looked.values()),
                    "pictures": lab.pictures, "minutes": round((time.monotonic() - begun) / 60)}, bad)
 
 

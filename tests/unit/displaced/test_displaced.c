@@ -29,7 +29,7 @@ static void copies_count_apart(void **state)
     displaced_counts one = {0, 0}, two = {0, 0};
     (void)state;
     bump *P = function("0.1*sin(5*w)");
-    surface *f = ground(), *d = displaced_new(f, P, NULL);
+    surface *f = ground(), *d = displaced_new(f, P, NULL, &(bool){true});
     const displaced a = displaced_counting(d, &one), b = displaced_counting(d, &two);
     from_above(&x, &h);
     a.base.ops->hit(&a.base, LANES, &x, 0, &h);
@@ -56,7 +56,7 @@ static void located_below_the_hit(void **state)
     real u[LANES], w[LANES];
     (void)state;
     bump *P = function("0.25");
-    surface *f = ground(), *d = displaced_new(f, P, NULL);
+    surface *f = ground(), *d = displaced_new(f, P, NULL, &(bool){true});
     from_above(&x, &h);
     d->ops->hit(d, LANES, &x, 0, &h);
     d->ops->locate(d, LANES, &x, h.t, h.part, u, w);
@@ -86,7 +86,7 @@ static void the_box_is_higher(void **state)
     double lo[3], hi[3];
     (void)state;
     bump *P = function("0.25*sin(u)");
-    surface *f = sphere_new((vec3){1, 2, 3}, 2), *d = displaced_new(f, P, NULL);
+    surface *f = sphere_new((vec3){1, 2, 3}, 2), *d = displaced_new(f, P, NULL, &(bool){true});
     d->ops->box(d, lo, hi);
     NEAR(lo[0], -1.25, 1e-6);
     NEAR(hi[1], 4.25, 1e-6);
