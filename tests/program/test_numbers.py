@@ -10,7 +10,6 @@ import pytest
 
 from tests.conftest import TOP, Kage, needs_povray
 from tests.support.parity import layers, povray, rgb
-from tests.verify import numbers
 
 WAVES = TOP / "scenes" / "waves.yaml"
 SMALL = ("--size", "48x36")
@@ -54,15 +53,6 @@ def test_check_and_pixel(kage: Kage) -> None:
     none = kage.good("pixel", WAVES, "320,400", *bump("log(u)"))
     assert "no value" in none and "nan" not in none
     assert "no value" not in kage.good("pixel", WAVES, "320,400")
-
-
-def test_random_hostile_scenes(kage: Kage) -> None:
-    """A fixed part of `python -m tests.verify.numbers`."""
-    import kage as package
-
-    done = numbers.run(package, kage.folder, 60, 5, loud=False)
-    assert done["failed"] == []
-    assert done["samples without a value"] > 1000
 
 
 WILD = """\
