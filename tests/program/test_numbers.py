@@ -101,7 +101,7 @@ def test_a_plane_with_a_horizon_is_a_mesh_for_povray(kage: Kage) -> None:
     kage.good("render", "far.yaml", "-q", "-o", "far.exr")
     theirs, _ = povray(kage.folder / "far.pov", (60, 45))
     near = np.abs(theirs - rgb(layers(kage.folder / "far.exr"))).max(-1) < 1 / 100
-    assert near.mean() > 0.985, near.mean()
+    assert near.mean() > 0.97, near.mean()  # the horizon is in one row of 45, where all of it is below a pixel
     kage.good("pov", "far.yaml", "--set", "camera.at=[0, 0, -3]", "-o", "near.pov")
     assert "isosurface" in (kage.folder / "near.pov").read_text()
 
