@@ -58,7 +58,7 @@ $(error SANITIZE=thread needs CLONES=no: functions that choose their copy run be
 endif
 endif
 # Names of files with spaces would be two for make.
-$(foreach v,BUILD PREFIX LIBDIR LIBEXEC DESTDIR,$(if $(word 2,$($v)),\
+$(foreach v,BUILD PREFIX LIBDIR LIBEXEC SHARE DESTDIR,$(if $(word 2,$($v)),\
     $(error $v=$($v): a name with spaces, expected one without)))
 ifneq ($(SANITIZE),)
 SANITIZER = -fsanitize=$(SANITIZE) -fno-sanitize-recover=all -fno-omit-frame-pointer -g
@@ -110,7 +110,7 @@ TIDY      = $(filter-out bench/limits/% $(if $(filter yes,$(VIEW)),,src/view/%),
 
 .PHONY: all render bench speed readme reference accept counts test unit-tests program-tests programs sanitize format
 .PHONY: dist docs manuals lint tidy same python wheel install install-files uninstall clean help bootstrap FORCE
-.PHONY: fuzz fuzz-program fuzz-replay
+.PHONY: fuzz fuzz-program fuzz-replay verify
 all: bootstrap
 	@$(MAKE) --no-print-directory $(JOBS) programs
 
@@ -132,6 +132,7 @@ help:
 	@echo 'make reference  render stale reference pictures with POV-Ray, into reference/'
 	@echo 'make sanitize   unit and some program tests under ASan, UBSan and TSan, then make fuzz'
 	@echo 'make fuzz       fuzz the targets of tests/fuzz, FUZZ_SECONDS=30 each; make fuzz-replay runs its finds'
+	@echo 'make verify     the checks that take hours, VERIFY="fuzz load ...", into the table of docs/reliability.md'
 	@echo 'make lint       check style, likely mistakes and types; make format applies the style'
 	@echo 'make same       compare all pictures with another commit, REV=COMMIT, ONLY=TEXT in their names'
 	@echo 'make dist       the source archive of HEAD, out/kage-$(VERSION).tar.gz; scripts/deb: Debian packages'
@@ -428,6 +429,16 @@ sanitize: all
 	    $(MAKE) --no-print-directory $(JOBS) $(TSAN) run-unit/api/test_threads
 	KAGE=build/asan/kage scripts/venv python -m pytest -q -n auto --dist loadfile $(SANE_TESTS)
 	@$(MAKE) --no-print-directory fuzz
+
+# What takes hours (docs/reliability.md). All run, also after one that fails.
+VERIFY    = allocations files kills stops numbers scenes slow sanitizers dist deb load fuzz
+
+verify: programs python
+	@CC='$(CC)' scripts/bootstrap test python package povray valgrind browser view display shaders shells fuzz debian
+	@command -v stress-ng >/dev/null || { echo 'make verify: stress-ng is missing' >&2; exit 1; }
+	@for check in $(VERIFY); do scripts/venv python -m tests.verify.$$check || failed="$$failed $$check"; done; \
+	    scripts/venv python -m tests.verify.table --write; \
+	    [ -z "$$failed" ] || { echo "make verify: failed:$$failed" >&2; exit 1; }
 
 # ---- style ----
 

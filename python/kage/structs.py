@@ -191,6 +191,8 @@ class Stats:
     undefined: int
     #: the first object with such a sample, index into SceneInfo.objects; -1: none
     undefined_object: int
+    #: the most bytes that the scene's family and its films have taken, as kage_limits counts
+    memory: int
 
 
 @dataclass(frozen=True, eq=False)

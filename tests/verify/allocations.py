@@ -66,7 +66,6 @@ def commands(folder: Path) -> list[Command]:
         picture("map from a PNG", cube),
         Command("picture as a PNG", ("render", cube, "--size", "16x12", "--threads", "1", "-q", "-o", "OUT"), ".png"),
         picture("map from an EXR", str(SCENES / "terrain.yaml")),
-        picture("auto", cube, "--shadow", "auto", "--bump-shadow", "horizon"),
         picture("exact", cube, "--shadow", "exact"),
         picture("displaced", str(SCENES / "torus.yaml"), "--surface", "displaced"),
         picture("adaptive samples", str(SCENES / "sphere.yaml"), "--aa", "2", "--aa-threshold", "0.1"),
@@ -76,6 +75,7 @@ def commands(folder: Path) -> list[Command]:
         Command("pixel", ("pixel", cube, "200,200")),
         Command("POV-Ray", ("pov", str(rooms), "--size", "16x12", "-o", "OUT"), ".pov"),
         Command("import", ("import", str(SCENES / "data" / "lantern.obj"), "--overwrite", "-q", "-o", "OUT"), ".yaml"),
+        picture("auto, horizons", cube, "--shadow", "auto", "--bump-shadow", "horizon"),
     ]
 
 

@@ -60,7 +60,7 @@ def made_small(lab: Lab, scene: Scene, name: str, seed: int, wrong: str) -> Scen
     def fails(other: Scene) -> bool:
         try:
             found = tried(lab, other, name, seed)
-        except (KeyError, ValueError, IndexError):
+        except (LookupError, ValueError, TypeError, StopIteration):
             return False  # it lacks what the property changes
         return bool(found) and found.startswith("RefusedError") == refused
 
