@@ -168,7 +168,7 @@ typedef struct scene_source {
     int shelves;              /* that may have what the scene needs */
     const shelf *const *shelf;
     bool survey; /* no displaced surfaces and no horizons, which only rendering needs */
-    bool again; /* a scene that is changed: keep what further changes need */
+    bool again;  /* a scene that is changed: keep what further changes need */
 } scene_source;
 
 /* Read a scene. NULL: all errors are in *e, as `file:line:col: ...`, the line and a caret. */

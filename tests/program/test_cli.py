@@ -539,46 +539,6 @@ def test_full_disk(kage: Kage, ending: str) -> None:
     assert kage.files() == before
 
 
-@pytest.mark.parametrize("wait", [0.05, 0.3, 0.6, 0.9, 1.2])
-def test_interrupt_leaves_no_half_file(kage: Kage, wait: float) -> None:
-    """Ctrl-C at several times, some of them while files are written."""
-    command = [PROGRAM, "render", CUBE, "--size", "1600x1200", "-o", "a.exr", "-o", "b.png", "-o", "c.exr", "-o",
-               "d.png"]
-    process = start(command, cwd=kage.folder, stderr=subprocess.PIPE)
-    time.sleep(wait)
-    process.send_signal(signal.SIGINT)
-    process.communicate(timeout=60)
-    assert process.returncode in (0, -signal.SIGINT)
-    assert kage.files() <= {"a.exr", "b.png", "c.exr", "d.png"}
-    for path in kage.folder.iterdir():
-        if path.suffix == ".exr":
-            assert exr(path)["R"].shape == (1200, 1600)
-        else:
-            assert png(path).shape == (1200, 1600, 3)
-
-
-def test_interrupt_while_writing_is_quick(kage: Kage) -> None:
-    """All layers of a 4k picture take two seconds to write; Ctrl-C ends that within 0.2, where nothing else runs, and
-    leaves no file."""
-    command = [PROGRAM, "render", CUBE, "--size", "3840x2160", "--threads", "2", "-o", "a.exr"]
-    stats = kage.good(*command[1:], "--stats")
-    writing = float(re.findall(r"^output +([\d.]+) ms", stats, re.MULTILINE)[0]) / 1e3
-    (kage.folder / "a.exr").unlink()
-    waits = []
-    for _ in range(6):
-        process = start(command, cwd=kage.folder, stderr=subprocess.PIPE)
-        while not any(path.stat().st_size > 1 << 22 for path in kage.folder.glob(".kage-*")):
-            assert process.poll() is None
-            time.sleep(0.01)
-        begin = time.monotonic()
-        process.send_signal(signal.SIGINT)
-        process.communicate(timeout=60)
-        waits.append(time.monotonic() - begin)
-        assert process.returncode == -signal.SIGINT
-        assert kage.files() == set()
-    assert min(waits) < max(0.2, writing / 8), (waits, writing)
-
-
 @pytest.mark.parametrize("name", ["none/a.png", "none/a.exr"])
 def test_outputs_are_probed_before_the_render(kage: Kage, name: str) -> None:
     """The picture would take hours."""

@@ -141,7 +141,7 @@ def test_image_on_a_mesh(kage: Kage) -> None:
         ("file: none.obj", "'none.obj' can't be used: No such file or directory"),
         ("file: ball.txt", "'ball.txt' can't be used: no known kind of model, expected a name that ends in .obj, .ply, "
                            ".stl, .gltf, .glb, .off, .dae, .fbx or .3ds"),
-        ("file: folder.obj", "'folder.obj' can't be used: no regular file"),
+        ("file: folder.obj", "'folder.obj' can't be used: Is a directory"),
         ("file: empty.ply", "'empty.ply' can't be used: the file is empty"),
         ("file: points.obj", "'points.obj' can't be used: "),
         ("file: thin.obj", "'thin.obj' can't be used: no triangles with an area, expected at least one"),
