@@ -29,18 +29,18 @@ static const char *kind_of(node *at)
     return text && !*text ? "nothing here" : "a single value";
 }
 
-/* The key nearest to `text` of those that the map lacks: beside a `u`, `v` is a `w`. */
+/* The key nearest to `text`; to a single letter, of those that the map lacks: beside a `u`, `v` is a `w`. */
 static void nearest_key(node *map, const char *text, const char *keys, char *near, size_t size)
 {
     char lacking[1024] = "";
     size_t n = 0;
-    for (const char *k = keys; *k; k += strspn(k, " ")) {
+    for (const char *k = strlen(text) == 1 ? keys : ""; *k; k += strspn(k, " ")) {
         const int length = (int)strcspn(k, " ");
         if (!fy_node_mapping_lookup_by_string(map, k, (size_t)length) && n + (size_t)length + 2 < sizeof lacking)
             n += (size_t)snprintf(lacking + n, sizeof lacking - n, "%s%.*s", n ? " " : "", length, k);
         k += length;
     }
-    spelling_nearest(text, lacking, near, size);
+    spelling_nearest(text, *lacking ? lacking : keys, near, size);
 }
 
 bool yaml_map(yaml *y, node *at, const char *what, const char *keys)
