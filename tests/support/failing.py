@@ -39,8 +39,8 @@ class Failure:
 def preloaded(source: Path, folder: Path) -> Path:
     """A library for LD_PRELOAD, of a file in C."""
     made = folder / f"{source.stem}.so"
-    subprocess.run([os.environ.get("CC", "cc").split()[-1], "-O1", "-fno-builtin", "-shared", "-fPIC", "-o", made, source,
-                    "-ldl"], check=True)
+    subprocess.run([os.environ.get("CC", "cc").split()[-1], "-O1", "-fno-builtin", "-shared", "-fPIC", "-o", made,
+                    source, "-ldl"], check=True)
     return made
 
 

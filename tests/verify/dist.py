@@ -55,7 +55,8 @@ def main() -> int:
         megabytes = round(archives[0].stat().st_size / 1e6, 1)
     failures = differ + sum(number for word, number in counted.items() if word.startswith(("failed", "error")))
     return record("dist", {"MB": megabytes, "archives that differ": differ,
-                           "tests passed in it": counted.get("passed", 0), "skipped": counted.get("skipped", 0)}, failures)
+                           "tests passed in it": counted.get("passed", 0),
+                           "skipped": counted.get("skipped", 0)}, failures)
 
 
 if __name__ == "__main__":
