@@ -26,6 +26,11 @@ sys.path.insert(0, str(PROGRAM.parent / "python"))
 #: CI must have POV-Ray: there its absence is a failure.
 needs_povray = pytest.mark.skipif(not shutil.which("povray") and not os.environ.get("CI"), reason="no povray")
 
+#: How the program was built; an installed one does not say. A sanitizer has memory, addresses and libraries of its own.
+FLAGS = PROGRAM.parent / "flags"
+SANITIZED = FLAGS.exists() and "-fsanitize" in FLAGS.read_text()
+not_sanitized = pytest.mark.skipif(SANITIZED, reason="a sanitizer has memory, addresses and libraries of its own")
+
 #: The files that take longest, which begin first, so that two workers end together.
 LONG = ("test_parity.py", "test_bench_run.py", "test_images.py", "test_regression.py", "test_input.py", "test_mesh.py",
         "test_pov.py", "test_live.py")

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from tests.conftest import PROGRAM, SCENE, TOP, Kage
+from tests.conftest import PROGRAM, SCENE, TOP, Kage, not_sanitized
 from tests.support.failing import FAILURES, OLDER, fail, make_library
 
 CUBE = TOP / "tests" / "data" / "cube.yaml"
@@ -23,6 +23,7 @@ def library(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return make_library(tmp_path_factory.mktemp("library"))
 
 
+@not_sanitized
 @pytest.mark.parametrize("name", ["a.exr", "a.png"])
 def test_each_failing_call_is_an_error(kage: Kage, library: Path, name: str) -> None:
     """The first calls of each kind; tests/verify/files.py does all of them."""

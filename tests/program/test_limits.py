@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.conftest import PROGRAM, SCENE, TOP, Kage
+from tests.conftest import PROGRAM, SCENE, TOP, Kage, not_sanitized
 from tests.verify import allocations
 
 MIB = 1 << 20
@@ -83,6 +83,7 @@ def scene_of(folder: Path, kind: str) -> tuple[Path, list[str]]:
     return path, options
 
 
+@not_sanitized
 @pytest.mark.parametrize("kind", ["map", "mesh", "copies", "film"])
 def test_all_that_is_large_is_counted(kage: Kage, kind: str) -> None:
     """What is resident is what was counted, and a limit of half as much is refused before it is taken."""
@@ -201,6 +202,7 @@ def test_lights_at_the_limit_and_beyond(kage: Kage) -> None:
         assert not over or "4097 lights, expected at most 4096" in done.stderr
 
 
+@not_sanitized
 def test_some_failed_allocations() -> None:
     """A few of what tests/verify/allocations.py does in full."""
     ran, tried, bad = allocations.try_all(PROGRAM, 3, 12)

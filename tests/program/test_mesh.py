@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 from scripts import make_lantern
-from tests.conftest import PROGRAM, TOP, Kage, needs_povray
+from tests.conftest import PROGRAM, TOP, Kage, needs_povray, not_sanitized
 from tests.support import models
 from tests.support.parity import CAMERA, FLOOR, HEAD, LIGHTS, layers, povray, rgb
 
@@ -277,11 +277,9 @@ def test_a_million_triangles(kage: Kage) -> None:
     assert np.abs(np.linalg.norm(at, axis=1) - 1).max() < 2e-5  # the chords', and half float's
 
 
+@not_sanitized
 def test_memory_that_does_not_suffice(kage: Kage) -> None:
     """Is an error, wherever it ends: also while Embree builds, whose threads would end the process."""
-    flags = PROGRAM.parent / "flags"
-    if flags.exists() and "-fsanitize" in flags.read_text():
-        pytest.skip("a sanitizer has all addresses for itself")
     models.ply(kage.folder / "ball.ply", models.ball(501, 251), binary=True)
     path = scene(kage, "file: ball.ply")
     ends = set()

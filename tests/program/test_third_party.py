@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from scripts import third_party, tree
-from tests.conftest import PROGRAM, TOP
+from tests.conftest import PROGRAM, TOP, not_sanitized
 
 LIST = third_party.LIST.read_text(encoding="utf-8")
 
@@ -85,11 +85,10 @@ def needed(path: Path) -> set[str]:
     return {re.sub(r"(-\d+_\d+)?\.so.*", "", name) for name in names if not name.startswith("ld-")}
 
 
+@not_sanitized
 @pytest.mark.parametrize("name", ["libkage.so", "kage", "kage-import", "kage-view"])
 def test_each_library_is_listed(name: str) -> None:
     path = PROGRAM.parent / name
-    if "-fsanitize" in (PROGRAM.parent / "flags").read_text():
-        pytest.skip("a sanitizer brings libraries of its own")
     if name == "kage-view" and not path.exists():
         pytest.skip("kage view is not built")
     found = needed(path)

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.conftest import PROGRAM, TOP
+from tests.conftest import PROGRAM, SANITIZED, TOP
 
 BUILD = PROGRAM.parent
 CC = os.environ.get("KAGE_TEST_CC", "cc")
@@ -55,7 +55,7 @@ class Installed:
 
 
 def install(prefix: Path) -> Installed:
-    if "-fsanitize" in (BUILD / "flags").read_text():
+    if SANITIZED:
         pytest.skip("a library for a sanitizer is not installed")
     make("install-files", f"PREFIX={prefix}")
     return Installed(prefix)
