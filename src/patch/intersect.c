@@ -252,7 +252,7 @@ static void subdivide_all(search *h)
         left = 0;
         for (int i = 0; i < lanes; i++) {
             const undecided *d = &h->queue[start[i] + round];
-            if (start[i] + round >= start[i + 1] || !(d->near < k->to[d->lane]))
+            if (start[i] + round >= start[i + 1] || !(d->near < k->to[d->lane]) || !pulse_beats(k->pulse))
                 continue;
             subdivide(h, d->lane, &k->f->l.piece[d->index]);
             left++;
@@ -289,8 +289,9 @@ static void visit(void *user, int32_t index)
     }
 }
 
-void patch_query_begin(patch_query *k, const patch_surface *f, bool any)
+void patch_query_begin(patch_query *k, const patch_surface *f, bool any, const pulse *p)
 {
+    k->pulse = p;
     k->f = f;
     k->any = any;
     k->evaluations = 0;

@@ -4,6 +4,7 @@
 
 #include "bvh/bvh.h"
 #include "patch/piece.h"
+#include "base/pulse.h"
 #include "geometry/closed_form.h"
 
 typedef struct patch_surface {
@@ -36,9 +37,11 @@ surface *patch_surface_formula(const char *kind, const form_formula *f, int thre
 /* As patch_surface_new_bounded, with the flatness of its pieces (pieces_of). */
 patch_surface *patch_surface_make(patch *q, double flat, const progress *w, bool *bounded);
 
-/* Counts of work: evaluations of the patch, and hits that are not proved to be the first. */
+/* Counts of work: evaluations of the patch, and hits that are not proved to be the first. In: what is asked during long
+ * searches, or NULL. */
 typedef struct patch_counts {
     long evaluations, unsure;
+    const pulse *pulse;
 } patch_counts;
 
 /* Hits of rays and shadows of segments, as the members of surface_ops; work is added to *c. from: NULL where no ray
