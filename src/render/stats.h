@@ -32,7 +32,7 @@ typedef struct stats {
     long orders[ORDER_CODES];   /* bumped samples by the order really used: method_code + 1 */
     displaced_counts displaced; /* hits of displaced surfaces */
     long bumped, fell_back;     /* bumped samples; those with another order than asked for */
-    long undefined;             /* samples where something had no value (undefined.h) */
+    long undefined;             /* samples where P, n', the shift or the light had no value */
     int32_t undefined_object;   /* the lowest object with such a sample, plus 1; 0: none */
     double seconds[STAGES];     /* in the tiles that are timed */
     bool timing;                /* this tile is timed */

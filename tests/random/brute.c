@@ -64,9 +64,9 @@ wide_box wide_box_of(const double lo[3], const double hi[3])
     return b;
 }
 
-wide_bvh *wide_new(int n, const wide_box *box, int32_t *order, int threads)
+wide_bvh *wide_new(int n, const wide_box *box, int32_t *order, int threads, const progress *to)
 {
-    (void)box, (void)threads;
+    (void)box, (void)threads, (void)to;
     wide_bvh *w = malloc(sizeof *w);
     for (int i = 0; i < n; i++)
         order[i] = i;
@@ -76,8 +76,6 @@ wide_bvh *wide_new(int n, const wide_box *box, int32_t *order, int threads)
 }
 
 void wide_free(wide_bvh *w) { free(w); }
-
-size_t wide_size(const wide_bvh *w) { return sizeof *w; }
 
 /* A beam gives up at once, and its rays go one by one. */
 void wide_beam_begin(wide_beam *k, int n, const int32_t *lane, const real *const r[3], const real *const s[3],
