@@ -9,7 +9,7 @@ void samples_background(int n, vec3 color, bool layers, samples *o)
     fill_vec3s(n, (real)color.x, (real)color.y, (real)color.z, &o->rgb);
     if (!layers)
         return;
-    fill(n, (real)HUGE_VAL, o->depth);
+    fill(n, REAL_FAR, o->depth);
     fill_vec3s(n, 0, 0, 0, &o->position);
     fill_vec3s(n, 0, 0, 0, &o->normal);
     fill(n, 0, o->u);

@@ -20,11 +20,11 @@ def bump(function: str) -> tuple[str, str]:
 
 
 def finite(path: Path) -> dict[str, np.ndarray]:
-    """The planes, of which only Z is infinite, where nothing is hit."""
+    """The planes, all finite; Z is 1e30 where nothing is hit."""
     picture = layers(path)
     for name, plane in picture.items():
-        hit = picture["Z"] < np.inf if name == "Z" else np.ones_like(plane, dtype=bool)
-        assert np.isfinite(plane[hit]).all(), name
+        assert np.isfinite(plane).all(), name
+    assert picture["Z"].max() <= np.float32(1e30)
     return picture
 
 
@@ -35,7 +35,7 @@ def test_a_function_without_a_value(kage: Kage, function: str, method: str) -> N
     assert done.returncode == 0
     assert re.search(r"^waves\.yaml: no value at [1-9]\d* samples, first on ground: ", done.stderr, re.M), done.stderr
     picture = finite(kage.folder / "x.exr")
-    none = (picture["order"] == -1) & (picture["height"] == 0) & (picture["P.Y"] == 0) & (picture["Z"] < np.inf)
+    none = (picture["order"] == -1) & (picture["height"] == 0) & (picture["P.Y"] == 0) & (picture["Z"] < 1e30)
     assert none.sum() > 100
     assert (picture["tau"][none] == 0).all()
     assert np.abs(picture["N.Y"][none] - 1).max() < 1e-6
@@ -113,7 +113,7 @@ def test_the_shift_is_not_behind_an_eye_in_the_slab(kage: Kage) -> None:
     for method in ("0", "1", "2+", "iter:3", "march:4", "exact"):
         kage("render", "in.yaml", "--shadow", method, "-o", "in.exr")
         picture = finite(kage.folder / "in.exr")
-        hit = picture["Z"] < np.inf
+        hit = picture["Z"] < 1e30
         assert (picture["Z"] + picture["tau"])[hit].min() >= 0, method
 
 
