@@ -85,7 +85,7 @@ void patch_surface_intersect(const patch_surface *f, int n, const rays *x, const
             h->t[i] = t;
             h->id[i] = id;
         }
-        c->unsure += (hit && k.unsure[i]) || patch_query_gave_up(&k, i);
+        c->unsure += (hit && k.unsure[i]) || k.gave_up[i];
     }
 }
 
@@ -124,7 +124,7 @@ void patch_surface_occlude(const patch_surface *f, int n, const rays *x, bool ow
     for (int i = 0; i < n; i++) {
         if (k.found[i])
             lit[i] = 0;
-        c->unsure += (k.found[i] && k.unsure[i]) || (!k.found[i] && patch_query_gave_up(&k, i));
+        c->unsure += (k.found[i] && k.unsure[i]) || (!k.found[i] && k.gave_up[i]);
     }
 }
 
