@@ -429,7 +429,7 @@ typedef struct kage_stats {
     int64_t height_lookups; /* evaluations of P */
     int64_t bumped;         /* samples on bumped objects */
     int64_t fell_back;      /* bumped samples with another order than asked for */
-    int64_t unconfirmed;    /* hits of displaced surfaces that Newton's iteration did not confirm */
+    int64_t unconfirmed;    /* hits of displaced and parametric surfaces that are not proved to be the first */
     int stage_count, order_count;
     const kage_stage *stages; /* all seconds are 0 without kage_render_options.timing */
     const kage_order_count *orders;

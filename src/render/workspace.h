@@ -5,6 +5,7 @@
 #define KAGE_RENDER_WORKSPACE_H
 
 #include "displaced/displaced.h"
+#include "patch/surface.h"
 #include "render/samples.h"
 #include "render/secondary.h"
 #include "render/stats.h"
@@ -42,6 +43,7 @@ struct workspace {
     stats *stats;
     const surface **surface;       /* of each object: the smooth or the displaced one */
     displaced *displaced;          /* of each object that has one, with this thread's counts */
+    patch_surface *patches;        /* of each object that is one, with this thread's counts */
     struct candidates *candidates; /* with many objects (object_bvh.h); NULL: all objects are tested */
 };
 

@@ -11,6 +11,7 @@ import pytest
 from tests.conftest import TOP, Kage, needs_povray
 from tests.support.parity import layers, povray, rgb
 
+MOEBIUS = TOP / "tests" / "regression" / "moebius.yaml"
 WAVES = TOP / "scenes" / "waves.yaml"
 SMALL = ("--size", "48x36")
 
@@ -73,8 +74,18 @@ def test_the_work_for_a_ray_is_bounded(kage: Kage, function: str, surface: tuple
     done = kage("render", "wild.yaml", *surface, "--stats", "-o", "x.exr")
     rays, shadows, looked = (int(x) for x in re.findall(r"(?:rays|look-ups) (\d+)", done.stdout)[:3])
     assert looked < (rays + shadows) * (2 * 1024 + 256 * 24 + 24 * 64)
-    assert re.search(r"[1-9]\d* hits of displaced surfaces are not confirmed", done.stderr)
+    assert re.search(r"[1-9]\d* hits of displaced or parametric surfaces are not confirmed", done.stderr)
     finite(kage.folder / "x.exr")
+
+
+def test_a_smooth_surface_that_proves_nothing_is_told(kage: Kage) -> None:
+    wild = WILD.replace("0.2*sin(3*u)", "0.1*sin(1e20*u)").replace(", bump: {function: FUNCTION}", "")
+    (kage.folder / "wild.yaml").write_text(wild)
+    told = re.search(r"([1-9]\d*) hits of displaced or parametric surfaces", kage("render", "wild.yaml").stderr)
+    assert told
+    found = kage("render", "wild.yaml", "--stats").stdout
+    assert f"displaced or parametric surfaces that are not confirmed: {told[1]}" in found
+    assert "not confirmed" not in kage("render", MOEBIUS, *SMALL).stderr
 
 
 HORIZON = """\
