@@ -74,7 +74,8 @@ def test_the_work_for_a_ray_is_bounded(kage: Kage, function: str, surface: tuple
     done = kage("render", "wild.yaml", *surface, "--stats", "-o", "x.exr")
     rays, shadows, looked = (int(x) for x in re.findall(r"(?:rays|look-ups) (\d+)", done.stdout)[:3])
     assert looked < (rays + shadows) * (2 * 1024 + 256 * 24 + 24 * 64)
-    assert re.search(r"[1-9]\d* hits of displaced or parametric surfaces are not confirmed", done.stderr)
+    told = re.search(r"[1-9]\d* hits of displaced or parametric surfaces are not confirmed", done.stderr)
+    assert told or "1e20" not in function  # the other one's roots are proved
     finite(kage.folder / "x.exr")
 
 
