@@ -86,10 +86,11 @@ def layers(eye: Like, position: Like, uv: Like, *, normal: Like | None = None,
     """The layers of a picture.
 
     eye: of the camera, or of each ray. position: smooth hits, not finite or beyond 1e29 where there is none; from a
-    depth along rays of unit length it is eye + directions * depth[..., None]. uv: (..., 2), the coordinates of the bump. normal: of the smooth surface, on
-    the side of +P, (3) or (..., 3); without it Qu x Qw must be. tangents: Qu and Qw, what position changes by for 1 of
-    u and of w; without them they come from differences between neighbouring pixels. there: which pixels have the bump.
-    part: an integer for each pixel; differences are taken within a part, such as an object.
+    depth along rays of unit length it is eye + directions * depth[..., None]. uv: (..., 2), the coordinates of the
+    bump. normal: of the smooth surface, on the side of +P, (3) or (..., 3); without it Qu x Qw must be. tangents: Qu
+    and Qw, what position changes by for 1 of u and of w; without them they come from differences between neighbouring
+    pixels. there: which pixels have the bump. part: an integer for each pixel; differences are taken within a part,
+    such as an object.
     """
     position, uv = np.asarray(position), np.asarray(uv)
     if position.shape[-1:] != (3,) or uv.shape != (*position.shape[:-1], 2):
