@@ -415,8 +415,8 @@ counts: all
 
 # The clones' resolvers run before a sanitizer is ready; and stages in AVX2 have no other accesses than those in SSE2.
 SANE      = CLONES=no OPTIMISE='-O1 -fno-math-errno -fno-trapping-math -ffp-contract=off'
-# Those that read every kind of input, right and wrong, and run every command.
-SANE_TESTS = $(addprefix tests/program/test_,cli.py input.py mesh.py import.py fuzz.py)
+# Those that read every kind of input, right and wrong; tests/verify/sanitizers.py has all.
+SANE_TESTS = $(addprefix tests/program/test_,input.py import.py fuzz.py)
 
 # Threads of one process on libkage, without OpenMP, whose barriers ThreadSanitizer does not see (see tsan.supp).
 TSAN      = $(SANE) OPENMP=no BUILD=build/tsan SANITIZE=thread

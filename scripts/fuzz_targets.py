@@ -132,8 +132,8 @@ def told(result: Result, log: str) -> str:
                       f"repeat: make fuzz-replay FUZZ_INPUTS='{result.target} {find}'"])
 
 
-def fuzz_all(argv: list[str]) -> tuple[list[str], list[Result]]:
-    """What the command line says; also the options that repeat it."""
+def fuzz_all(argv: list[str]) -> list[Result]:
+    """What the command line says."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("targets", nargs="*", metavar="TARGET", help=" ".join(seeds.SEEDS))
     parser.add_argument("--seconds", type=int, default=1800, help="for each target (1800)")
@@ -146,12 +146,11 @@ def fuzz_all(argv: list[str]) -> tuple[list[str], list[Result]]:
     OUT.mkdir(parents=True, exist_ok=True)
     build()
     with ThreadPoolExecutor(options.jobs) as pool:
-        results = list(pool.map(lambda target: run(target, options.seconds), options.targets or list(seeds.SEEDS)))
-    return ["--seconds", str(options.seconds), *options.targets], results
+        return list(pool.map(lambda target: run(target, options.seconds), options.targets or list(seeds.SEEDS)))
 
 
 def main() -> int:
-    _, results = fuzz_all(sys.argv[1:])
+    results = fuzz_all(sys.argv[1:])
     finds = sum(len(result.finds) for result in results)
     print(f"{sum(result.inputs for result in results)} inputs, {finds} finds")
     return 1 if finds else 0

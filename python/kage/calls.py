@@ -7,6 +7,7 @@ the main thread, or whose progress is wanted, is made by a worker (workers.py).
 from __future__ import annotations
 
 import threading
+import time
 from collections.abc import Callable
 from typing import Any
 
@@ -16,6 +17,8 @@ from kage.errors import raise_errors
 
 #: What hears how far a call is: the step ("reading", "rendering", ...) and how much of it is done, 0..1.
 Listener = Callable[[str, float], object]
+#: Seconds after which a listener is told the same again, so that a bar shows the time, and a listener may end the call.
+AGAIN = 0.25
 
 
 class Call:
@@ -24,6 +27,7 @@ class Call:
     def __init__(self, listener: Listener | None = None) -> None:
         self.listener = listener
         self.told: tuple[str, float] = ("", 0.0)
+        self.told_at = 0.0
         self.errors = ffi.new("kage_errors **")
         #: For an options struct.
         self.user = ffi.new("kage_py_call *")
@@ -51,14 +55,14 @@ class Call:
         return owned
 
     def look(self) -> None:
-        """Tell the listener, if there is something new."""
+        """Tell the listener, if there is something new, or it has heard nothing for long."""
         if self.listener is None:
             return
         what = ffi.new("char[24]")
         share = lib.kage_py_look(self.user, what)
-        now = (ffi.string(what).decode(), share)
-        if now[0] and now != self.told:
-            self.told = now
+        now, clock = (ffi.string(what).decode(), share), time.monotonic()
+        if now[0] and (now != self.told or clock - self.told_at > AGAIN):
+            self.told, self.told_at = now, clock
             self.listener(*now)
 
     def check(self, status: int) -> None:

@@ -59,7 +59,7 @@ class Bar:
         self.bar.update(share * self.bar.total - self.bar.n)
 
     def begin(self, share: float) -> Any:
-        shown = {"desc": f"{self.name}: {self.what}", "leave": False, "delay": DELAY}
+        shown = {"desc": f"{self.name}: {self.what}", "leave": False, "delay": DELAY, "miniters": 0}
         if self.what == "rendering" and self.pixels:
             first = int(share * self.pixels)
             return tqdm(total=self.pixels, initial=first, unit="pixel", unit_scale=True, **shown)

@@ -19,6 +19,16 @@ static inline int threads_of(int asked)
 #endif
 }
 
+/* How many threads run the parallel loop that this thread is in. */
+static inline int threads_here(void)
+{
+#if defined(_OPENMP)
+    return omp_get_num_threads();
+#else
+    return 1;
+#endif
+}
+
 /* Is this the thread that started the parallel loop? */
 static inline bool is_callers_thread(void)
 {

@@ -32,9 +32,6 @@ enum { WIDE_MOST = 1 << 28 }; /* boxes: 8 times a node's number is an int32_t, t
 wide_bvh *wide_new(int n, const wide_box *box, int32_t *order, int threads, const progress *w);
 void wide_free(wide_bvh *w);
 
-/* Bytes in memory. */
-size_t wide_size(const wide_bvh *w);
-
 enum { WIDE_STACK = 192 };
 
 /* A ray r + s t in a hierarchy. */

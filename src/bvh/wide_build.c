@@ -256,5 +256,3 @@ void wide_free(wide_bvh *w)
         memory_free(w->node);
     free(w);
 }
-
-size_t wide_size(const wide_bvh *w) { return sizeof *w + sizeof *w->node * (size_t)w->nodes; }

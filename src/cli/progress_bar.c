@@ -35,7 +35,7 @@ static void draw(progress_bar *p, double share, const char *tail)
 int progress_bar_show(void *user, const char *what, double share)
 {
     progress_bar *p = user;
-    char rate[64];
+    char rate[64], clock[64];
     stop_note(what, share);
     if (stop_asked())
         return 1;
@@ -55,7 +55,8 @@ int progress_bar_show(void *user, const char *what, double share)
     const bool rated = p->pixels && done > 0 && strcmp(what, "rendering") == 0;
     snprintf(rate, sizeof rate, "%.1f Mpixel/s  %.1f s left", done * (double)p->pixels / gone / 1e6,
              gone / done * (1 - share));
-    draw(p, share, rated ? rate : what);
+    snprintf(clock, sizeof clock, gone >= 1 ? "%s, %.0f s" : "%s", what, gone);
+    draw(p, share, rated ? rate : clock);
     return 0;
 }
 

@@ -105,10 +105,6 @@ static void crowd_free(surface *base)
     free(f);
 }
 
-const crowd *crowd_of(const surface *f) { return f->ops->locate == crowd_locate ? (const crowd *)f : NULL; }
-
-size_t crowd_size(const crowd *f) { return sizeof *f + sizeof *f->copy * (size_t)f->n + wide_size(f->tree); }
-
 int32_t crowd_count(const crowd *f, int32_t kind)
 {
     int32_t n = 0;

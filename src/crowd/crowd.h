@@ -46,12 +46,6 @@ static inline int32_t crowd_most(int32_t parts)
 /* `from` must outlive it. parts: of `from`; on a mesh its triangles. w: as wide_new. NULL: out of memory. */
 crowd *crowd_new(const surface *from, int32_t parts, const crowd_list *list, int threads, const progress *w);
 
-/* The crowd that a surface is; NULL: it is none. */
-const crowd *crowd_of(const surface *f);
-
-/* Bytes in memory. */
-size_t crowd_size(const crowd *f);
-
 static inline int32_t crowd_copy_of(const crowd *f, int32_t part)
 {
     return f->parts == 1 ? part : part / f->parts; /* a division costs as much as a hit */

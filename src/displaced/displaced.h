@@ -7,6 +7,7 @@
 #ifndef KAGE_DISPLACED_DISPLACED_H
 #define KAGE_DISPLACED_DISPLACED_H
 
+#include "base/pulse.h"
 #include "geometry/surface.h"
 #include "texture/bump.h"
 #include "wave/hit_group.h"
@@ -26,6 +27,7 @@ typedef struct displaced {
     const surface *smooth;
     const bump *P;
     displaced_counts *counts; /* what this copy's searches add to; NULL: they are not counted */
+    const pulse *pulse;       /* asked by long searches of this copy; NULL: none */
     surface *offset;          /* over a patch: X as a patch surface */
     bool unbounded;           /* it has no bounds, and is not made */
     struct bvh *prisms;       /* over a mesh: what the surface over each triangle lies in */

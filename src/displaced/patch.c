@@ -24,14 +24,14 @@ static bool over_patch_prepare(displaced *d, const progress *w)
 
 static void over_patch_hit(const displaced *d, int n, const rays *x, const ray_origins *from, int32_t id, hits *h)
 {
-    patch_counts q = {0};
+    patch_counts q = {.pulse = d->pulse};
     patch_surface_intersect(offset_of_patch(d), n, x, from, id, h, &q);
     displaced_count(d, q.evaluations, q.unsure);
 }
 
 static void over_patch_occlude(const displaced *d, int n, const rays *x, const int32_t *part, real *lit)
 {
-    patch_counts q = {0};
+    patch_counts q = {.pulse = d->pulse};
     patch_surface_occlude(offset_of_patch(d), n, x, part != NULL, NULL, lit, &q);
     displaced_count(d, q.evaluations, q.unsure);
 }

@@ -33,7 +33,7 @@ static expr_ranges ranges_of(const expr_code *c, const interval *value)
 /* ---- terms of the chain rule ---- */
 
 /* Exact where a factor is 0, as along what an operand does not depend on, or 1 or -1, as in sums. */
-static interval product(interval x, interval y)
+static inline interval product(interval x, interval y)
 {
     if (interval_is(x, 0) || interval_is(y, 0))
         return interval_zero;
@@ -44,7 +44,7 @@ static interval product(interval x, interval y)
     return interval_multiply(x, y);
 }
 
-static interval sum(interval x, interval y)
+static inline interval sum(interval x, interval y)
 {
     if (interval_is(x, 0) || interval_is(y, 0))
         return interval_is(x, 0) ? y : x;
@@ -53,13 +53,14 @@ static interval sum(interval x, interval y)
 
 /* ---- first partials ---- */
 
-/* f_i = f_a a_i + f_b b_i + f_c c_i */
+/* f_i = f_a a_i + f_b b_i + f_c c_i; terms that are 0 are passed over, which is most of them. */
 static slope chain(const expr_code *c, const slope *s, const expr_gradient *g)
 {
     slope z = {{{0, 0}}};
     for (int k = 0; k < c->op->operands; k++)
-        for (int i = 0; i < DIRECTIONS; i++)
-            z.along[i] = sum(z.along[i], product(g->d[k], s[c->arg[k]].along[i]));
+        if (!interval_is(g->d[k], 0))
+            for (int i = 0; i < DIRECTIONS; i++)
+                z.along[i] = sum(z.along[i], product(g->d[k], s[c->arg[k]].along[i]));
     return z;
 }
 
@@ -90,28 +91,28 @@ static slope choice(const expr_code *c, const expr_ranges *r, const slope *s)
 /* ---- second partials ---- */
 
 /* The terms of f_ij in the first partials of operands: f_aa a_i a_j, f_ab (a_i b_j + a_j b_i). */
-static interval pair_term(interval dd, bool same, const slope *a, const slope *b, int m)
+static inline interval pair_term(interval dd, bool same, const slope *a, const slope *b, int m)
 {
     const interval ai = a->along[first_of[m]], aj = a->along[second_of[m]];
     const interval bi = b->along[first_of[m]], bj = b->along[second_of[m]];
-    if (interval_is(dd, 0))
-        return interval_zero;
     if (!same)
         return product(dd, sum(product(ai, bj), product(aj, bi)));
     return product(dd, m == UW ? product(ai, aj) : interval_square(ai));
 }
 
-/* f_ij = sum of f_a a_ij over operands, and of pair_term over pairs. */
+/* f_ij = sum of f_a a_ij over operands, and of pair_term over pairs. f NULL: the operation is linear. */
 static second chain2(const expr_code *c, const slope *s, const second *h, const expr_gradient *g, const expr_hessian *f)
 {
     second z = {{{0, 0}}};
-    for (int m = 0; m < SECONDS; m++) {
-        for (int k = 0; k < c->op->operands; k++)
-            z.d[m] = sum(z.d[m], product(g->d[k], h[c->arg[k]].d[m]));
-        for (int p = 0; p < EXPR_PAIRS; p++) {
-            const int i = expr_pairs[p].i, j = expr_pairs[p].j;
-            z.d[m] = sum(z.d[m], pair_term(f->dd[p], i == j, &s[c->arg[i]], &s[c->arg[j]], m));
-        }
+    for (int k = 0; k < c->op->operands; k++)
+        if (!interval_is(g->d[k], 0))
+            for (int m = 0; m < SECONDS; m++)
+                z.d[m] = sum(z.d[m], product(g->d[k], h[c->arg[k]].d[m]));
+    for (int p = 0; f && p < EXPR_PAIRS; p++) {
+        const int i = expr_pairs[p].i, j = expr_pairs[p].j;
+        if (!interval_is(f->dd[p], 0))
+            for (int m = 0; m < SECONDS; m++)
+                z.d[m] = sum(z.d[m], pair_term(f->dd[p], i == j, &s[c->arg[i]], &s[c->arg[j]], m));
     }
     return z;
 }
@@ -135,11 +136,22 @@ static second choice2(const expr_code *c, const expr_ranges *r, const slope *s, 
     return z;
 }
 
+/* The second partials of an operation's result. */
+static second second_of_code(const expr_code *c, const expr_ranges *r, const slope *s, const second *h,
+                             const expr_gradient *g)
+{
+    if (c->op->reached)
+        return choice2(c, r, s, h);
+    if (!c->op->hessian)
+        return chain2(c, s, h, g, NULL);
+    const expr_hessian f = c->op->hessian(r);
+    return chain2(c, s, h, g, &f);
+}
+
 /* Runs the program over the box u x w. h NULL: without second partials. */
 static void bound(const expr *e, interval u, interval w, expr_bounds *out, second *h)
 {
     static const expr_gradient level;
-    static const expr_hessian flat;
     interval value[EXPR_SLOTS] = {u, w};
     slope s[EXPR_SLOTS] = {{{{1, 1}, {0, 0}}}, {{{0, 0}, {1, 1}}}};
     for (int i = 0; i < e->count; i++) {
@@ -147,9 +159,8 @@ static void bound(const expr *e, interval u, interval w, expr_bounds *out, secon
         const expr_op *op = c->op;
         const expr_ranges r = ranges_of(c, value);
         const expr_gradient g = op->gradient ? op->gradient(&r) : level;
-        const expr_hessian f = h && op->hessian ? op->hessian(&r) : flat;
         if (h)
-            h[c->z] = op->reached ? choice2(c, &r, s, h) : chain2(c, s, h, &g, &f);
+            h[c->z] = second_of_code(c, &r, s, h, &g);
         s[c->z] = op->reached ? choice(c, &r, s) : chain(c, s, &g);
         value[c->z] = r.f;
     }

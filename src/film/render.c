@@ -1,19 +1,25 @@
 /* Tiles of 16 x 8 pixels, which the threads take in order, and a second pass for adaptive samples. */
 #include "film/render.h"
 
+#include "base/pulse.h"
 #include "base/threads.h"
 #include "film/adaptive.h"
 #include "film/stream.h"
 #include "render/trace.h"
 
+#include <sched.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 enum { TILE = 16, TILE_ROWS = LANES / TILE, TIMED_TILES = 8, CHUNK = 4 /* tiles that a thread takes at once */ };
 
 /* Pictures of at most so many tiles may be done before another thread would have started. */
 enum { SMALL = 64 };
 static const double SECONDS_ALONE = 2e-3;
+
+/* The caller's callback is called at least so often, in seconds, however long a tile takes. */
+static const double LONGEST_SILENCE = 0.05;
 
 /* A tile of the picture. */
 typedef struct tile {
@@ -111,6 +117,8 @@ static void render_tile(const tracer *tr, int aa, const tile *b, film *f, worksp
     for (int j = 0; j < aa; j++)
         for (int i = 0; i < aa; i++) {
             const bool add = i + j > 0;
+            if (add && !pulse_beats(v->pulse))
+                return;
             tile_rays(tr->scene, b, aa, i, j, v);
             stats_stage(v->stats, STAGE_CAMERA);
             trace(tr, b->width * b->height, v);
@@ -164,7 +172,7 @@ static void refine_tile(const tracer *tr, int aa, const tile *b, const unsigned 
     const int each = aa * aa;
     selection p;
     select_marked(b, f, marked, &p);
-    for (int first = 0; first < p.count * each; first += LANES) {
+    for (int first = 0; first < p.count * each && (first == 0 || pulse_beats(v->pulse)); first += LANES) {
         const int n = p.count * each - first < LANES ? p.count * each - first : LANES;
         real x[LANES], y[LANES];
         for (int i = 0; i < n; i++) {
@@ -190,6 +198,7 @@ typedef struct pass {
     const unsigned char *marked; /* NULL: all */
     long done, all;              /* tiles, with those of other passes */
     bool stop;                   /* the caller has ended the render */
+    int ended;                   /* threads that have no more tiles */
 } pass;
 
 static long tiles(window w)
@@ -203,6 +212,63 @@ static void show(const render_options *o, pass *p, long done)
     if (is_callers_thread() && !progress_show(o->progress, "rendering", (double)done / (double)p->all)) {
 #pragma omp atomic write
         p->stop = true;
+    }
+}
+
+static bool is_stopped(const pass *p)
+{
+    bool stop;
+#pragma omp atomic read
+    stop = p->stop;
+    return stop;
+}
+
+/* What a thread's waves ask. The caller's thread calls the callback where it has been silent for long. */
+typedef struct thread_pulse {
+    pulse base;
+    const render_options *o;
+    pass *p;
+    bool callers;
+    double shown; /* the clock's time */
+} thread_pulse;
+
+static bool beat(void *user)
+{
+    thread_pulse *k = user;
+    const double now = k->callers ? stats_clock() : 0;
+    if (now - k->shown > LONGEST_SILENCE) {
+        long done;
+#pragma omp atomic read
+        done = k->p->done;
+        k->shown = now;
+        show(k->o, k->p, done);
+    }
+    return !is_stopped(k->p);
+}
+
+static void pulse_begin(thread_pulse *k, const render_options *o, pass *p)
+{
+    const bool callers = is_callers_thread();
+    *k = (thread_pulse){{beat, k}, o, p, callers, callers ? stats_clock() : 0};
+}
+
+/* In the caller's thread: until all `threads` have ended, the callback goes on. The first wait is as short as can be,
+ * as for most pictures it is the only one. */
+static void wait_for_others(thread_pulse *k, int threads)
+{
+    const double SHORT = 1e-3, begin = stats_clock();
+    const struct timespec nap = {0, 1000000};
+    for (;;) {
+        int ended;
+#pragma omp atomic read
+        ended = k->p->ended;
+        if (ended == threads)
+            return;
+        if (stats_clock() - begin < SHORT)
+            sched_yield();
+        else
+            nanosleep(&nap, NULL);
+        beat(k);
     }
 }
 
@@ -235,9 +301,13 @@ static void render_nth(const tracer *tr, const render_options *o, pass *p, film 
     note_tile(o, p, n, tiles(part));
 }
 
-static workspace *tile_workspace(const tracer *tr, const render_options *o)
+/* k: set here; it must outlive the workspace. */
+static workspace *tile_workspace(const tracer *tr, const render_options *o, pass *p, thread_pulse *k)
 {
     workspace *v = workspace_new(tr, progress_memory(o->progress));
+    pulse_begin(k, o, p);
+    if (v)
+        workspace_ask(v, &k->base, tr->scene->objects);
     if (v)
         camera_common(&tr->scene->camera, LANES, &v->x); /* once, as no stage changes it */
     return v;
@@ -249,7 +319,8 @@ static long run_alone(const tracer *tr, const render_options *o, pass *p, film *
 {
     const double end = stats_clock() + SECONDS_ALONE;
     const long count = tiles(f->part);
-    workspace *v = tile_workspace(tr, o);
+    thread_pulse k;
+    workspace *v = tile_workspace(tr, o, p, &k);
     long n = 0;
     while (v && n < count && !p->stop && stats_clock() < end)
         render_nth(tr, o, p, f, n++, v);
@@ -258,6 +329,29 @@ static long run_alone(const tracer *tr, const render_options *o, pass *p, film *
         stats_add(sum, v->stats);
     workspace_free(v);
     return n;
+}
+
+/* A thread's share of the tiles from `first` on. False: out of memory. */
+static bool run_thread(const tracer *tr, const render_options *o, pass *p, film *f, long first, stats *sum)
+{
+    const long count = tiles(f->part);
+    thread_pulse k;
+    workspace *v = tile_workspace(tr, o, p, &k);
+#pragma omp for schedule(dynamic, CHUNK) nowait
+    for (long n = first; n < count; n++)
+        if (v && !is_stopped(p))
+            render_nth(tr, o, p, f, n, v);
+    stream_end();
+    if (v) {
+#pragma omp critical /* without a name, which would be a global variable */
+        stats_add(sum, v->stats);
+    }
+    workspace_free(v);
+#pragma omp atomic update
+    p->ended++;
+    if (k.callers)
+        wait_for_others(&k, threads_here());
+    return v;
 }
 
 static bool run(const tracer *tr, const render_options *o, pass *p, film *f, stats *sum, errors *e)
@@ -269,26 +363,9 @@ static bool run(const tracer *tr, const render_options *o, pass *p, film *f, sta
     const long first = threads > 1 && count <= SMALL ? run_alone(tr, o, p, f, sum) : 0;
     const bool left = first < count;
 #pragma omp parallel num_threads(threads) if (left)
-    {
-        workspace *v = left ? tile_workspace(tr, o) : NULL;
-        if (left && !v) {
+    if (left && !run_thread(tr, o, p, f, first, sum)) {
 #pragma omp atomic write
-            good = false;
-        }
-#pragma omp for schedule(dynamic, CHUNK)
-        for (long n = first; n < count; n++) {
-            bool stop;
-#pragma omp atomic read
-            stop = p->stop;
-            if (v && !stop)
-                render_nth(tr, o, p, f, n, v);
-        }
-        stream_end();
-        if (v) {
-#pragma omp critical /* without a name, which would be a global variable */
-            stats_add(sum, v->stats);
-        }
-        workspace_free(v);
+        good = false;
     }
     if (!good) {
         char words[MEMORY_WORDS];
@@ -306,7 +383,8 @@ static bool render_adaptive(const tracer *tr, const render_options *o, film *f, 
     const window part = f->part,
                  wide = {part.x0 - (part.x0 > 0), part.y0 - (part.y0 > 0), part.x1 + (part.x1 < tr->scene->width),
                          part.y1 + (part.y1 < tr->scene->height)};
-    pass first = {1, NULL, 0, tiles(wide) + tiles(part), false}, second = {o->aa, NULL, tiles(wide), first.all, false};
+    pass first = {.aa = 1, .all = tiles(wide) + tiles(part)},
+         second = {.aa = o->aa, .done = tiles(wide), .all = first.all};
     film *margin = memcmp(&wide, &part, sizeof wide)
                        ? film_new(tr->scene, wide, tr->layers, o->threads, NULL, progress_memory(o->progress), e)
                        : f;
@@ -325,7 +403,7 @@ static bool render_adaptive(const tracer *tr, const render_options *o, film *f, 
 
 bool render(const tracer *tr, const render_options *o, film *f, stats *sum, errors *e)
 {
-    pass all = {o->aa, NULL, 0, tiles(f->part), false};
+    pass all = {.aa = o->aa, .all = tiles(f->part)};
     *sum = (stats){0};
     return o->aa > 1 && o->threshold >= 0 ? render_adaptive(tr, o, f, sum, e) : run(tr, o, &all, f, sum, e);
 }

@@ -79,7 +79,7 @@ typedef struct closed_form {
 
     bool solid; /* has an inside, unless it is open: light that passes through the surface is refracted */
 
-    /* The same shape for POV-Ray, as povray/smooth.h reads it. NULL: POV-Ray gets a mesh. */
+    /* The same shape for POV-Ray, as povray/smooth.c reads it. NULL: POV-Ray gets a mesh. */
     const char *povray;
 } closed_form;
 

@@ -138,11 +138,3 @@ struct aiMatrix4x4 parts_matrix(const struct aiScene *s, const char *node)
     aiIdentityMatrix4(&one);
     return s->mRootNode && find(s->mRootNode, node, &one, &m) ? m : one;
 }
-
-double parts_determinant(const struct aiMatrix4x4 *m)
-{
-    const double a = (double)m->a1, b = (double)m->a2, c = (double)m->a3;
-    return a * ((double)m->b2 * (double)m->c3 - (double)m->b3 * (double)m->c2) -
-           b * ((double)m->b1 * (double)m->c3 - (double)m->b3 * (double)m->c1) +
-           c * ((double)m->b1 * (double)m->c2 - (double)m->b2 * (double)m->c1);
-}

@@ -32,7 +32,4 @@ bool parts_list(const struct aiScene *s, model_parts *to, char why[MESH_WHY]);
 /* The matrix of the node with this name; the identity if there is none. */
 struct aiMatrix4x4 parts_matrix(const struct aiScene *s, const char *node);
 
-/* The determinant of a matrix without its last row and column. */
-double parts_determinant(const struct aiMatrix4x4 *m);
-
 #endif

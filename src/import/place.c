@@ -5,7 +5,8 @@
 #include <stdarg.h>
 #include <stdio.h>
 
-void scene_turn(const importer *k, const double v[3], double to[3])
+/* From the model's coordinates, right-handed with y or z up, to the scene's. */
+static void turn(const importer *k, const double v[3], double to[3])
 {
     to[0] = v[0];
     to[1] = k->wish->z_up ? v[2] : v[1];
@@ -19,7 +20,7 @@ void scene_place(const importer *k, const struct aiMatrix4x4 *m, const struct ai
     for (int a = 0; a < 3; a++)
         x[a] = (double)r[4 * a] * (double)v->x + (double)r[4 * a + 1] * (double)v->y +
                (double)r[4 * a + 2] * (double)v->z + (double)r[4 * a + 3] * one;
-    scene_turn(k, x, to);
+    turn(k, x, to);
 }
 
 double scene_middle(const importer *k, double middle[3])

@@ -38,9 +38,6 @@ typedef struct importer {
 
 /* ---- place.c ---- */
 
-/* From the model's coordinates, right-handed with y or z up, to the scene's. */
-void scene_turn(const importer *k, const double v[3], double to[3]);
-
 /* A point (one: 1) or a direction (0) of a node with the matrix m, in the scene's coordinates. */
 void scene_place(const importer *k, const struct aiMatrix4x4 *m, const struct aiVector3D *v, double one, double to[3]);
 

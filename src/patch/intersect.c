@@ -269,7 +269,7 @@ static void subdivide_all(search *h, int n)
         left = 0;
         for (int i = 0; i < lanes; i++) {
             const undecided *d = &h->queue[start[i] + round];
-            if (start[i] + round >= start[i + 1] || is_beyond(k, d->lane, d->near))
+            if (start[i] + round >= start[i + 1] || is_beyond(k, d->lane, d->near) || !pulse_beats(k->pulse))
                 continue;
             subdivide(h, d->lane, &k->f->l.piece[d->index]);
             left++;
@@ -422,6 +422,8 @@ static void search_nearest(search *h, int lane)
         add_range(h, &p, lane, &k->f->l.piece[h->queue[i].index], -HUGE_VAL);
     h->waiting = 0;
     for (; p.n && k->halvings[lane] < HALVINGS && !is_beyond(k, lane, p.at[0].near); k->halvings[lane]++) {
+        if (!pulse_beats(k->pulse))
+            break;
         const range x = heap_take(&p);
         const piece one = piece_of(q, x.part, x.u, x.w);
         for (int which = 0; which < 2; which++) {
@@ -440,8 +442,9 @@ static void search_nearest(search *h, int lane)
     solve(h);
 }
 
-void patch_query_begin(patch_query *k, const patch_surface *f, bool any)
+void patch_query_begin(patch_query *k, const patch_surface *f, bool any, const pulse *p)
 {
+    k->pulse = p;
     k->f = f;
     k->any = any;
     k->evaluations = 0;

@@ -1,7 +1,7 @@
 /* Pieces of a patch: their bounds, the subdivision of a whole patch, and a ray against a piece. */
 #include "patch/piece.h"
 
-#include "base/threads.h"
+#include "base/gate.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -15,6 +15,7 @@ enum {
 #else
     MOST = 1 << 16, /* no round of halving begins beyond this; one round at most doubles the number */
 #endif
+    SHOWN = 256, /* progress is shown after so many halvings */
 };
 #define LARGEST (1 / 20.)   /* larger pieces, in radii of the patch's sphere, are halved however flat they are */
 #define SMALLEST (1 / 300.) /* smaller ones are not halved however bent they are */
@@ -94,10 +95,12 @@ static bool needs_halving(const pieces *l, double flat, const piece *f)
     return size > SMALLEST * l->space.radius && (f->ea > flat * vec3_length(f->A) || f->eb > flat * vec3_length(f->B));
 }
 
-/* One round: each piece that needs it is halved. False: out of memory. *any: whether one was. */
-static bool halve(const patch *q, double flat, memory *m, pieces *l, bool *any)
+/* One round: each piece that needs it is halved. False: out of memory, or stopped. *any: whether one was. */
+static bool halve(const patch *q, double flat, const progress *w, pieces *l, bool *any)
 {
     const int n = l->n;
+    gate g = {.to = w, .what = "building", .done = n, .all = 2 * MOST};
+    memory *m = progress_memory(w);
     piece *more = memory_resize(m, l->piece, sizeof *more * (size_t)(2 * n));
     *any = false;
     if (!more)
@@ -114,14 +117,18 @@ static bool halve(const patch *q, double flat, memory *m, pieces *l, bool *any)
     (void)threads; /* without OpenMP */
 #pragma omp parallel for num_threads(threads) schedule(static) if (halved > FEWEST)
     for (int k = 0; k < halved; k++) {
+        if (!gate_is_open(&g))
+            continue;
         const piece whole = more[parent[k]];
         more[parent[k]] = piece_half(q, &whole, 0);
         more[n + k] = piece_half(q, &whole, 1);
+        if (k % SHOWN == SHOWN - 1)
+            gate_pass(&g, SHOWN);
     }
     memory_free(parent);
     l->n = n + halved;
     *any = halved > 0;
-    return true;
+    return gate_is_open(&g);
 }
 
 static bool has_bounds(const pieces *l)
@@ -140,7 +147,7 @@ bool pieces_of(const patch *q, double flat, const progress *w, pieces *l, bool *
         l->piece[l->n++] = piece_of(q, part, q->u, q->w);
     while (good && any && l->n < MOST) {
         measure(l);
-        good = halve(q, flat, progress_memory(w), l, &any);
+        good = halve(q, flat, w, l, &any);
     }
     if (good) {
         measure(l);

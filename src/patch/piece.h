@@ -43,8 +43,8 @@ typedef struct pieces {
 } pieces;
 
 /* Subdivide a patch, with several threads. flat: by how much, in radians or as a share, Qu and Qw may change within a
- * piece that is not very small. w: what their memory is taken from; NULL: no limit. False: out of memory, or, with
- * *bounded false, Q has no bounds or is a point. Call pieces_free in either case. */
+ * piece that is not very small. w: progress, and what their memory is taken from; NULL: neither. False: out of
+ * memory, stopped, or, with *bounded false, Q has no bounds or is a point. Call pieces_free in either case. */
 bool pieces_of(const patch *q, double flat, const progress *w, pieces *out, bool *bounded);
 void pieces_free(pieces *l);
 

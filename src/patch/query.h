@@ -17,10 +17,11 @@ typedef struct patch_query {
     bool gave_up[LANES];               /* it had more undecided pieces than it may halve: a root may be missing */
     bool any;                          /* any root will do, as for shadows; `to` is then undefined */
     long evaluations;                  /* of the patch, so far */
+    const pulse *pulse;                /* asked between pieces that are subdivided; NULL: none */
 } patch_query;
 
 /* Begin a query without rays. */
-void patch_query_begin(patch_query *k, const patch_surface *f, bool any);
+void patch_query_begin(patch_query *k, const patch_surface *f, bool any, const pulse *p);
 
 /* Put in ray i: r + s t, from < t < to. All of 0..n-1 are put in before the query runs. */
 void patch_query_add(patch_query *k, int i, vec3 r, vec3 s, double from, double to);

@@ -65,7 +65,7 @@ void patch_surface_intersect(const patch_surface *f, int n, const rays *x, const
 {
     own_starts d;
     patch_query k;
-    patch_query_begin(&k, f, false);
+    patch_query_begin(&k, f, false, c->pulse);
     if (from)
         gather_own_starts(f, n, x, from, id, &d);
     for (int i = 0, own = 0; i < n; i++) {
@@ -124,7 +124,7 @@ void patch_surface_occlude(const patch_surface *f, int n, const rays *x, bool ow
 {
     own_starts d;
     patch_query k;
-    patch_query_begin(&k, f, true);
+    patch_query_begin(&k, f, true, c->pulse);
     if (own)
         find_own_starts(f, n, &x->r, &x->s, part, &d);
     for (int i = 0; i < n; i++) {

@@ -4,11 +4,14 @@
 
 #include "bvh/bvh.h"
 #include "patch/piece.h"
+#include "base/pulse.h"
 #include "geometry/closed_form.h"
 
-/* Counts of work: evaluations of the patch, and hits that are not proved to be the first. */
+/* Counts of work: evaluations of the patch, and hits that are not proved to be the first. In: what is asked during long
+ * searches, or NULL. */
 typedef struct patch_counts {
     long evaluations, unsure;
+    const pulse *pulse;
 } patch_counts;
 
 /* A copy of the struct is the same surface; it is valid as long as the original. */

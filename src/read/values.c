@@ -5,7 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-const char *reader_memory_words(const reader *r, char text[MEMORY_WORDS])
+/* "there is not enough memory", and what is needed. */
+static const char *memory_needed(const reader *r, char text[MEMORY_WORDS])
 {
     return memory_words(reader_memory(r), text);
 }
@@ -14,9 +15,9 @@ void *reader_made(reader *r, void *p)
 {
     char words[MEMORY_WORDS];
     if (!p && r->now)
-        yaml_error(r->y, r->now, "%s", reader_memory_words(r, words));
+        yaml_error(r->y, r->now, "%s", memory_needed(r, words));
     else if (!p)
-        errors_add(r->e, "%s: %s", r->from->path, reader_memory_words(r, words));
+        errors_add(r->e, "%s: %s", r->from->path, memory_needed(r, words));
     return p;
 }
 

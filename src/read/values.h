@@ -40,9 +40,6 @@ void *reader_made(reader *r, void *p);
 /* Where this scene's memory is from. */
 static inline memory *reader_memory(const reader *r) { return progress_memory(r->from->progress); }
 
-/* "there is not enough memory", and what is needed. */
-const char *reader_memory_words(const reader *r, char text[MEMORY_WORDS]);
-
 /* A copy of the text, owned by the caller. NULL: the text is NULL, or there is an error. */
 char *reader_copy(reader *r, const char *text);
 

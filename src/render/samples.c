@@ -26,7 +26,7 @@ STAGE static void bound(int n, real *restrict v)
 }
 
 /* The number of colours that may have something to bound: a look costs a fifth of bounding all. */
-STAGE static int count_far(int n, const real *restrict x, const real *restrict y, const real *restrict z)
+STAGE static int count_bright(int n, const real *restrict x, const real *restrict y, const real *restrict z)
 {
     int far = 0;
     for (int i = 0; i < n; i++)
@@ -36,7 +36,7 @@ STAGE static int count_far(int n, const real *restrict x, const real *restrict y
 
 void samples_bound(int n, vec3s *rgb)
 {
-    if (count_far(n, rgb->x, rgb->y, rgb->z) == 0)
+    if (count_bright(n, rgb->x, rgb->y, rgb->z) == 0)
         return;
     bound(n, rgb->x);
     bound(n, rgb->y);

@@ -127,7 +127,7 @@ void shadow_light(const tracer *tr, int32_t id, const light *l, workspace *v)
     real sum[LANES] = {0}, above[LANES], share;
     const bool shared = bumps_share(tr, id, l, v, above);
     vec3s colors = {{0}, {0}, {0}};
-    for (int k = 0; k < places; k++) {
+    for (int k = 0; k < places && (k == 0 || pulse_beats(v->pulse)); k++) {
         const light one = light_sample(l, k, &share);
         shadow_place(tr, id, &one, shared, v);
         if (tinted)

@@ -34,7 +34,7 @@ typedef struct stats {
     displaced_counts displaced; /* hits of displaced surfaces */
     patch_counts patches;       /* hits of smooth patches */
     long bumped, fell_back;     /* bumped samples; those with another order than asked for */
-    long undefined;             /* samples where something had no value (undefined.h) */
+    long undefined;             /* samples where P, n', the shift or the light had no value */
     int32_t undefined_object;   /* the lowest object with such a sample, plus 1; 0: none */
     double seconds[STAGES];     /* in the tiles that are timed */
     bool timing;                /* this tile is timed */

@@ -64,7 +64,7 @@ static void light_group(const tracer *tr, int32_t id, workspace *v)
     if (o->color)
         o->color->ops->eval(o->color, g->n, g->u, g->w, &g->color);
     shade_ambient(g, m);
-    for (int l = 0; l < s->lights; l++) {
+    for (int l = 0; l < s->lights && (l == 0 || pulse_beats(v->pulse)); l++) {
         shadow_light(tr, id, &s->light[l], v);
         stats_stage(v->stats, STAGE_SHADOW);
         if (tr->layers)
@@ -97,7 +97,7 @@ static void follow(const tracer *tr, ray_queue *q, int left, workspace *v)
     workspace *d = v->deeper;
     tracer inner = *tr;
     inner.layers = false;
-    for (int times = 0; q->n > 0 && times < STRAIGHTS; times++) {
+    for (int times = 0; q->n > 0 && times < STRAIGHTS && pulse_beats(v->pulse); times++) {
         d->of = q;
         d->left = left;
         d->x = q->x;
@@ -136,6 +136,8 @@ void trace(const tracer *tr, int n, workspace *v)
         if (s->sends)
             secondary_send(s, id, v);
         stats_stage(v->stats, STAGE_SORT);
+        if (left > v->g.n && !pulse_beats(v->pulse))
+            break;
     }
     if (s->sends)
         follow_all(tr, v);

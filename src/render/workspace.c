@@ -62,6 +62,14 @@ workspace *workspace_new(const tracer *tr, memory *m)
     return v;
 }
 
+void workspace_ask(workspace *v, const pulse *p, int objects)
+{
+    for (int k = 0; k < objects; k++)
+        v->displaced[k].pulse = p;
+    for (; v; v = v->deeper)
+        v->pulse = p;
+}
+
 void workspace_free(workspace *v)
 {
     if (v) {

@@ -4,6 +4,7 @@
 #ifndef KAGE_RENDER_WORKSPACE_H
 #define KAGE_RENDER_WORKSPACE_H
 
+#include "base/pulse.h"
 #include "displaced/displaced.h"
 #include "patch/surface.h"
 #include "render/samples.h"
@@ -44,11 +45,15 @@ struct workspace {
     const surface **surface;       /* of each object: the smooth or the displaced one */
     displaced *displaced;          /* of each object that has one, with this thread's counts */
     patch_surface *patches;        /* of each object that is one, with this thread's counts */
+    const pulse *pulse;            /* asked between the parts of a wave; NULL: none */
     struct candidates *candidates; /* with many objects (object_bvh.h); NULL: all objects are tested */
 };
 
 /* For tracers with the same scene and `displaced` as this one. NULL: out of memory. */
 workspace *workspace_new(const tracer *tr, memory *m);
 void workspace_free(workspace *v);
+
+/* Ask p, which must outlive v, between the parts of a wave. Where it says stop, results are left as they are. */
+void workspace_ask(workspace *v, const pulse *p, int objects);
 
 #endif

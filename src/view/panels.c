@@ -8,7 +8,8 @@
 
 static const SDL_Color white = {255, 255, 255, 255}, pale = {190, 200, 215, 255}, warm = {255, 205, 120, 255};
 
-void panel_dim(canvas *c, int x, int y, int width, int height)
+/* A rectangle made dark, so that text is legible on it. */
+static void dim(canvas *c, int x, int y, int width, int height)
 {
     const int x0 = SDL_max(x, 0), y0 = SDL_max(y, 0);
     const int x1 = SDL_min(x + width, c->s->w), y1 = SDL_min(y + height, c->s->h);
@@ -35,7 +36,7 @@ void panel_help(canvas *c, int width, int height)
     const int fit = SDL_max(1, (height - 8) / line - 1), rows = SDL_min(lines, fit);
     const int w = SDL_min(columns * advance, width), x = (width - w) / 2;
     const int y = SDL_max(4, (height - (rows + 1) * line) / 2);
-    panel_dim(c, x, y - 4, w, (rows + 1) * line + 8);
+    dim(c, x, y - 4, w, (rows + 1) * line + 8);
     for (int k = 0, row = 0; k < view_key_count && row < rows; k++) {
         if (!view_keys[k].name)
             continue;
@@ -50,7 +51,7 @@ void panel_help(canvas *c, int width, int height)
 void panel_errors(canvas *c, int width, int height, const char *errors, bool of_file)
 {
     const int line = font_line(c->font), margin = font_advance(c->font), most = (height - 3 * line) / line;
-    panel_dim(c, 0, 0, width, height);
+    dim(c, 0, 0, width, height);
     int y = line / 2;
     font_draw(c->font, c->s, margin, y, width, warm,
               of_file ? "The scene has errors; this is the last good picture. It is read again when its file changes."
@@ -77,7 +78,7 @@ void panel_table(canvas *c, int width, int height, const readout *r)
     const int w = SDL_min((columns + 2) * advance, width), h = r->lines * line + 8;
     /* On the side away from the mouse. */
     const int x = r->x > width / 2 ? 0 : width - w, y = SDL_max(0, height - h);
-    panel_dim(c, x, y, w, h);
+    dim(c, x, y, w, h);
     for (int k = 0; k < r->lines; k++)
         font_draw(c->font, c->s, x + advance, y + 4 + k * line, x + w, k ? white : warm, r->table[k]);
 }
@@ -116,7 +117,7 @@ void panel_legend(canvas *c, int width, int height, const legend *l)
 {
     const int line = font_line(c->font), advance = font_advance(c->font), w = 14 * advance;
     const int h = SDL_min(height, 10 * line + 8), x = width - w;
-    panel_dim(c, x, 0, w, h);
+    dim(c, x, 0, w, h);
     font_draw(c->font, c->s, x + advance, 4, width, warm, colours_title(l->layer));
     if (l->layer == LAYER_ORDER)
         legend_of_orders(c, x + advance, 4 + 3 * line / 2, l);
@@ -130,11 +131,11 @@ void panel_split(canvas *c, int width, int height, int line, const char *left, c
     const int lw = (font_letters(left) + 2) * advance, rw = (font_letters(right) + 2) * advance;
     fill(c, line - 1, 0, 2, height, white);
     if (line - 1 - lw >= 0) {
-        panel_dim(c, line - 1 - lw, y, lw, high);
+        dim(c, line - 1 - lw, y, lw, high);
         font_draw(c->font, c->s, line - 1 - lw + advance, y + 2, width, white, left);
     }
     if (line + 1 + rw <= width) {
-        panel_dim(c, line + 1, y, rw, high);
+        dim(c, line + 1, y, rw, high);
         font_draw(c->font, c->s, line + 1 + advance, y + 2, width, white, right);
     }
 }

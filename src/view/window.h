@@ -46,9 +46,6 @@ void panel_table(canvas *c, int width, int height, const readout *r);
 void panel_legend(canvas *c, int width, int height, const legend *l);
 void panel_split(canvas *c, int width, int height, int line, const char *left, const char *right);
 
-/* A rectangle made dark, so that text is legible on it. */
-void panel_dim(canvas *c, int x, int y, int width, int height);
-
 /* ---- bar.c ---- */
 
 /* The two lines below the picture. */

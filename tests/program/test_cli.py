@@ -586,6 +586,7 @@ def test_an_interrupted_picture_is_resumed(kage: Kage, whole: bytes) -> None:
                     stderr=subprocess.PIPE)
     part = kage.folder / "a.exr.part"
     while not (part.exists() and part.stat().st_size > 1 << 20):
+        assert process.poll() is None
         time.sleep(0.003)
     process.send_signal(signal.SIGINT)
     said = process.communicate(timeout=60)[1]

@@ -506,6 +506,7 @@ def levels() -> list[str]:
     return ["x86-64", "x86-64-v3"] if " avx2 " in flags and " fma " in flags else ["x86-64"]
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(platform.machine() != "x86_64", reason="levels of x86-64 only")
 def test_same_bytes_on_each_level(tmp_path: Path) -> None:
     """The clones choose by processor; programs built for one level alone must give the same bytes."""

@@ -203,6 +203,6 @@ def test_lights_at_the_limit_and_beyond(kage: Kage) -> None:
 
 def test_some_failed_allocations() -> None:
     """A few of what tests/verify/allocations.py does in full."""
-    ran, tried, bad = allocations.try_all(PROGRAM.resolve(), 3, 12)
+    ran, tried, bad = allocations.try_all(PROGRAM, 3, 12)
     assert not bad
     assert tried >= ran >= 1

@@ -1,6 +1,7 @@
 """Every scene of parity.py is the same picture in POV-Ray, which reads the export without a warning.
 
-A scene that fails stands in the test's name: `-k` with it makes that one alone.
+A scene that fails stands in the test's name: `-k` with it makes that one alone. The suite has the first scene of each
+shape and kind; the others are `slow`.
 """
 
 from __future__ import annotations
@@ -12,6 +13,13 @@ import pytest
 
 from tests.conftest import needs_povray
 from tests.support import parity
+
+
+def marked() -> list[object]:
+    """All scenes; those whose shape and kind another one before has are slow."""
+    first = {(scene.row, scene.column): scene for scene in reversed(parity.SCENES)}
+    return [scene if first[scene.row, scene.column] is scene else pytest.param(scene, marks=pytest.mark.slow)
+            for scene in parity.SCENES]
 
 
 @pytest.fixture(scope="module")
@@ -28,7 +36,7 @@ def found(request: pytest.FixtureRequest,
 
 
 @needs_povray
-@pytest.mark.parametrize("scene", parity.SCENES, ids=str)
+@pytest.mark.parametrize("scene", marked(), ids=str)
 def test_parity(found: dict[parity.Scene, Future[parity.Found]], scene: parity.Scene) -> None:
     """No warning about a gradient, above all: that would be holes."""
     one = found[scene].result()

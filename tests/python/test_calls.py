@@ -73,6 +73,25 @@ def test_progress_is_told() -> None:
     assert shares and shares == sorted(shares) and shares[0] >= 0 and shares[-1] <= 1
 
 
+#: A picture of one tile, which takes minutes: 2^20 samples of an area light in each pixel.
+ONE_TILE = {"image.size": [16, 8], "render.aa": 16,
+            "lights.lamp.area": {"u": [1, 0, 0], "w": [0, 0, 1], "samples": [64, 64]}}
+
+
+def test_a_long_tile_is_told_of_again_and_again() -> None:
+    steps: list[tuple[str, float]] = []
+
+    def listen(what: str, share: float) -> None:
+        steps.append((what, share))
+        if steps.count(("rendering", 0)) == 4:
+            raise LookupError
+
+    scene = kage.load(CUBE, sets=ONE_TILE)
+    with pytest.raises(LookupError):
+        scene.render(progress=listen)
+    assert steps[-4:] == [("rendering", 0)] * 4
+
+
 def test_what_the_callers_function_raises_ends_the_call() -> None:
     def listen(what: str, _share: float) -> None:
         raise LookupError(what)

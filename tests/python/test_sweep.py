@@ -19,9 +19,10 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from distributed import Client
+from distributed import Client, LocalCluster
 
 from kage.sweep import Keys, Output, Plan, SweepError, axis, records, run
+from kage.sweep import __main__ as program
 from kage.sweep.__main__ import main
 from kage.sweep.plan import Task
 from kage.sweep.run import cluster
@@ -106,6 +107,21 @@ def test_an_index_that_cannot_be_written_is_told(client: Client, tmp_path: Path,
     words = ["--size", "64x48", "--scheduler", client.scheduler.address, "--out", tmp_path]
     assert main([str(CUBE), *map(str, words)]) == 1
     assert "Is a directory" in capsys.readouterr().err
+
+
+def test_a_scheduler_without_workers_is_told_of(tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
+                                                capsys: pytest.CaptureFixture[str]) -> None:
+    """The worker starts when the message is there, so without it nothing would be rendered."""
+    with LocalCluster(n_workers=0, threads_per_worker=1, processes=True, dashboard_address=":0") as empty:
+        def say(text: str) -> None:
+            program_say(text)
+            empty.scale(1)
+
+        program_say = program.say
+        monkeypatch.setattr(program, "say", say)
+        words = ["--size", "64x48", "--scheduler", empty.scheduler_address, "--out", tmp_path]
+        assert main([str(CUBE), *map(str, words)]) == 0
+        assert capsys.readouterr().err.count(f"kage.sweep: waiting for workers at {empty.scheduler_address}") == 1
 
 
 # Bands and frames -----------------------------------------------------------------------------------

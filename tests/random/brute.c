@@ -77,8 +77,6 @@ wide_bvh *wide_new(int n, const wide_box *box, int32_t *order, int threads, cons
 
 void wide_free(wide_bvh *w) { free(w); }
 
-size_t wide_size(const wide_bvh *w) { return sizeof *w; }
-
 /* A beam gives up at once, and its rays go one by one. */
 void wide_beam_begin(wide_beam *k, int n, const int32_t *lane, const real *const r[3], const real *const s[3],
                      const real *end)

@@ -9,7 +9,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from tests.conftest import PROGRAM, TOP
+from tests.conftest import PROGRAM
+from tests.support.stops import left_over
 
 #: The functions, and with what each fails. 0: it does only one byte.
 FAILURES = {"open": (errno.EACCES, errno.EIO), "write": (errno.ENOSPC, errno.EIO, errno.EINTR, 0),
@@ -35,12 +36,16 @@ class Failure:
     wrong: tuple[str, ...]
 
 
-def make_library(folder: Path) -> Path:
-    """Compile failing_calls.c."""
-    made = folder / "failing.so"
-    subprocess.run([os.environ.get("CC", "cc").split()[-1], "-shared", "-fPIC", "-o", str(made),
-                    str(TOP / "tests" / "support" / "failing_calls.c"), "-ldl"], check=True)
+def preloaded(source: Path, folder: Path) -> Path:
+    """A library for LD_PRELOAD, of a file in C."""
+    made = folder / f"{source.stem}.so"
+    subprocess.run([os.environ.get("CC", "cc").split()[-1], "-O1", "-fno-builtin", "-shared", "-fPIC", "-o", made,
+                    source, "-ldl"], check=True)
     return made
+
+
+def make_library(folder: Path) -> Path:
+    return preloaded(Path(__file__).with_name("failing_calls.c"), folder)
 
 
 def fail(command: list[str], output: str, folder: Path, library: Path, call: str, at: int,
@@ -66,7 +71,7 @@ def fail(command: list[str], output: str, folder: Path, library: Path, call: str
         wrong.append("fails without a word")
     if code in (0, errno.EINTR) and call in ("read", "write", "pread") and done.returncode:
         wrong.append("a short or interrupted call is no error")
-    wrong += [f"left {path.name}" for path in folder.glob(".kage-*")]
+    wrong += [f"left {name}" for name in left_over(folder)]
     return Failure(call, at, code, done.returncode, done.stderr, tuple(wrong))
 
 

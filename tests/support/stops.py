@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import signal
 import subprocess
 from pathlib import Path
@@ -11,14 +12,31 @@ import numpy as np
 import OpenEXR
 from PIL import Image
 
+from tests.conftest import PROGRAM, TOP
+
 #: The signals that ask the program to end.
 SIGNALS = ("SIGINT", "SIGTERM", "SIGHUP", "SIGXCPU")
 
 
 def cpu_seconds(pid: int) -> float:
     """What the process has used of the processors so far, with its children that have ended."""
-    fields = Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()
-    return sum(map(int, fields[11:15])) / os.sysconf("SC_CLK_TCK")
+    return sum(map(int, stat_of(Path(f"/proc/{pid}"))[11:15])) / os.sysconf("SC_CLK_TCK")
+
+
+def stat_of(process: Path) -> list[str]:
+    """What /proc says of a process or a thread, from its state on."""
+    return (process / "stat").read_text().rsplit(")", 1)[1].split()
+
+
+def sleeps(pid: int) -> bool:
+    """Whether all threads of the process wait for something."""
+    return all(stat_of(thread)[0] == "S" for thread in Path(f"/proc/{pid}/task").iterdir())
+
+
+def listens(pid: int, number: signal.Signals) -> bool:
+    """Whether the process has a handler for the signal."""
+    caught = re.search(r"^SigCgt:\s*(\w+)$", Path(f"/proc/{pid}/status").read_text(), re.MULTILINE)
+    return caught is not None and int(caught[1], 16) >> number - 1 & 1 == 1
 
 
 def stop_and_wait(process: subprocess.Popen[str], number: signal.Signals) -> tuple[float, str]:
@@ -81,13 +99,13 @@ objects:
 """
 
 
-def make_inputs(folder: Path, top: Path) -> None:
+def make_inputs(folder: Path) -> None:
     """The scenes of COMMANDS, a large map and a model."""
     rng = np.random.default_rng(1)
     coarse = Image.fromarray((rng.random((64, 64)) * 255).astype(np.uint8))
     coarse.resize((2048, 2048), Image.Resampling.BICUBIC).save(folder / "map.png")
-    (folder / "small.yaml").write_text((top / "tests" / "data" / "cube.yaml").read_text())
-    for path in (top / "tests" / "data").glob("*.png"):
+    (folder / "small.yaml").write_text((TOP / "tests" / "data" / "cube.yaml").read_text())
+    for path in (TOP / "tests" / "data").glob("*.png"):
         (folder / path.name).write_bytes(path.read_bytes())
     ground = "  ground:\n    {}\n    material: clay\n"
     (folder / "map.yaml").write_text(SCENE + ground.format(
@@ -104,9 +122,8 @@ def make_inputs(folder: Path, top: Path) -> None:
 
 def make_outputs(folder: Path) -> None:
     """Older good files where COMMANDS write."""
-    program = os.environ.get("KAGE", "build/float/kage")
     for name in ("a.exr", "b.png", "c.exr"):
-        subprocess.run([str(Path(program).resolve()), "render", "small.yaml", "--size", "40x30", "--quiet", "-o", name],
+        subprocess.run([PROGRAM, "render", "small.yaml", "--size", "40x30", "--quiet", "-o", name],
                        cwd=folder, check=True)
     (folder / "d.pov").write_text("// older\n")
     (folder / "e.yaml").write_text("# older\n")

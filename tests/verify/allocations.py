@@ -18,9 +18,10 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
-from tests.verify.record import record
+from tests.conftest import PROGRAM
+from tests.support.failing import preloaded
+from tests.verify.record import TOP, record
 
-TOP = Path(__file__).resolve().parents[2]
 SCENES = TOP / "scenes"
 OLD = b"an older file"
 
@@ -83,10 +84,8 @@ class Trial:
     """The program with the preloaded library."""
 
     def __init__(self, kage: Path, folder: Path) -> None:
-        self.kage, self.folder, self.library = kage, folder, folder / "fail.so"
-        source = Path(__file__).with_name("allocations.c")
-        subprocess.run(["gcc", "-O1", "-fno-builtin", "-shared", "-fPIC", "-o", self.library, source, "-ldl"],
-                       check=True)
+        self.kage, self.folder = kage, folder
+        self.library = preloaded(Path(__file__).with_name("allocations.c"), folder)
 
     def run(self, command: Command, failing: int | None) -> tuple[subprocess.CompletedProcess[str], int, int, bytes]:
         """The result, the calls, the blocks that are left, and the output's bytes."""
@@ -125,8 +124,9 @@ def try_all(kage: Path, most: int, seconds: float, chosen: str = "", show: bool 
             if chosen not in command.name:
                 continue
             done, calls, base, _ = trial.run(command, None)
-            if done.returncode:
-                bad.append(f"{command.name}: fails without a failure: {done.stderr[:300]}")
+            if done.returncode or not calls:
+                bad.append(f"{command.name}, no call failing: {calls} calls, exit status {done.returncode}: "
+                           f"{done.stderr[:300]}")
                 continue
             ran += 1
             step = max(1, -(-calls // most))
@@ -147,11 +147,9 @@ def main() -> int:
     parser.add_argument("--seconds", type=float, default=1e9)
     parser.add_argument("--only", default="", help="commands with this in their names")
     given = parser.parse_args()
-    kage = Path(os.environ.get("KAGE", TOP / "build" / "float" / "kage")).resolve()
-    ran, tried, bad = try_all(kage, given.count, given.seconds, given.only, show=True)
+    ran, tried, bad = try_all(PROGRAM, given.count, given.seconds, given.only, show=True)
     print(*bad[:60], sep="\n", file=sys.stderr)
-    return record("allocations", "python -m tests.verify.allocations",
-                  {"commands": ran, "failed allocations": tried}, len(bad))
+    return record("allocations", {"commands": ran, "allocations that failed in turn": tried}, len(bad))
 
 
 if __name__ == "__main__":

@@ -80,9 +80,8 @@ def main() -> int:
         run("dpkg", "--purge", *PACKAGES)
     wrong += [f"{path} is left" for path in installed if path.exists()]
     print("\n".join(wrong))
-    figures: dict[str, int | float | str] = {
-        "packages": len(wanted), "files installed and removed": len(installed), "lintian's errors": errors}
-    return record("deb", "scripts/venv python -m tests.verify.deb", figures, len(wrong) + errors)
+    return record("deb", {"packages": len(wanted), "files installed and removed": len(installed),
+                          "errors of lintian": errors}, len(wrong) + errors)
 
 
 if __name__ == "__main__":

@@ -8,7 +8,10 @@ from __future__ import annotations
 
 import datetime
 import json
+import shlex
 import subprocess
+import sys
+from collections.abc import Mapping
 from pathlib import Path
 
 TOP = Path(__file__).resolve().parents[2]
@@ -21,17 +24,23 @@ def commit() -> str:
     return found.stdout.strip() or "unknown"
 
 
-def record(name: str, command: str, figures: dict[str, int | float | str], failures: int) -> int:
+def told(figures: Mapping[str, int | float]) -> str:
+    """As the table shows them: "3000 scenes, 12 refused"."""
+    return ", ".join(f"{value} {label}" for label, value in figures.items())
+
+
+def record(name: str, figures: Mapping[str, int | float], failures: int) -> int:
     """Keep what the check `name` found. Returns the exit status.
 
-    command: what a person types to repeat it. figures: a label, as the table shows it, and its value.
+    figures: a label, and the number that stands before it in the table.
     """
     KEPT.mkdir(parents=True, exist_ok=True)
     today = datetime.datetime.now(datetime.UTC).date().isoformat()
-    told = {"name": name, "command": command, "date": today, "commit": commit(),
-            "figures": figures, "failures": failures}
-    (KEPT / f"{name}.json").write_text(json.dumps(told, indent=1) + "\n", encoding="utf-8")
-    print(f"{name}: " + ", ".join(f"{label} {value}" for label, value in figures.items()) + f"; {failures} failed")
+    command = shlex.join(["scripts/venv", "python", "-m", f"tests.verify.{name}", *sys.argv[1:]])  # as it was asked for
+    found = {"name": name, "command": command, "date": today, "commit": commit(),
+             "figures": dict(figures), "failures": failures}
+    (KEPT / f"{name}.json").write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
+    print(f"{name}: {told(figures)}; {failures or 'none'} failed")
     return 1 if failures else 0
 
 

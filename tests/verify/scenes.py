@@ -1,7 +1,7 @@
 """Random scenes: each by every build that must give the same bytes, and as its properties say (tests/random).
 
-    python -m tests.verify.scenes --count 1000      the first 1000 seeds
-    python -m tests.verify.scenes --first 77 --count 1 --all
+    scripts/venv python -m tests.verify.scenes --count 1000      the first 1000 seeds
+    scripts/venv python -m tests.verify.scenes --first 77 --count 1 --all
 
 The builds are gcc and clang with -O0 and -O3, one without hierarchies, and double; they go to build/random. A scene
 that breaks something is made small and kept in tests/random/found.
@@ -108,8 +108,7 @@ def main() -> int:
         looked, bad, scenes = run(lab, seeds, 99 if asked.all else asked.few, asked.seconds)
         lab.end()
     print(", ".join(f"{name} {count}" for name, count in sorted(looked.items())))
-    return record("scenes", f"python -m tests.verify.scenes --count {asked.count}",
-                  {"random scenes": scenes, "builds": len(builds), "comparisons": sum(looked.values()),
+    return record("scenes", {"random scenes": scenes, "builds": len(builds), "comparisons": sum(looked.values()),
                    "pictures": lab.pictures, "minutes": round((time.monotonic() - begun) / 60)}, bad)
 
 

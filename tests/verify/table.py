@@ -12,10 +12,9 @@ PAGE = record.TOP / "docs" / "reliability.md"
 MARKED = re.compile(r"(?<=<!-- verify -->\n).*?(?=<!-- /verify -->)", re.DOTALL)
 
 
-def row(told: dict) -> str:
-    figures = ", ".join(f"{value} {label}" for label, value in told["figures"].items())
-    return (f"| {told['name']} | {figures} | {told['failures'] or 'none'} | `{told['command']}` | {told['date']} | "
-            f"{told['commit']} |")
+def row(found: dict) -> str:
+    return (f"| {found['name']} | {record.told(found['figures'])} | {found['failures'] or 'none'} | "
+            f"`{found['command']}` | {found['date']} | {found['commit']} |")
 
 
 def table(records: list[dict]) -> str:
@@ -34,7 +33,7 @@ def main() -> int:
     if options.write:
         page = PAGE.read_text(encoding="utf-8")
         PAGE.write_text(MARKED.sub(lambda _: table(records), page), encoding="utf-8")
-    return 1 if any(told["failures"] for told in records) else 0
+    return 1 if any(found["failures"] for found in records) else 0
 
 
 if __name__ == "__main__":

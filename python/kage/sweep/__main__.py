@@ -85,6 +85,11 @@ def plan_of(options: argparse.Namespace) -> Plan:
                    send=options.send)
 
 
+def say(text: str) -> None:
+    """Above the bar."""
+    tqdm.write(f"kage.sweep: {text}", file=sys.stderr)
+
+
 def sweep(options: argparse.Namespace) -> Done:
     plan = plan_of(options)
     count = sum(max(1, len(picture.bands)) for picture in plan.pictures)
@@ -97,7 +102,7 @@ def sweep(options: argparse.Namespace) -> Done:
             bar.update()
 
     with bar:
-        return run(plan, functools.partial(cluster, options.scheduler, options.workers), threads=options.threads,
+        return run(plan, functools.partial(cluster, options.scheduler, options.workers, say), threads=options.threads,
                    note=note)
 
 

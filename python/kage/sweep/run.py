@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import os
+import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import CancelledError
-from contextlib import AbstractContextManager, contextmanager, nullcontext
+from contextlib import AbstractContextManager, contextmanager, nullcontext, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -34,6 +35,8 @@ DEATHS, ROUNDS = 10, 3
 #: Seconds after which a result is asked for again. Where a worker dies in the middle of giving it, Dask may wait for
 #: ever.
 PATIENCE = 30
+#: Seconds after which a scheduler without workers is told of.
+SILENCE = 3.0
 
 Note = Callable[[Task, Result], object]
 
@@ -50,11 +53,14 @@ class Done:
 
 
 @contextmanager
-def cluster(scheduler: str | None = None, workers: int | None = None) -> Iterator[Client]:
-    """A client of a scheduler; or of a cluster of processes on this machine, which ends with it."""
+def cluster(scheduler: str | None = None, workers: int | None = None,
+            tell: Callable[[str], object] | None = None) -> Iterator[Client]:
+    """A client of a scheduler; or of a cluster of processes on this machine, which ends with it.
+
+    tell: called, in another thread, where the scheduler has no workers for some seconds."""
     if scheduler:
         try:
-            with Client(scheduler, timeout="20s", set_as_default=False) as client:
+            with Client(scheduler, timeout="20s", set_as_default=False) as client, watched(client, scheduler, tell):
                 yield client
         except (OSError, ValueError) as error:
             raise SweepError(f"{scheduler}: no scheduler answers: {error}", 1) from error
@@ -65,6 +71,25 @@ def cluster(scheduler: str | None = None, workers: int | None = None) -> Iterato
         preload="kage.sweep.quiet",
     ) as local, Client(local, set_as_default=False) as client:
         yield client
+
+
+@contextmanager
+def watched(client: Client, scheduler: str, tell: Callable[[str], object] | None) -> Iterator[None]:
+    """Tell once where there are no workers. Meanwhile the tasks are sent, as some clusters start workers for them."""
+    ended = threading.Event()
+
+    def watch() -> None:
+        with suppress(OSError, RuntimeError):  # the scheduler is lost: the tasks tell of that
+            if tell and not ended.wait(SILENCE) and not client.nthreads():
+                tell(f"waiting for workers at {scheduler}")
+
+    thread = threading.Thread(target=watch, daemon=True)
+    thread.start()
+    try:
+        yield
+    finally:
+        ended.set()
+        thread.join(1)
 
 
 #: A client, or what makes one when it is needed.

@@ -223,6 +223,63 @@ static void rendering_can_be_cancelled(void **state)
     kage_scene_free(s);
 }
 
+/* 2^20 samples of an area light in each pixel that sees the ground: a tile there takes minutes. Tiles above see the
+ * background. Two bands of four tiles, so that two threads take one each. */
+#define LONG_TILES                                                                                                     \
+    "camera: {from: [0.5, 3, -5], at: [0, 0, 0], fov: 40}\n"                                                           \
+    "image: {size: [16, 64]}\n"                                                                                        \
+    "render: {aa: 16}\n"                                                                                               \
+    "lights:\n"                                                                                                        \
+    "  lamp: {at: [-4, 5, -2], area: {u: [1, 0, 0], w: [0, 0, 1], samples: [64, 64]}}\n"                               \
+    "materials:\n"                                                                                                     \
+    "  clay: {color: [0.8, 0.7, 0.6], ambient: 0.1, diffuse: 0.8}\n"                                                   \
+    "objects:\n"                                                                                                       \
+    "  low: {plane: {origin: [0, -9, 0], u: [0, 0, 1], w: [1, 0, 0]}, material: clay}\n"
+
+/* While one tile is rendered, by the caller's thread or by the other one, the callback is called again and again, and
+ * ends it. Without that there would be four calls at most: at the start, and after each four tiles. */
+static void a_long_tile_can_be_cancelled(void **state)
+{
+    (void)state;
+    kage_scene *s = parse(LONG_TILES);
+    for (int threads = 1; threads <= 2; threads++) {
+        seen k = {0, 8, 0};
+        const kage_render_options o = {.threads = threads, .progress = count, .user = &k};
+        kage_film *f = NULL;
+        assert_int_equal(kage_render(s, &o, &f, NULL), KAGE_CANCELLED);
+        assert_int_equal(k.calls, 8);
+        CHECK(k.last, <, 1);
+    }
+    kage_scene_free(s);
+}
+
+/* Height look-ups of a displaced open cone that is transformed. */
+static int64_t lookups_of_cone(const char *transform)
+{
+    char text[1024];
+    snprintf(text, sizeof text,
+             HEAD "  hat: {cone: {from: [1, 0, 0], from_radius: 0.6, to: [1, 1, 0], to_radius: 0, open: true}, "
+                  "material: clay, bump: {function: sin(9*u)*sin(7*w), scale: 0.03}, transform: [{%s}]}\n",
+             transform);
+    kage_scene *s = parse(text);
+    const kage_render_options o = {.displaced = KAGE_YES};
+    kage_film *f = render_with(s, &o);
+    const int64_t count = kage_film_get_stats(f)->height_lookups;
+    kage_film_free(f);
+    kage_scene_free(s);
+    return count;
+}
+
+/* Stretched, a cone is searched by pieces, up to its apex where these have no normal. That takes about twice the
+ * look-ups of its closed form. */
+static void a_stretched_cone_takes_few_lookups(void **state)
+{
+    (void)state;
+    const int64_t turned = lookups_of_cone("rotate: [0, 30, 0]"), stretched = lookups_of_cone("scale: [1, 1.2, 0.8]");
+    CHECK(turned, >, 1000);
+    CHECK(stretched, <, 4 * turned);
+}
+
 static int render_inside(void *user, const char *what, double share)
 {
     (void)what, (void)share;
@@ -352,6 +409,8 @@ int main(void)
         cmocka_unit_test(wrong_options_are_named),
         cmocka_unit_test(progress_grows),
         cmocka_unit_test(rendering_can_be_cancelled),
+        cmocka_unit_test(a_stretched_cone_takes_few_lookups),
+        cmocka_unit_test(a_long_tile_can_be_cancelled),
         cmocka_unit_test(a_callback_may_render),
         cmocka_unit_test(the_stats_count),
         cmocka_unit_test(a_probe_is_as_the_picture),

@@ -222,6 +222,11 @@ static void a_model_is_read(void **state)
     kage_scene_free(s);
 }
 
+#define WILD                                                                                                           \
+    HEAD "  dome:\n"                                                                                                   \
+         "    parametric: {x: u, y: 0.1*sin(90*u)*cos(80*w), z: w, u: [-1, 1], w: [-1, 1]}\n"                          \
+         "    material: clay\n"
+
 static int cancel_at(void *user, const char *what, double share)
 {
     (void)share;
@@ -240,6 +245,32 @@ static void reading_can_be_cancelled(void **state)
                          KAGE_CANCELLED);
         assert_null(s);
         assert_null(e);
+    }
+}
+
+static int count_building(void *user, const char *what, double share)
+{
+    int *left = user;
+    BETWEEN(0, share, 1);
+    return strcmp(what, "building") == 0 && --*left == 0;
+}
+
+/* A parametric surface tells of its pieces as they are halved, and no more are after it is cancelled. */
+static void preparing_a_patch_can_be_cancelled(void **state)
+{
+    (void)state;
+    const int MANY = 1 << 20;
+    int left = MANY;
+    const kage_load_options all = {.threads = 1, .progress = count_building, .user = &left};
+    kage_scene_free(parse_with(WILD, NULL, &all));
+    const int calls = MANY - left;
+    CHECK(calls, >=, 64);
+    for (int at = 1; at <= calls; at += calls / 3) {
+        kage_scene *s = NULL;
+        const kage_load_options o = {.threads = 1, .progress = count_building, .user = &left};
+        left = at;
+        assert_int_equal(kage_scene_parse(WILD, strlen(WILD), "w", NULL, &o, &s, NULL), KAGE_CANCELLED);
+        assert_int_equal(left, 0);
     }
 }
 
@@ -302,6 +333,7 @@ int main(void)
         cmocka_unit_test(a_reader_that_breaks_down_is_an_error_of_the_scene),
         cmocka_unit_test(a_model_is_read),
         cmocka_unit_test(reading_can_be_cancelled),
+        cmocka_unit_test(preparing_a_patch_can_be_cancelled),
         cmocka_unit_test(wrong_options_are_named),
         cmocka_unit_test(the_methods_are_listed),
         cmocka_unit_test(a_decimal_comma_changes_nothing),
