@@ -108,8 +108,7 @@ def silhouette(smooth: Layers, displaced: Layers) -> tuple[np.ndarray, np.ndarra
     """The receiver, and its silhouette. `smooth` is made by exact."""
     before, after = smooth["order"] >= 0, displaced["order"] >= 0
     both = before & after
-    with np.errstate(invalid="ignore"):  # the background is infinitely far away
-        moved = np.abs(displaced["Z"] - smooth["Z"] - smooth["tau"]) > SAME_DEPTH * smooth["Z"]
+    moved = np.abs(displaced["Z"] - smooth["Z"] - smooth["tau"]) > SAME_DEPTH * smooth["Z"]
     other = (before != after) | (both & (moved | (smooth["order"] != quality.ORDER_CODES["exact"])))
     receiver = before | after
     return receiver, receiver & near(other)

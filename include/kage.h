@@ -316,9 +316,9 @@ KAGE_API int kage_film_height(const kage_film *film);
 /* The part of the picture that is on the film: x0 y0 x1 y1. */
 KAGE_API void kage_film_crop(const kage_film *film, int crop[4]);
 
-/* The planes: R G B; with layers also Z (depth; +infinity where nothing is met, all else is finite), P.X P.Y P.Z
- * (position), N.X N.Y N.Z (the normal that is shaded), uw.u uw.w, height (P), tau (t0 - t_hit), order (-1 none, 0, 1,
- * 2, 3 for 2+, 4 iter, 5 march, 6 exact), and visibility.NAME (0..1) for each light. */
+/* The planes: R G B; with layers also Z (depth; 1e30 where nothing is met), P.X P.Y P.Z (position), N.X N.Y N.Z (the
+ * normal that is shaded), uw.u uw.w, height (P), tau (t0 - t_hit), order (-1 none, 0, 1, 2, 3 for 2+, 4 iter, 5 march,
+ * 6 exact), and visibility.NAME (0..1) for each light. All are finite: none has a NaN or an infinity. */
 KAGE_API int kage_film_plane_count(const kage_film *film);
 KAGE_API const char *kage_film_plane_name(const kage_film *film, int index); /* NULL: no such plane */
 
@@ -429,7 +429,7 @@ typedef struct kage_stats {
     int64_t height_lookups; /* evaluations of P */
     int64_t bumped;         /* samples on bumped objects */
     int64_t fell_back;      /* bumped samples with another order than asked for */
-    int64_t unconfirmed;    /* hits of displaced surfaces that Newton's iteration did not confirm */
+    int64_t unconfirmed;    /* hits of displaced and parametric surfaces that are not proved to be the first */
     int stage_count, order_count;
     const kage_stage *stages; /* all seconds are 0 without kage_render_options.timing */
     const kage_order_count *orders;

@@ -25,6 +25,7 @@ from kage import methods
 from kage.methods import Bump, Like, Real
 
 Mask = npt.NDArray[np.bool_]
+MISS = 1e29  # farther positions are misses: kage's Z is 1e30 there, of which a component is more than half
 
 
 class Heights(Protocol):
@@ -84,17 +85,18 @@ def layers(eye: Like, position: Like, uv: Like, *, normal: Like | None = None,
            tangents: tuple[Like, Like] | None = None, there: Like | None = None, part: Like | None = None) -> Layers:
     """The layers of a picture.
 
-    eye: of the camera, or of each ray. position: smooth hits; from a depth along rays of unit length it is
-    eye + directions * depth[..., None]. uv: (..., 2), the coordinates of the bump. normal: of the smooth surface, on
-    the side of +P, (3) or (..., 3); without it Qu x Qw must be. tangents: Qu and Qw, what position changes by for 1 of
-    u and of w; without them they come from differences between neighbouring pixels. there: which pixels have the bump.
-    part: an integer for each pixel; differences are taken within a part, such as an object.
+    eye: of the camera, or of each ray. position: smooth hits, not finite or beyond 1e29 where there is none; from a
+    depth along rays of unit length it is eye + directions * depth[..., None]. uv: (..., 2), the coordinates of the
+    bump. normal: of the smooth surface, on the side of +P, (3) or (..., 3); without it Qu x Qw must be. tangents: Qu
+    and Qw, what position changes by for 1 of u and of w; without them they come from differences between neighbouring
+    pixels. there: which pixels have the bump. part: an integer for each pixel; differences are taken within a part,
+    such as an object.
     """
     position, uv = np.asarray(position), np.asarray(uv)
     if position.shape[-1:] != (3,) or uv.shape != (*position.shape[:-1], 2):
         raise ValueError(f"position, uv: expected shapes (..., 3) and (..., 2), not {position.shape} and {uv.shape}")
     known = np.ones(position.shape[:-1], np.bool_) if there is None else np.asarray(there, np.bool_)
-    known = known & np.isfinite(position).all(-1) & np.isfinite(uv).all(-1)
+    known = known & (np.abs(position) < MISS).all(-1) & np.isfinite(uv).all(-1)
     parts = np.where(known, 0 if part is None else np.asarray(part, np.int64), np.iinfo(np.int64).min)
     if tangents is None:
         Qu, Qw = partials(position, uv, parts)

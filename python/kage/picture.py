@@ -32,8 +32,8 @@ class Picture:
         self._film = film
         self._name = name
         count = range(lib.kage_film_plane_count(film))
-        #: The names of the planes: R G B, and with layers Z, P.X P.Y P.Z, N.X ..., uw.u uw.w, height, tau, order, and
-        #: visibility.NAME for each light.
+        #: The names of the planes: R G B, and with layers Z (1e30 where nothing is met), P.X P.Y P.Z, N.X ..., uw.u
+        #: uw.w, height, tau, order, and visibility.NAME for each light.
         self.planes: tuple[str, ...] = tuple(text_of(lib.kage_film_plane_name(film, index)) or "" for index in count)
 
     @property

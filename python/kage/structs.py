@@ -182,7 +182,7 @@ class Stats:
     bumped: int
     #: bumped samples with another order than asked for
     fell_back: int
-    #: hits of displaced surfaces that Newton's iteration did not confirm
+    #: hits of displaced and parametric surfaces that are not proved to be the first
     unconfirmed: int
     #: all seconds are 0 without RenderOptions.timing
     stages: tuple[Stage, ...]

@@ -193,7 +193,7 @@ static void set_stats(kage_film *f, const stats *t, double seconds)
         .height_lookups = t->evaluations + t->displaced.evaluations,
         .bumped = t->bumped,
         .fell_back = t->fell_back,
-        .unconfirmed = t->displaced.uncertain,
+        .unconfirmed = t->displaced.uncertain + t->patches.unsure,
         .stage_count = STAGES,
         .order_count = ORDER_CODES,
         .stages = f->stages,

@@ -28,7 +28,7 @@ typedef float real;
 /* A literal of type real: R(0.5). */
 #define R(x) ((real)(x))
 
-/* The t of a ray that hits nothing. Larger numbers count as no value. */
+/* The t of a ray that hits nothing, which is Z in the film. Larger numbers count as no value, and colours end here. */
 #define REAL_FAR ((real)1e30)
 
 /* The least normal number of float; smaller squares of lengths have no digits. */

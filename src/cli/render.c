@@ -177,7 +177,7 @@ static void print_stats(FILE *to, const kage_stats *t, double output)
     if (t->undefined)
         fprintf(to, "samples without a value, smooth there: %ld\n", (long)t->undefined);
     if (t->unconfirmed)
-        fprintf(to, "hits of displaced surfaces that Newton's iteration did not confirm: %ld\n", (long)t->unconfirmed);
+        fprintf(to, "hits of displaced or parametric surfaces that are not confirmed: %ld\n", (long)t->unconfirmed);
 }
 
 /* ---- the work ---- */
@@ -241,7 +241,7 @@ static void print_end(const arguments *a, const kage_stats *t, const char *name,
         fprintf(stderr, "\n");
     }
     if (t->unconfirmed && !a->quiet)
-        fprintf(stderr, "%s: %ld hits of displaced surfaces are not confirmed to the last digits\n", name,
+        fprintf(stderr, "%s: %ld hits of displaced or parametric surfaces are not confirmed\n", name,
                 (long)t->unconfirmed);
     if (t->undefined && !a->quiet)
         fprintf(stderr, "%s: no value at %ld samples, first on %s: smooth there, without a shift\n", name,

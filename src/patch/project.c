@@ -12,7 +12,8 @@ enum { STEPS = 16 }; /* of the iteration; three or four are usual */
 
 #define CONVERGED 1e-9 /* a step, as a share of the piece's range: the next one is of double's rounding */
 #define DAMPING 1e-14  /* keeps u or w in place where Qu or Qw is 0, as at a pole; else below rounding */
-#define MARGIN 1e-6f   /* of the search in the hierarchy, in radii: more than float's rounding there */
+#define MARGIN 1e-6f   /* of the search in the hierarchy, in radii: twice float's rounding there and more */
+#define NEAR 5e-7      /* of that, what counts: of boxes farther off only some hierarchies report some */
 #define FARTHEST2 4    /* the square of the largest distance from the centre, in radii, that is looked up */
 
 /* Pairs of a point and a piece that wait to be solved, side by side. */
@@ -36,7 +37,7 @@ typedef struct search {
     pairs p;
 } search;
 
-/* One step for each pair, kept within its range, and the squared distance before it. */
+/* One step for each pair that has not converged, kept within its range, and the squared distance before it. */
 STAGE static void gauss_newton_step(pairs *restrict p, const patch_jets *restrict q)
 {
     for (int i = 0; i < p->n; i++) {
@@ -55,10 +56,12 @@ STAGE static void gauss_newton_step(pairs *restrict p, const patch_jets *restric
         w = w > p->w0[i] ? w : p->w0[i];
         w = w < p->w1[i] ? w : p->w1[i];
         const double a = fabs(u - p->u[i]) / (p->u1[i] - p->u0[i]), b = fabs(w - p->w[i]) / (p->w1[i] - p->w0[i]);
-        p->step[i] = a > b ? a : b;
-        p->off[i] = dx * dx + dy * dy + dz * dz;
-        p->u[i] = u;
-        p->w[i] = w;
+        const int on = p->step[i] > CONVERGED; /* else the pairs that it waits with would matter */
+        const double off = dx * dx + dy * dy + dz * dz, step = a > b ? a : b;
+        p->off[i] = on ? off : p->off[i];
+        p->u[i] = on ? u : p->u[i];
+        p->w[i] = on ? w : p->w[i];
+        p->step[i] = on ? step : p->step[i];
     }
 }
 
@@ -104,13 +107,27 @@ static void solve(search *e)
     p->n = 0;
 }
 
+/* Whether all of a piece's box is farther from a point than `far`. */
+static bool is_far(const piece *f, vec3 at, double far)
+{
+    const double p[3] = {at.x, at.y, at.z};
+    double off2 = 0;
+    for (int k = 0; k < 3; k++) {
+        const double off = greater(greater(f->box[0][k] - p[k], p[k] - f->box[1][k]), 0);
+        off2 += off * off;
+    }
+    return off2 > far * far;
+}
+
 static void visit(void *user, int32_t index)
 {
     search *e = user;
     const piece *f = &e->f->l.piece[index];
     const int lane = e->lane;
     const vec3 at = e->s->place[lane], d = vec3_sub(at, f->c);
-    if ((e->only && e->only[lane] != f->part) || vec3_length(d) > piece_radius(f) + e->s->off[lane])
+    const double off = e->s->off[lane];
+    if ((e->only && e->only[lane] != f->part) || vec3_length(d) > piece_radius(f) + off ||
+        is_far(f, at, off + NEAR * e->f->l.space.radius))
         return;
     pairs *p = &e->p;
     const int i = p->n++;

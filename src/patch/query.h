@@ -5,9 +5,6 @@
 
 #include "patch/surface.h"
 
-/* The most halvings for one ray, where bounds are so wide that they prove nothing: smooth surfaces take some tens. */
-enum { PATCH_HALVINGS = 1024 };
-
 /* A wave of rays to intersect with a patch. Origins are moved to the point of each ray that is closest to the patch's
  * centre, so that a distant eye costs no precision: the ray is at r + s (t - start). */
 typedef struct patch_query {
@@ -17,6 +14,7 @@ typedef struct patch_query {
     double from[LANES], to[LANES]; /* only roots between these count, as t - start; `to` becomes the first root found */
     bool found[LANES], unsure[LANES];  /* unsure: it is not proved that no root comes before */
     int halvings[LANES], tries[LANES]; /* of pieces, for this ray so far; of those without a proof */
+    bool gave_up[LANES];               /* it had more undecided pieces than it may halve: a root may be missing */
     bool any;                          /* any root will do, as for shadows; `to` is then undefined */
     long evaluations;                  /* of the patch, so far */
     const pulse *pulse;                /* asked between pieces that are subdivided; NULL: none */
@@ -27,9 +25,6 @@ void patch_query_begin(patch_query *k, const patch_surface *f, bool any, const p
 
 /* Put in ray i: r + s t, from < t < to. All of 0..n-1 are put in before the query runs. */
 void patch_query_add(patch_query *k, int i, vec3 r, vec3 s, double from, double to);
-
-/* Whether ray i had more undecided pieces than it may halve, so that a root may be missing. */
-static inline bool patch_query_gave_up(const patch_query *k, int i) { return k->halvings[i] >= PATCH_HALVINGS; }
 
 /* Find the first root of each of the n rays. */
 void patch_query_run(patch_query *k, int n);

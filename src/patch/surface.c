@@ -85,7 +85,23 @@ void patch_surface_intersect(const patch_surface *f, int n, const rays *x, const
             h->t[i] = t;
             h->id[i] = id;
         }
-        c->unsure += (hit && k.unsure[i]) || patch_query_gave_up(&k, i);
+        c->unsure += (hit && k.unsure[i]) || k.gave_up[i];
+    }
+}
+
+patch_surface patch_surface_counting(const surface *f, patch_counts *c)
+{
+    patch_surface g = *(const patch_surface *)f;
+    g.counts = c;
+    return g;
+}
+
+static void count(const surface *base, const patch_counts *c)
+{
+    patch_counts *sum = ((const patch_surface *)base)->counts;
+    if (sum) {
+        sum->evaluations += c->evaluations;
+        sum->unsure += c->unsure;
     }
 }
 
@@ -93,12 +109,14 @@ static void patch_hit(const surface *base, int n, const rays *x, int32_t id, hit
 {
     patch_counts c = {0};
     patch_surface_intersect((const patch_surface *)base, n, x, NULL, id, h, &c);
+    count(base, &c);
 }
 
 static void patch_hit_own(const surface *base, int n, const rays *x, const ray_origins *from, int32_t id, hits *h)
 {
     patch_counts c = {0};
     patch_surface_intersect((const patch_surface *)base, n, x, from, id, h, &c);
+    count(base, &c);
 }
 
 void patch_surface_occlude(const patch_surface *f, int n, const rays *x, bool own, const int32_t *part, real *lit,
@@ -124,7 +142,7 @@ void patch_surface_occlude(const patch_surface *f, int n, const rays *x, bool ow
     for (int i = 0; i < n; i++) {
         if (k.found[i])
             lit[i] = 0;
-        c->unsure += (k.found[i] && k.unsure[i]) || (!k.found[i] && patch_query_gave_up(&k, i));
+        c->unsure += (k.found[i] && k.unsure[i]) || (!k.found[i] && k.gave_up[i]);
     }
 }
 
@@ -132,12 +150,14 @@ static void patch_occlude(const surface *base, int n, const rays *x, real *lit)
 {
     patch_counts c = {0};
     patch_surface_occlude((const patch_surface *)base, n, x, false, NULL, lit, &c);
+    count(base, &c);
 }
 
 static void patch_occlude_own(const surface *base, int n, const rays *x, const int32_t *part, real *lit)
 {
     patch_counts c = {0};
     patch_surface_occlude((const patch_surface *)base, n, x, true, part, lit, &c);
+    count(base, &c);
 }
 
 /* ---- (u,w) and size ---- */

@@ -7,13 +7,22 @@
 #include "base/pulse.h"
 #include "geometry/closed_form.h"
 
+/* Counts of work: evaluations of the patch, and hits that are not proved to be the first. In: what is asked during long
+ * searches, or NULL. */
+typedef struct patch_counts {
+    long evaluations, unsure;
+    const pulse *pulse;
+} patch_counts;
+
+/* A copy of the struct is the same surface; it is valid as long as the original. */
 typedef struct patch_surface {
     surface base;
     surface_ops *methods; /* owned: `kind` and `parts` are the patch's */
     patch *q;             /* owned */
     pieces l;
-    bvh *tree;   /* over the pieces, in l.space */
-    bool broken; /* Q or its normal may jump, and there nothing is proved of pieces of any size */
+    bvh *tree;            /* over the pieces, in l.space */
+    patch_counts *counts; /* what this copy's hits and shadows add to; NULL: they are not counted */
+    bool broken;          /* Q or its normal may jump, and there nothing is proved of pieces of any size */
 } patch_surface;
 
 /* Whether a surface is one. */
@@ -37,12 +46,8 @@ surface *patch_surface_formula(const char *kind, const form_formula *f, int thre
 /* As patch_surface_new_bounded, with the flatness of its pieces (pieces_of). */
 patch_surface *patch_surface_make(patch *q, double flat, const progress *w, bool *bounded);
 
-/* Counts of work: evaluations of the patch, and hits that are not proved to be the first. In: what is asked during long
- * searches, or NULL. */
-typedef struct patch_counts {
-    long evaluations, unsure;
-    const pulse *pulse;
-} patch_counts;
+/* A copy that adds to *c, for one thread. It owns nothing. */
+patch_surface patch_surface_counting(const surface *f, patch_counts *c);
 
 /* Hits of rays and shadows of segments, as the members of surface_ops; work is added to *c. from: NULL where no ray
  * starts on the surface. own: whether all segments do, and then part[i], or NULL: on any part. */

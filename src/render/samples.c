@@ -9,7 +9,7 @@ void samples_background(int n, vec3 color, bool layers, samples *o)
     fill_vec3s(n, (real)color.x, (real)color.y, (real)color.z, &o->rgb);
     if (!layers)
         return;
-    fill(n, (real)HUGE_VAL, o->depth);
+    fill(n, REAL_FAR, o->depth);
     fill_vec3s(n, 0, 0, 0, &o->position);
     fill_vec3s(n, 0, 0, 0, &o->normal);
     fill(n, 0, o->u);
@@ -25,8 +25,19 @@ STAGE static void bound(int n, real *restrict v)
         v[i] = real_max(real_min(v[i], REAL_FAR), -REAL_FAR);
 }
 
+/* The number of colours that may have something to bound: a look costs a fifth of bounding all. */
+STAGE static int count_bright(int n, const real *restrict x, const real *restrict y, const real *restrict z)
+{
+    int far = 0;
+    for (int i = 0; i < n; i++)
+        far += !(real_abs(x[i]) + real_abs(y[i]) + real_abs(z[i]) < REAL_FAR);
+    return far;
+}
+
 void samples_bound(int n, vec3s *rgb)
 {
+    if (count_bright(n, rgb->x, rgb->y, rgb->z) == 0)
+        return;
     bound(n, rgb->x);
     bound(n, rgb->y);
     bound(n, rgb->z);

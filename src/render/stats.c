@@ -49,6 +49,8 @@ void stats_add(stats *sum, const stats *part)
     sum->evaluations += part->evaluations;
     sum->displaced.evaluations += part->displaced.evaluations;
     sum->displaced.uncertain += part->displaced.uncertain;
+    sum->patches.evaluations += part->patches.evaluations;
+    sum->patches.unsure += part->patches.unsure;
     sum->bumped += part->bumped;
     sum->fell_back += part->fell_back;
     stats_undefined(sum, part->undefined_object - 1, part->undefined);

@@ -4,6 +4,7 @@
 
 #include "displaced/displaced.h"
 #include "method/method.h"
+#include "patch/surface.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -31,6 +32,7 @@ typedef struct stats {
     long secondary_rays;        /* mirrored, refracted and straight through */
     long orders[ORDER_CODES];   /* bumped samples by the order really used: method_code + 1 */
     displaced_counts displaced; /* hits of displaced surfaces */
+    patch_counts patches;       /* hits of smooth patches */
     long bumped, fell_back;     /* bumped samples; those with another order than asked for */
     long undefined;             /* samples where P, n', the shift or the light had no value */
     int32_t undefined_object;   /* the lowest object with such a sample, plus 1; 0: none */

@@ -25,7 +25,11 @@ static void choose_surfaces(const tracer *tr, workspace *v)
         const object *o = &tr->scene->object[k];
         if (o->displaced)
             v->displaced[k] = displaced_counting(o->displaced, &v->stats->displaced);
-        v->surface[k] = tr->displaced && o->displaced ? &v->displaced[k].base : o->shape;
+        if (patch_surface_is(o->shape))
+            v->patches[k] = patch_surface_counting(o->shape, &v->stats->patches);
+        v->surface[k] = tr->displaced && o->displaced ? &v->displaced[k].base
+                        : patch_surface_is(o->shape)  ? &v->patches[k].base
+                                                      : o->shape;
     }
 }
 
@@ -41,8 +45,9 @@ workspace *workspace_new(const tracer *tr, memory *m)
     v->stats = calloc(1, sizeof *v->stats);
     v->surface = memory_new(m, objects * sizeof *v->surface);
     v->displaced = memory_new(m, objects * sizeof *v->displaced);
+    v->patches = memory_new(m, objects * sizeof *v->patches);
     v->candidates = s->object_bvh ? candidates_new(s->object_bvh, m) : NULL;
-    if (!v->stats || !v->surface || !v->displaced || (s->object_bvh && !v->candidates)) {
+    if (!v->stats || !v->surface || !v->displaced || !v->patches || (s->object_bvh && !v->candidates)) {
         workspace_free(v);
         return NULL;
     }
@@ -51,6 +56,7 @@ workspace *workspace_new(const tracer *tr, memory *m)
         w->stats = v->stats;
         w->surface = v->surface;
         w->displaced = v->displaced;
+        w->patches = v->patches;
         w->candidates = v->candidates;
     }
     return v;
@@ -68,6 +74,7 @@ void workspace_free(workspace *v)
 {
     if (v) {
         candidates_free(v->candidates);
+        memory_free(v->patches);
         memory_free(v->displaced);
         memory_free(v->surface);
         free(v->stats);

@@ -6,6 +6,7 @@
 
 #include "base/pulse.h"
 #include "displaced/displaced.h"
+#include "patch/surface.h"
 #include "render/samples.h"
 #include "render/secondary.h"
 #include "render/stats.h"
@@ -43,6 +44,7 @@ struct workspace {
     stats *stats;
     const surface **surface;       /* of each object: the smooth or the displaced one */
     displaced *displaced;          /* of each object that has one, with this thread's counts */
+    patch_surface *patches;        /* of each object that is one, with this thread's counts */
     const pulse *pulse;            /* asked between the parts of a wave; NULL: none */
     struct candidates *candidates; /* with many objects (object_bvh.h); NULL: all objects are tested */
 };

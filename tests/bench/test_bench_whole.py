@@ -30,8 +30,8 @@ def test_silhouette() -> None:
     """A pixel that only the displaced picture has, one whose true hit is on another part, and their neighbours."""
     order, depth, tau = flat(6), flat(5), flat(0.25)
     smooth, displaced = layers(order.copy(), depth.copy(), tau), layers(order.copy(), depth + tau, tau)
-    smooth["order"][:, 9:], smooth["Z"][:, 9:] = -1, np.inf  # the background
-    displaced["order"][:, 10:], displaced["Z"][:, 10:] = -1, np.inf
+    smooth["order"][:, 9:], smooth["Z"][:, 9:] = -1, 1e30  # the background
+    displaced["order"][:, 10:], displaced["Z"][:, 10:] = -1, 1e30
     displaced["Z"][4, 3] = 4
     receiver, edge = whole.silhouette(smooth, displaced)
     assert receiver[:, :10].all() and not receiver[:, 10:].any()

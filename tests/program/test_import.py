@@ -117,7 +117,7 @@ def test_all_parts_are_the_model(kage: Kage) -> None:
     (kage.folder / "x.yaml").write_text(head + "\nobjects:\n  all: {mesh: {file: garden.gltf}, material: Bark}\n")
     whole = picture(kage)["Z"]
     assert np.isclose(apart, whole, rtol=0, atol=1e-4).mean() > 0.999
-    assert np.isfinite(whole).mean() > 0.3
+    assert (whole < 1e30).mean() > 0.3
 
 
 def test_images_are_converted(kage: Kage) -> None:

@@ -11,7 +11,7 @@ from tests.random.draw import Scene, Tree, shape_of
 
 FORMS = ("plane", "rectangle", "disc", "box", "sphere", "cylinder", "cone", "torus", "ellipsoid")
 Rays = tuple[np.ndarray, np.ndarray]  # r and s: n x 3
-FAR = np.inf
+FAR = 1e30
 
 
 def unit(v: Any) -> np.ndarray:

@@ -704,7 +704,7 @@ def edges(of: np.ndarray) -> np.ndarray:
 
 def borders(picture: dict[str, np.ndarray]) -> np.ndarray:
     """Within one pixel of silhouettes, of the edges between objects and faces, and of shadows."""
-    found = edges(np.isfinite(picture["Z"]) & (picture["Z"] < 1e6))
+    found = edges(picture["Z"] < 1e6)
     normal = np.stack([picture[f"N.{axis}"] for axis in "XYZ"], axis=-1)
     for y, x in ((0, 1), (1, 0)):
         a, b = normal[: normal.shape[0] - y, : normal.shape[1] - x], normal[y:, x:]

@@ -773,6 +773,54 @@ static void refused(void **state)
     assert_null(patch_surface_new(function("u", "log(w)", "w", 0, 1, -2, -1), NULL));
 }
 
+/* The same surface with its pieces in another order, and so another hierarchy. */
+static void reorder(patch_surface *f)
+{
+    bvh_box *box = calloc((size_t)f->l.n, sizeof *box);
+    assert_non_null(box);
+    for (int i = f->l.n - 1; i > 0; i--) {
+        const int j = (int)random_in(0, i);
+        const piece other = f->l.piece[i];
+        f->l.piece[i] = f->l.piece[j];
+        f->l.piece[j] = other;
+    }
+    for (int i = 0; i < f->l.n; i++)
+        box[i] = bvh_box_in(&f->l.space, f->l.piece[i].box[0], f->l.piece[i].box[1]);
+    bvh_free(f->tree);
+    f->tree = bvh_new(f->l.n, box, 1, NULL);
+    assert_non_null(f->tree);
+    free(box);
+}
+
+/* Also where rays reach their limit, so that a root may be missing. */
+static void any_order_of_pieces(void **state)
+{
+    (void)state;
+    surface *f[2];
+    patch_counts c[2] = {{0}};
+    for (int k = 0; k < 2; k++)
+        f[k] = patch_surface_new(function("u", "0.1*sin(1e20*u + w)", "w", -1, 1, -1, 1), NULL);
+    reorder((patch_surface *)f[1]);
+    static rays x;
+    static hits h[2];
+    static real lit[2][LANES];
+    for (int i = 0; i < LANES; i++)
+        random_ray(&x, i, 1.2);
+    for (int k = 0; k < 2; k++) {
+        no_hits(&h[k], LANES);
+        patch_surface_intersect((patch_surface *)f[k], LANES, &x, NULL, 0, &h[k], &c[k]);
+        for (int i = 0; i < LANES; i++)
+            lit[k][i] = 1;
+        patch_surface_occlude((patch_surface *)f[k], LANES, &x, false, NULL, lit[k], &c[k]);
+        surface_free(f[k]);
+    }
+    assert_memory_equal(h[0].t, h[1].t, sizeof h[0].t);
+    assert_memory_equal(h[0].id, h[1].id, sizeof h[0].id);
+    assert_memory_equal(lit[0], lit[1], sizeof lit[0]);
+    assert_int_equal(c[0].unsure, c[1].unsure);
+    CHECK(c[0].unsure, >, 10);
+}
+
 static bool has_closed_form(int kind) { return kind == BALL || kind == RING; }
 
 static const property PROPERTIES[] = {
@@ -795,6 +843,7 @@ int main(void)
         cmocka_unit_test(displaced_at_any_scale),
         cmocka_unit_test(feet_at_any_scale),
         cmocka_unit_test(rough_bounds),
+        cmocka_unit_test(any_order_of_pieces),
 #ifdef KAGE_DOUBLE
         cmocka_unit_test(error_slopes),
 #endif
