@@ -69,12 +69,13 @@ objects:
 
 
 def start(command: Sequence[object], **options: Any) -> subprocess.Popen[Any]:
-    """Start a command that is to be interrupted: Ctrl-C ends it even where it is ignored here, as under nohup."""
-    return subprocess.Popen([str(word) for word in command], preexec_fn=restore_interrupt, **options)
+    """Start a command that is to be stopped: signals end it even where they are ignored here, as under nohup."""
+    return subprocess.Popen([str(word) for word in command], preexec_fn=restore_signals, **options)
 
 
-def restore_interrupt() -> None:
-    signal.signal(signal.SIGINT, signal.SIG_DFL)
+def restore_signals() -> None:
+    for number in (signal.SIGINT, signal.SIGHUP):
+        signal.signal(number, signal.SIG_DFL)
 
 
 @dataclass

@@ -80,6 +80,7 @@ def write_gravel(kage: Kage) -> Path:
     return write(kage, heights, PLANE, ABOVE, 1 / np.quantile(slopes, 0.95), ", size: [1.3, 1.3]")
 
 
+@pytest.mark.slow
 @needs_povray
 def test_gravel_on_a_plane(kage: Kage) -> None:
     """95 % of slopes below 1. Cells were joined, and nothing but the width of facets was said."""

@@ -22,6 +22,6 @@ def test_the_examples_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsy
         lines = "\n" * text[: block.start()].count("\n")  # so that an error names the line of the guide
         exec(compile(f"{lines}\n{block[1]}", str(GUIDE), "exec"), names)  # noqa: S102 - our own
     shown = capsys.readouterr().out
-    assert "R G B Z P.X".replace(" ", "', '") in shown and "ground steep 0.5" in shown
+    assert "R G B Z P.X".replace(" ", "', '") in shown and "ground steep 0.6" in shown
     assert "scene 1 16" in shown and names["picture"].rgb.max() > 0.5
     assert {"cube.png", "cube.exr", "large.exr", "pond.yaml", "cube.pov"} <= {path.name for path in tmp_path.iterdir()}

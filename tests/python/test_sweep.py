@@ -27,7 +27,7 @@ from kage.sweep.__main__ import main
 from kage.sweep.plan import Task
 from kage.sweep.run import cluster
 from kage.sweep.worker import Result
-from tests.conftest import PROGRAM, TOP, Kage, restore_interrupt
+from tests.conftest import PROGRAM, TOP, Kage, restore_signals
 
 CUBE = TOP / "scenes" / "cube.yaml"
 SCALE = "objects.ground.bump.scale"
@@ -214,7 +214,7 @@ def start(*words: object) -> subprocess.Popen[str]:
     environment = {**os.environ, "PYTHONPATH": str(PROGRAM.parent / "python")}
     return subprocess.Popen([sys.executable, "-m", "kage.sweep", *map(str, words)], env=environment, text=True,
                             stdout=subprocess.PIPE, stderr=subprocess.PIPE, start_new_session=True,
-                            preexec_fn=restore_interrupt)
+                            preexec_fn=restore_signals)
 
 
 def command(*words: object) -> tuple[int, str, str]:

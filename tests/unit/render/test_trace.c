@@ -74,7 +74,7 @@ static void nothing(void **state)
     const tracer tr = {.scene = s, .layers = true};
     workspace *v = camera_wave(&tr);
     trace(&tr, LANES, v);
-    CHECK(v->out.depth[7], ==, HUGE_VAL);
+    CHECK(v->out.depth[7], ==, REAL_FAR);
     NEAR(v->out.rgb.y[7], s->background.y, EPS);
     CHECK(v->out.order[7], ==, -1);
     CHECK(v->visibility[0][7], ==, 0);
