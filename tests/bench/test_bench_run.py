@@ -198,7 +198,8 @@ def stable(out: Path) -> dict[str, object]:
 
 
 def instructions(out: Path) -> dict[tuple[str, str], float]:
-    """Per sample. How often progress is told goes by the clock, so they differ in the fifth digit on a busy machine."""
+    """Added to those of none, in per cent. How often progress is told goes by the clock: on a busy machine a count
+    differs by 0.03 % of the whole, which is more of the difference of two."""
     scenes = report(out)["cost"]["scenes"]
     return {(scene, m): c["instructions_added"] for scene, found in scenes.items() for m, c in found["methods"].items()
             if c["instructions_added"] is not None}
@@ -286,7 +287,7 @@ def test_interrupted_and_started_again(tiny: Path, tmp_path: Path, how: signal.S
     assert set(times.values()) == {1}
     assert times.keys() == {str(one["job"]) for one in records(tiny)}
     assert stable(tmp_path) == stable(tiny)
-    assert instructions(tmp_path) == pytest.approx(instructions(tiny), rel=1e-3)
+    assert instructions(tmp_path) == pytest.approx(instructions(tiny), rel=1e-3, abs=1)
 
 
 @pytest.mark.parametrize("missing, names, left", [
