@@ -27,9 +27,9 @@ wide_box wide_box_of(const double lo[3], const double hi[3]);
 enum { WIDE_MOST = 1 << 28 }; /* boxes: 8 times a node's number is an int32_t, too */
 
 /* Build the hierarchy of 1 <= n <= WIDE_MOST boxes. order[n] becomes the boxes' order in space: neighbours there are
- * near each other in the hierarchy. Item k is box order[k]. Neither depends on the threads. w: what its memory is taken
- * from; NULL: no limit. NULL: out of memory. */
-wide_bvh *wide_new(int n, const wide_box *box, int32_t *order, int threads, const progress *w);
+ * near each other in the hierarchy. Item k is box order[k]. Neither depends on the threads. show: what its memory is
+ * taken from; NULL: no limit. NULL: out of memory. */
+wide_bvh *wide_new(int n, const wide_box *box, int32_t *order, int threads, const progress *show);
 void wide_free(wide_bvh *w);
 
 enum { WIDE_STACK = 192 };

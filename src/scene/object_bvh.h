@@ -19,7 +19,7 @@ void object_bvh_free(object_bvh *c);
 
 /* For each object the rays of a wave that may meet it. One for each thread. */
 typedef struct candidates candidates;
-candidates *candidates_new(const object_bvh *c, memory *m); /* NULL: out of memory */
+candidates *candidates_new(const object_bvh *c, memory *of); /* NULL: out of memory */
 void candidates_free(candidates *m);
 
 /* Find them, for n rays r + s t, 0 < t < end[i]. own: the object that each ray starts on, always a candidate; NULL:

@@ -64,9 +64,9 @@ wide_box wide_box_of(const double lo[3], const double hi[3])
     return b;
 }
 
-wide_bvh *wide_new(int n, const wide_box *box, int32_t *order, int threads, const progress *to)
+wide_bvh *wide_new(int n, const wide_box *box, int32_t *order, int threads, const progress *show)
 {
-    (void)box, (void)threads, (void)to;
+    (void)box, (void)threads, (void)show;
     wide_bvh *w = malloc(sizeof *w);
     for (int i = 0; i < n; i++)
         order[i] = i;
