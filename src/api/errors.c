@@ -1,13 +1,14 @@
 /* The caller's view of a call: the list of errors, progress, and the C locale while the call runs. */
 #include "api/api.h"
 
+#include "base/clock.h"
+
 #include <errno.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 struct kage_errors {
     int found, count;
@@ -132,18 +133,10 @@ void c_locale_end(c_locale *l)
     freelocale(l->c);
 }
 
-/* Seconds since some time. */
-static double clock_now(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
 static bool show(void *user, const char *what, double share)
 {
     watch *w = user;
-    w->late = w->late || (w->end > 0 && clock_now() > w->end);
+    w->late = w->late || (w->end > 0 && clock_seconds() > w->end);
     if (watch_stopped(w) || !w->call)
         return !watch_stopped(w);
     const bool swaps = w->locale->c != (locale_t)0;
@@ -155,7 +148,7 @@ static bool show(void *user, const char *what, double share)
     return !w->cancelled;
 }
 
-double watch_left(const watch *w) { return w->end > 0 ? fmax(w->end - clock_now(), 1e-9) : 0; }
+double watch_left(const watch *w) { return w->end > 0 ? fmax(w->end - clock_seconds(), 1e-9) : 0; }
 
 bool watch_stopped(const watch *w) { return w->cancelled || w->late; }
 
@@ -179,6 +172,6 @@ progress watch_begin(watch *w, kage_progress *call, void *user, const c_locale *
     if (from)
         w->memory = (memory){.from = from->budget, .limit = own ? limits_memory(l) : from->most};
     if (l && l->seconds > 0)
-        w->end = clock_now() + l->seconds;
+        w->end = clock_seconds() + l->seconds;
     return (progress){show, w, &w->memory};
 }

@@ -219,11 +219,11 @@ static bool fill(kage_film *f, const job *j, const kage_render_options *o, const
                       .self_shadow = s->self_shadow};
     const render_options how = {s->aa, s->aa_threshold, o->threads, o->timing != 0, p};
     stats t;
-    const double start = stats_clock();
+    const double start = clock_seconds();
     const bool good = render(&k, &how, f->film, &t, e);
     picture_crop(f->film->part, f->crop);
     stats_add(sum, &t);
-    *seconds += stats_clock() - start;
+    *seconds += clock_seconds() - start;
     set_stats(f, sum, *seconds);
     return good;
 }

@@ -5,6 +5,7 @@
 
 #include "mesh/reader.h"
 
+#include "base/clock.h"
 #include "base/files.h"
 
 #include <dlfcn.h>
@@ -84,13 +85,6 @@ static bool find_reader(const char *asked, char path[PATH_SIZE], char why[MESH_W
 
 /* ---- its letters ---- */
 
-static double seconds_now(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
 static bool stop_waiting(reader_pipe *p, const char *why)
 {
     p->stopped = true;
@@ -107,7 +101,7 @@ static bool wait_for_bytes(reader_pipe *p)
         n = poll(&ready, 1, (int)(1e3 * between));
         if (n < 0 && errno != EINTR)
             return stop_waiting(p, strerror(errno));
-        const double now = seconds_now();
+        const double now = clock_seconds();
         if (n <= 0 && now > p->end)
             return stop_waiting(p, "its reader waits for too long, expected a file that can be read at once");
         if (now - p->asked < between)
@@ -269,7 +263,7 @@ static bool run(const reader_call *c, char **argv, int seconds, char why[MESH_WH
     }
     fcntl(ends[0], F_SETPIPE_SZ, (int)MIB); /* a wish: 16 times fewer turns between the two programs */
     argv[0] = program;
-    const double now = seconds_now();
+    const double now = clock_seconds();
     reader_pipe p = {.from = ends[0],
                      .letter = {.is = LETTER_READ},
                      .show = c->show,

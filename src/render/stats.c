@@ -1,18 +1,9 @@
-/* Adding up counts, and the clock for stages. */
+/* Adding up counts. */
 #include "render/stats.h"
-
-#include <time.h>
 
 const char *const stage_names[STAGES] = {
     "camera", "hit", "sort", "surface", "bump", "normal", "shift", "place", "shadow", "shade", "film",
 };
-
-double stats_clock(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 STAGE static int count_order(int n, const int32_t *order, int wanted)
 {

@@ -2,6 +2,7 @@
 #ifndef KAGE_RENDER_STATS_H
 #define KAGE_RENDER_STATS_H
 
+#include "base/clock.h"
 #include "displaced/displaced.h"
 #include "method/method.h"
 #include "patch/surface.h"
@@ -41,14 +42,11 @@ typedef struct stats {
     double clock;               /* when the last stage ended */
 } stats;
 
-/* Seconds since an arbitrary time. */
-double stats_clock(void);
-
 /* Stage k has ended: add the time since the last call. */
 static inline void stats_stage(stats *s, enum stage k)
 {
     if (s->timing) {
-        double now = stats_clock();
+        double now = clock_seconds();
         s->seconds[k] += now - s->clock;
         s->clock = now;
     }
