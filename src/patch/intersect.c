@@ -16,6 +16,7 @@
  *   hierarchy reports, as the ray misses their boxes, do not count.
  */
 #include "patch/query.h"
+#include "patch/roots.h"
 
 #include "base/real.h"
 
@@ -24,7 +25,6 @@
 #include <string.h>
 
 enum {
-    STEPS = 24,      /* of Newton's iteration; four are usual, and those that begin far off need more */
     DEPTH = 128,     /* of the stack of halves; each halving adds one, and 64 in u and in w leave no digit to halve */
     HALVINGS = 1024, /* for one ray, where bounds prove nothing (smooth surfaces take some tens); what is left
                       * is tried as it is, and not proved */
@@ -32,75 +32,8 @@ enum {
     QUEUE = 2 * HALVINGS, /* undecided pieces that wait, of all rays; of one ray no more than HALVINGS count */
 };
 
-/* Shares of the width of a piece's range in u or w. */
-#define CONVERGED 1e-6 /* the last step: the next one would be about its square, below double's rounding */
-#define OUTSIDE 1e-5   /* a root this far outside still counts: the neighbour finds the same root, so none is lost */
-
-/* Shares of the width of the patch's range in u or w. */
-#define BEYOND_END 1e-9       /* the same at the patch's ends, and at a seam, where there is no neighbour */
-#define ROUNDING 1e-14        /* of u and w: pieces can be so small that it counts */
-#define UNPROVED (1 / 4096.0) /* a patch with jumps: a piece this small is tried although nothing is proved of it */
-
+#define UNPROVED (1 / 4096.0) /* of the patch's range: with jumps, a piece this small is tried without a proof */
 #define POINT 1e-10 /* a piece of this share of the patch's size and place is a point and is not halved any more */
-
-/* Pairs of a ray and a piece that wait to be solved, side by side. */
-typedef struct pairs {
-    int n;
-    int32_t lane[PATCH_BATCH], part[PATCH_BATCH];
-    double u[PATCH_BATCH], w[PATCH_BATCH], t[PATCH_BATCH];
-    double mu[PATCH_BATCH], mw[PATCH_BATCH], hu[PATCH_BATCH], hw[PATCH_BATCH]; /* the range: middle, half width */
-    double close_u, close_w;                                                   /* smaller steps are rounding */
-    double rx[PATCH_BATCH], ry[PATCH_BATCH], rz[PATCH_BATCH], sx[PATCH_BATCH], sy[PATCH_BATCH], sz[PATCH_BATCH];
-    double open[PATCH_BATCH]; /* 1: not converged yet; 0: converged; -1: has left its range for good */
-    bool tried[PATCH_BATCH];  /* it is not proved that there is one root at most */
-} pairs;
-
-/* One step of Newton's iteration for each: Qu du + Qw dw - s dt = r + s t - Q, by Cramer's rule. */
-STAGE static void newton_step(pairs *restrict p, const patch_jets *restrict q)
-{
-    const double close_u = p->close_u, close_w = p->close_w;
-    for (int i = 0; i < p->n; i++) {
-        const double ux = q->axis[0].u[i], uy = q->axis[1].u[i], uz = q->axis[2].u[i];
-        const double wx = q->axis[0].w[i], wy = q->axis[1].w[i], wz = q->axis[2].w[i];
-        const double sx = p->sx[i], sy = p->sy[i], sz = p->sz[i];
-        const double dx = p->rx[i] + sx * p->t[i] - q->axis[0].v[i];
-        const double dy = p->ry[i] + sy * p->t[i] - q->axis[1].v[i];
-        const double dz = p->rz[i] + sz * p->t[i] - q->axis[2].v[i];
-        const double ax = wy * sz - wz * sy, ay = wz * sx - wx * sz, az = wx * sy - wy * sx; /* Qw x s */
-        const double bx = sy * uz - sz * uy, by = sz * ux - sx * uz, bz = sx * uy - sy * ux; /* s x Qu */
-        const double nx = uy * wz - uz * wy, ny = uz * wx - ux * wz, nz = ux * wy - uy * wx; /* Qu x Qw */
-        const double k = 1 / (ux * ax + uy * ay + uz * az);
-        const double du = k * (dx * ax + dy * ay + dz * az), dw = k * (dx * bx + dy * by + dz * bz);
-        const double dt = -k * (dx * nx + dy * ny + dz * nz);
-        const double on = p->open[i] > 0 ? 1 : 0, u = p->u[i] + du, w = p->w[i] + dw;
-        const double far_u = fabs(u - p->mu[i]) / p->hu[i], far_w = fabs(w - p->mw[i]) / p->hw[i];
-        const int converged =
-            (fabs(du) <= CONVERGED * p->hu[i] + close_u) & (fabs(dw) <= CONVERGED * p->hw[i] + close_w);
-        const int in = (far_u < 4) & (far_w < 4); /* false for NaN */
-        double state = converged ? 0 : 1;
-        state = in ? state : -1;
-        p->u[i] = on > 0 ? u : p->u[i];
-        p->w[i] = on > 0 ? w : p->w[i];
-        p->t[i] = on > 0 ? p->t[i] + dt : p->t[i];
-        p->open[i] = on > 0 ? state : p->open[i];
-    }
-}
-
-static bool any_open(const pairs *p)
-{
-    for (int i = 0; i < p->n; i++)
-        if (p->open[i] > 0)
-            return true;
-    return false;
-}
-
-/* Whether a root at x, u or w, counts for a piece, which may end where the patch does. */
-static bool within(double x, double middle, double half, const double patch_range[2])
-{
-    const double out = fabs(x - middle) - half, beyond = fmax(patch_range[0] - x, x - patch_range[1]);
-    const double all = patch_range[1] - patch_range[0];
-    return out <= OUTSIDE * half + ROUNDING * all && beyond <= BEYOND_END * all;
-}
 
 /* A piece that a ray may meet more than once. */
 typedef struct undecided {
@@ -111,61 +44,12 @@ typedef struct undecided {
 /* The state of a query that runs. */
 typedef struct search {
     patch_query *k;
-    pairs p;
+    roots p;
     int lane;            /* whose ray is in the hierarchy */
     double end;          /* of its ray, before a root was found */
     int waiting, others; /* pieces that wait; those of rays before this one, which come first */
     undecided queue[QUEUE];
 } search;
-
-/* Solve the pairs that wait, and keep each ray's first root. */
-static void solve(search *h)
-{
-    const patch *q = h->k->f->q;
-    pairs *p = &h->p;
-    patch_jets j;
-    for (int step = 0; step < STEPS && any_open(p); step++) {
-        q->ops->eval(q, p->n, p->part, p->u, p->w, 1, &j);
-        newton_step(p, &j);
-        h->k->evaluations += p->n;
-    }
-    for (int i = 0; i < p->n; i++) {
-        patch_query *k = h->k;
-        const int lane = p->lane[i];
-        const bool in = within(p->u[i], p->mu[i], p->hu[i], q->u) && within(p->w[i], p->mw[i], p->hw[i], q->w);
-        if (p->open[i] == 0 && in && p->t[i] > k->from[lane] && p->t[i] < k->to[lane]) {
-            k->to[lane] = p->t[i];
-            k->found[lane] = true;
-            k->unsure[lane] = p->tried[i];
-            if (k->any) /* one root is enough */
-                k->to[lane] = -HUGE_VAL;
-        }
-    }
-    p->n = 0;
-}
-
-/* A pair to solve; Newton's iteration begins at (a,b) in the piece. */
-static void add_pair(search *h, int lane, const piece *f, double a, double b, bool tried)
-{
-    pairs *p = &h->p;
-    const int i = p->n++;
-    p->tried[i] = tried;
-    const vec3 r = h->k->r[lane], s = h->k->s[lane];
-    p->lane[i] = lane;
-    p->part[i] = f->part;
-    p->hu[i] = 0.5 * (f->u[1] - f->u[0]);
-    p->hw[i] = 0.5 * (f->w[1] - f->w[0]);
-    p->mu[i] = f->u[0] + p->hu[i];
-    p->mw[i] = f->w[0] + p->hw[i];
-    p->u[i] = p->mu[i] + a * p->hu[i];
-    p->w[i] = p->mw[i] + b * p->hw[i];
-    p->t[i] = 0; /* the equation is linear in it: the first step finds it */
-    p->rx[i] = r.x, p->ry[i] = r.y, p->rz[i] = r.z;
-    p->sx[i] = s.x, p->sy[i] = s.y, p->sz[i] = s.z;
-    p->open[i] = 1;
-    if (p->n == PATCH_BATCH)
-        solve(h);
-}
 
 /* A piece that is a point and still undecided: at a pole, on an edge, or where a ray just touches. It counts as met,
  * unless it may be the ray's own start: it is no farther than its size from where roots begin to count. */
@@ -191,7 +75,7 @@ static bool is_unprovable(const patch_surface *f, const piece *p)
 static void try_piece(search *h, int lane, const piece *f)
 {
     if (h->k->tries[lane]++ < TRIES)
-        add_pair(h, lane, f, 0, 0, true);
+        roots_add(&h->p, lane, f, 0, 0, true);
 }
 
 /* What becomes of a half. Whether it is to be halved again. */
@@ -203,9 +87,9 @@ static bool is_open(search *h, int lane, const piece *half)
     double a, b;
     const piece_answer answer = piece_intersect(half, k->r[lane], k->s[lane], k->from[lane], k->to[lane], &a, &b);
     if (answer == PIECE_ONCE)
-        add_pair(h, lane, half, a, b, false);
+        roots_add(&h->p, lane, half, a, b, false);
     else if (answer == PIECE_OPEN && is_unprovable(f, half))
-        add_pair(h, lane, half, 0, 0, true);
+        roots_add(&h->p, lane, half, 0, 0, true);
     else if (answer == PIECE_OPEN && piece_radius(half) > point)
         return true;
     else if (answer == PIECE_OPEN)
@@ -259,7 +143,7 @@ static void subdivide_all(search *h, int n)
 {
     const patch_query *k = h->k;
     int start[LANES + 1], lanes = 0;
-    solve(h);
+    roots_solve(&h->p);
     qsort(h->queue, (size_t)n, sizeof *h->queue, by_lane_and_near);
     for (int i = 0; i < n; i++)
         if (i == 0 || h->queue[i].lane != h->queue[i - 1].lane)
@@ -274,7 +158,7 @@ static void subdivide_all(search *h, int n)
             subdivide(h, d->lane, &k->f->l.piece[d->index]);
             left++;
         }
-        solve(h);
+        roots_solve(&h->p);
     }
     h->waiting -= n;
     memmove(h->queue, h->queue + n, sizeof *h->queue * (size_t)h->waiting);
@@ -323,7 +207,7 @@ static void visit(void *user, int32_t index)
     double a, b;
     switch (piece_intersect(f, k->r[h->lane], k->s[h->lane], k->from[h->lane], k->to[h->lane], &a, &b)) {
     case PIECE_ONCE:
-        add_pair(h, h->lane, f, a, b, false);
+        roots_add(&h->p, h->lane, f, a, b, false);
         break;
     case PIECE_OPEN:
         if (!passes_box(f, k->r[h->lane], k->s[h->lane], k->from[h->lane], h->end))
@@ -415,7 +299,7 @@ static void search_nearest(search *h, int lane)
     heap p;
     p.n = 0;
     enter(h, lane);
-    solve(h);
+    roots_solve(&h->p);
     if (h->waiting > HALVINGS)
         make_room(h);
     for (int i = 0; i < h->waiting; i++)
@@ -431,7 +315,7 @@ static void search_nearest(search *h, int lane)
             if (is_open(h, lane, &half))
                 add_range(h, &p, lane, &half, x.near);
         }
-        solve(h); /* at once, so that nothing beyond a root is halved */
+        roots_solve(&h->p); /* at once, so that nothing beyond a root is halved */
     }
     k->gave_up[lane] = p.n && !is_beyond(k, lane, p.at[0].near);
     while (p.n && k->gave_up[lane] && k->tries[lane] < TRIES) {
@@ -439,7 +323,7 @@ static void search_nearest(search *h, int lane)
         const piece one = piece_of(q, x.part, x.u, x.w);
         try_piece(h, lane, &one);
     }
-    solve(h);
+    roots_solve(&h->p);
 }
 
 void patch_query_begin(patch_query *k, const patch_surface *f, bool any, const pulse *p)
@@ -465,13 +349,11 @@ void patch_query_add(patch_query *k, int i, vec3 r, vec3 s, double from, double 
 
 void patch_query_run(patch_query *k, int n)
 {
-    const patch_surface *f = k->f;
     double to[LANES];
     search h;
     h.k = k;
-    h.p.n = h.waiting = 0;
-    h.p.close_u = ROUNDING * (f->q->u[1] - f->q->u[0]);
-    h.p.close_w = ROUNDING * (f->q->w[1] - f->q->w[0]);
+    h.waiting = 0;
+    roots_begin(&h.p, k);
     for (int i = 0; i < n; i++) {
         to[i] = k->to[i];
         enter(&h, i);
