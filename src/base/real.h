@@ -30,6 +30,7 @@ typedef float real;
 
 /* The t of a ray that hits nothing, which is Z in the film. Larger numbers count as no value, and colours end here. */
 #define REAL_FAR ((real)1e30)
+#define REAL_IS_FAR(x) (!(real_abs(x) < REAL_FAR)) /* NaN, infinite, or no place and no colour any more */
 
 /* The least normal number of float; smaller squares of lengths have no digits. */
 #define REAL_LEAST ((real)1.17549435e-38)

@@ -22,6 +22,18 @@ static bool whole_numbers(const char *text, char separator, int n, int *out)
     return true;
 }
 
+/* Read a number of these letters alone, to the end of the text. */
+static bool number(const char *text, const char *letters, double *x)
+{
+    char *end = NULL;
+    if (!*text || strspn(text, letters) != strlen(text))
+        return false;
+    *x = strtod(text, &end);
+    return !*end;
+}
+
+#define DECIMAL "0123456789."
+
 bool add_set(arguments *a, const char *fmt, ...)
 {
     va_list args, again;
@@ -156,10 +168,10 @@ bool read_aa(arguments *a, const char *name, const char *v)
 
 bool read_threshold(arguments *a, const char *name, const char *v)
 {
-    char *end = NULL;
-    const double x = *v && strspn(v, "0123456789.") == strlen(v) ? strtod(v, &end) : -1;
-    return x >= 0 && x <= 3 && !*end ? add_set(a, "render.aa_threshold=%s", v)
-                                     : usage_error("%s %s: expected how much two pixels may differ, 0 to 3", name, v);
+    double x;
+    return number(v, DECIMAL, &x) && x >= 0 && x <= 3
+               ? add_set(a, "render.aa_threshold=%s", v)
+               : usage_error("%s %s: expected how much two pixels may differ, 0 to 3", name, v);
 }
 
 bool read_crop(arguments *a, const char *name, const char *v)
@@ -199,9 +211,7 @@ bool read_memory(arguments *a, const char *name, const char *v)
 
 bool read_seconds(arguments *a, const char *name, const char *v)
 {
-    char *end = NULL;
-    a->seconds = *v >= '0' && *v <= '9' && strspn(v, "0123456789.") == strlen(v) ? strtod(v, &end) : -1;
-    return (a->seconds > 0 && a->seconds <= 1e6 && !*end) ||
+    return (*v != '.' && number(v, DECIMAL, &a->seconds) && a->seconds > 0 && a->seconds <= 1e6) ||
            usage_error("%s %s: expected a number of seconds above 0 and up to 1000000", name, v);
 }
 
@@ -258,8 +268,6 @@ bool read_up(arguments *a, const char *name, const char *v)
 
 bool read_brightness(arguments *a, const char *name, const char *v)
 {
-    char *end = NULL;
-    a->brightness = *v && strspn(v, "0123456789.e+-") == strlen(v) ? strtod(v, &end) : -1;
-    return (a->brightness > 0 && a->brightness <= 1e6 && !*end) ||
+    return (number(v, DECIMAL "e+-", &a->brightness) && a->brightness > 0 && a->brightness <= 1e6) ||
            usage_error("%s %s: expected a number above 0 and up to 1000000", name, v);
 }

@@ -130,7 +130,7 @@ STAGE static int count_far(int n, const real *restrict tau)
 {
     int far = 0;
     for (int i = 0; i < n; i++)
-        far += !(real_abs(tau[i]) < REAL_FAR);
+        far += REAL_IS_FAR(tau[i]);
     return far;
 }
 
@@ -138,7 +138,7 @@ void shift_known(hit_group *g)
 {
     if (count_far(g->n, g->tau))
         for (int i = 0; i < g->n; i++)
-            if (!(real_abs(g->tau[i]) < REAL_FAR)) {
+            if (REAL_IS_FAR(g->tau[i])) {
                 shift_undefined(g, i);
                 drop(g, i);
             }

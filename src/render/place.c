@@ -81,11 +81,13 @@ STAGE static void bend_normals(hit_group *restrict g)
     }
 }
 
+static inline int is_lost(real u, real w) { return REAL_IS_FAR(real_abs(u) + real_abs(w)); }
+
 STAGE static int count_lost(int n, const real *restrict u, const real *restrict w)
 {
     int lost = 0;
     for (int i = 0; i < n; i++)
-        lost += !(real_abs(u[i]) + real_abs(w[i]) < REAL_FAR);
+        lost += is_lost(u[i], w[i]);
     return lost;
 }
 
@@ -97,7 +99,7 @@ static void keep_lost(const surface *f, hit_group *g)
     memcpy(part, g->part, sizeof part);
     f->ops->locate(f, g->n, g->x, g->t, part, u, w);
     for (int i = 0; i < g->n; i++)
-        if (count_lost(1, g->u + i, g->w + i)) {
+        if (is_lost(g->u[i], g->w[i])) {
             g->t_moved[i] = g->t[i];
             g->shade_part[i] = part[i];
             g->u[i] = u[i];

@@ -30,7 +30,7 @@ STAGE static int count_bright(int n, const real *restrict x, const real *restric
 {
     int far = 0;
     for (int i = 0; i < n; i++)
-        far += !(real_abs(x[i]) + real_abs(y[i]) + real_abs(z[i]) < REAL_FAR);
+        far += REAL_IS_FAR(real_abs(x[i]) + real_abs(y[i]) + real_abs(z[i]));
     return far;
 }
 

@@ -25,10 +25,10 @@ STAGE static int count_undefined(int n, int order, const real *restrict P, const
     int none = 0;
     if (order == 0)
         for (int i = 0; i < n; i++)
-            none += !(real_abs(P[i]) < REAL_FAR);
+            none += REAL_IS_FAR(P[i]);
     else
         for (int i = 0; i < n; i++)
-            none += !(real_abs(P[i]) + real_abs(Pu[i]) + real_abs(Pw[i]) < REAL_FAR);
+            none += REAL_IS_FAR(real_abs(P[i]) + real_abs(Pu[i]) + real_abs(Pw[i]));
     return none;
 }
 
