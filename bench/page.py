@@ -20,6 +20,7 @@ from bench.stats import Interval
 from bench.tables import method_name
 
 if TYPE_CHECKING:
+    import jinja2
     from PIL import Image
 
 TEMPLATES = Path(__file__).resolve().parent / "templates"
@@ -249,10 +250,17 @@ def code(text: str) -> str:
     return Markup(re.sub(r"`([^`]+)`", r"<code>\1</code>", str(escape(text))))  # noqa: S704 - escaped just here
 
 
-def render(report: Report, folder: Path) -> tuple[str, list[str]]:
-    """The page, and a line for each thing that is left out of it. Without Jinja2: an ImportError."""
+def templates() -> jinja2.Environment:
+    """What pages are made from, the report's and others. Without Jinja2: an ImportError."""
     import jinja2
 
+    return jinja2.Environment(loader=jinja2.FileSystemLoader(TEMPLATES), autoescape=True,
+                              undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True)
+
+
+def render(report: Report, folder: Path) -> tuple[str, list[str]]:
+    """The page, and a line for each thing that is left out of it. Without Jinja2: an ImportError."""
+    environment = templates()
     messages: list[str] = []
     try:
         sheets = make_sheets(report, folder, messages.append)
@@ -264,8 +272,6 @@ def render(report: Report, folder: Path) -> tuple[str, list[str]]:
     except ImportError:
         drawn = Plots()
         messages.append("matplotlib is missing: the page has no plots (scripts/venv)")
-    environment = jinja2.Environment(loader=jinja2.FileSystemLoader(TEMPLATES), autoescape=True,
-                                     undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True)
     environment.filters["code"] = code
     environment.globals.update(tables=tables, whole_tables=whole_tables, dig=dig, verdicts=VERDICTS,
                                map_legend=map_legend, order_legend=order_legend)

@@ -12,6 +12,7 @@ import numpy as np
 import OpenEXR
 from PIL import Image
 
+from tests import conftest
 from tests.conftest import PROGRAM, TOP
 
 #: The signals that ask the program to end.
@@ -84,19 +85,8 @@ COMMANDS = [
 #: What the commands write.
 OUTPUTS = ("a.exr", "b.png", "c.exr", "d.pov", "e.yaml")
 
-SCENE = """\
-camera: {from: [0, 3, -5], at: [0, 0, 0], up: [0, 1, 0], fov: 40}
-image: {size: [40, 30], background: [0, 0, 0]}
-render: {shadow: 0, guard: true, aa: 1}
-lights:
-  lamp: {at: [-4, 5, -2], color: [1, 1, 1]}
-materials:
-  clay: {color: [0.8, 0.7, 0.6], ambient: 0.1, diffuse: 0.8}
-objects:
-  ball:
-    sphere: {center: [1, 1, 0], radius: 0.5}
-    material: clay
-"""
+#: The camera, light and material of the tests' scene, and its ball.
+SCENE = conftest.SCENE[: conftest.SCENE.index("  ground:")] + conftest.SCENE[conftest.SCENE.index("  ball:") :]
 
 
 def make_inputs(folder: Path) -> None:
