@@ -24,7 +24,7 @@ static void whole_take(void *user, int x, int y, int n, const float *v)
 static inline bool image_whole(const char *path, const char *channel, int threads, image *out, float range[2],
                                errors *e)
 {
-    const image_taker to = {out, whole_begin, whole_take, NULL};
+    const image_taker to = {out, whole_begin, whole_take};
     *out = (image){0};
     if (image_read(path, channel, threads, NULL, &to, range, e))
         return true;

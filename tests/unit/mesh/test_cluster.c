@@ -14,7 +14,7 @@ enum { TRIANGLES = 30000 };
 /* Small triangles in a ball of radius 7 far from the origin. */
 static mesh_data soup(double size)
 {
-    mesh_data d = {TRIANGLES, memory_new(NULL, sizeof *d.at * TRIANGLES), NULL, {0}};
+    mesh_data d = {.n = TRIANGLES, .at = memory_new(NULL, sizeof *d.at * TRIANGLES)};
     assert_non_null(d.at);
     for (int k = 0; k < TRIANGLES; k++) {
         const double at[3] = {random_in(-4, 4), random_in(-4, 4), random_in(-4, 4)};

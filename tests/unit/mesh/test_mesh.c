@@ -45,10 +45,9 @@ static void floor_of(double a, double b, float at[3], float uv[2])
 /* n x m cells of two triangles; normals as `mesh_clean` finds them. */
 static mesh_data grid(model *of, int n, int m)
 {
-    mesh_data d = {2 * n * m,
-                   memory_new(NULL, sizeof *d.at * 2 * (size_t)(n * m)),
-                   memory_new(NULL, sizeof *d.skin * 2 * (size_t)(n * m)),
-                   {0}};
+    mesh_data d = {.n = 2 * n * m,
+                   .at = memory_new(NULL, sizeof *d.at * 2 * (size_t)(n * m)),
+                   .skin = memory_new(NULL, sizeof *d.skin * 2 * (size_t)(n * m))};
     assert_true(d.at && d.skin);
     memset(d.skin, 0, sizeof *d.skin * 2 * (size_t)(n * m));
     for (int k = 0; k < d.n; k++) {
@@ -75,7 +74,8 @@ static mesh *mesh_of(model *of, int n, int m) { return mesh_from(grid(of, n, m),
 /* Triangles all over the place. */
 static mesh *object_bvh(int n)
 {
-    mesh_data d = {n, memory_new(NULL, sizeof *d.at * (size_t)n), memory_new(NULL, sizeof *d.skin * (size_t)n), {0}};
+    mesh_data d = {
+        .n = n, .at = memory_new(NULL, sizeof *d.at * (size_t)n), .skin = memory_new(NULL, sizeof *d.skin * (size_t)n)};
     assert_true(d.at && d.skin);
     memset(d.skin, 0, sizeof *d.skin * (size_t)n);
     for (int k = 0; k < n; k++)
@@ -545,7 +545,9 @@ static void error_slopes(void **state)
 
 static mesh_data one(const float at[3][3], int n)
 {
-    mesh_data d = {n, memory_new(NULL, sizeof *d.at * (size_t)n), memory_zeroed(NULL, (size_t)n * sizeof *d.skin), {0}};
+    mesh_data d = {.n = n,
+                   .at = memory_new(NULL, sizeof *d.at * (size_t)n),
+                   .skin = memory_zeroed(NULL, (size_t)n * sizeof *d.skin)};
     assert_true(d.at && d.skin);
     for (int k = 0; k < n; k++)
         memcpy(d.at[k], at, sizeof d.at[k]);

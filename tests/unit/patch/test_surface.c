@@ -563,8 +563,8 @@ static void rough_bounds(void **state)
         bump *P[] = {
             bumps(0.04, q[k]->u, q[k]->w),
             bump_function_new(expr_parse("noise(7*u,5*w)", &wrong), 0.05, q[k]->u, q[k]->w),
-            bump_of_map(&map, &(map_layout){{1.3, 0.7}, {0.1, 0}, MAP_REPEAT, false, 0.05, 0.2}),
-            bump_of_map(&map, &(map_layout){{1.3, 0.7}, {0.1, 0}, MAP_CLAMP, true, 0.05, 0.2}),
+            bump_of_map(&map, &(map_layout){{1.3, 0.7}, {0.1, 0}, MAP_REPEAT, false, 0.05, 0.2, 0}),
+            bump_of_map(&map, &(map_layout){{1.3, 0.7}, {0.1, 0}, MAP_CLAMP, true, 0.05, 0.2, 0}),
         };
         int boxes = 0, close = 0;
         for (int i = 0; i < 4; i++) {

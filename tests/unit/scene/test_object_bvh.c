@@ -42,7 +42,7 @@ static const char head[] = "camera: {from: [0, 4, -12], at: [0, 1, 0]}\n"
 static void put_object(FILE *f, int i)
 {
     static const char *const materials[] = {"clay", "mirror", "clay", "glass", "clay"};
-    static const char patch_surface[] =
+    static const char parametric[] =
         "x: \"%.3f + %.3f*cos(u)*(2+cos(w))\", y: \"%.3f + %.3f*sin(w)\", z: \"%.3f + %.3f*sin(u)*(2+cos(w))\"";
     const double x = random_in(-5, 5), y = random_in(0.2, 4), z = random_in(-4, 6), k = random_in(0.1, 0.5),
                  a = random_in(-1, 1);
@@ -75,7 +75,7 @@ static void put_object(FILE *f, int i)
         break;
     default:
         fprintf(f, "parametric: {");
-        fprintf(f, patch_surface, x, k / 3, y, k / 3, z, k / 3);
+        fprintf(f, parametric, x, k / 3, y, k / 3, z, k / 3);
         fprintf(f, ", u: [0, 2*pi], w: [0, 2*pi]}\n");
         break;
     }

@@ -88,11 +88,11 @@ static void differences(const map_layout *l, int i, int j, double d[6])
 }
 
 static const map_layout layouts[] = {
-    {{2, 3}, {0, 0}, MAP_REPEAT, false, 0.1, 0.5},     {{2, 3}, {0.3, -0.2}, MAP_CLAMP, false, 0.1, 0.5},
-    {{0.7, 0.9}, {-1, 2}, MAP_MIRROR, false, -0.3, 0}, {{2, 3}, {0.5, 0.25}, MAP_REPEAT, true, 0.1, 0.25},
-    {{2, 3}, {0, 0}, MAP_CLAMP, true, 0.1, 0.5},       {{5, 1}, {0, 0}, MAP_MIRROR, true, 2, 1},
-    {{-2, 3}, {0, 0}, MAP_REPEAT, false, 0.1, 0.5},    {{2, -3}, {0.3, -0.2}, MAP_CLAMP, false, 0.1, 0.5},
-    {{-0.7, -3}, {0, 1}, MAP_MIRROR, true, 0.1, 0.5},
+    {{2, 3}, {0, 0}, MAP_REPEAT, false, 0.1, 0.5, 0},     {{2, 3}, {0.3, -0.2}, MAP_CLAMP, false, 0.1, 0.5, 0},
+    {{0.7, 0.9}, {-1, 2}, MAP_MIRROR, false, -0.3, 0, 0}, {{2, 3}, {0.5, 0.25}, MAP_REPEAT, true, 0.1, 0.25, 0},
+    {{2, 3}, {0, 0}, MAP_CLAMP, true, 0.1, 0.5, 0},       {{5, 1}, {0, 0}, MAP_MIRROR, true, 2, 1, 0},
+    {{-2, 3}, {0, 0}, MAP_REPEAT, false, 0.1, 0.5, 0},    {{2, -3}, {0.3, -0.2}, MAP_CLAMP, false, 0.1, 0.5, 0},
+    {{-0.7, -3}, {0, 1}, MAP_MIRROR, true, 0.1, 0.5, 0},
 };
 enum { LAYOUTS = sizeof layouts / sizeof *layouts };
 
@@ -226,7 +226,7 @@ static void clamped_ramp(void **state)
     for (int corners = 0; corners < 2; corners++) {
         const double cell = 1.0 / (SIDE - corners), lo = corners ? 0 : cell / 2, hi = 1 - lo,
                      all[2] = {-HUGE_VAL, HUGE_VAL};
-        const map_layout l = {{1, 1}, {0, 0}, MAP_CLAMP, corners, 0.5, 0};
+        const map_layout l = {{1, 1}, {0, 0}, MAP_CLAMP, corners, 0.5, 0, 0};
         char text[99];
         expr_error e;
         snprintf(text, sizeof text, "clamp((u-%.17g)/%.17g,0,1)", lo, hi - lo);
@@ -423,8 +423,8 @@ static void odd_map_slopes(void **state)
     /* a step along w alone; the last row's is across the wrap */
     float steps[6] = {0, 0, 1, 1, 3, 3};
     image m = {2, 3, steps};
-    const map_layout plain = {{1, 0.5}, {0, 0}, MAP_REPEAT, false, 2, 0},
-                     clamped = {{1, 0.5}, {0, 0}, MAP_CLAMP, false, 2, 0};
+    const map_layout plain = {{1, 0.5}, {0, 0}, MAP_REPEAT, false, 2, 0, 0},
+                     clamped = {{1, 0.5}, {0, 0}, MAP_CLAMP, false, 2, 0, 0};
     p = bump_of_map(&m, &plain);
     CHECK(p->Pu_max, ==, 0);
     near((double)p->Pw_max, 3 * 2 * 6, 36); /* a difference of 3, scale 2, 6 samples per unit */

@@ -74,7 +74,7 @@ static void a_distant_field_has_one_of_the_two_colours(void **state)
             (is_odd ? odd : even)(look_up(p, 0.5, field));
             assert_true(real_floor((real)field) == (real)floor(field));
         }
-    const double far[] = {2 * half + 1, -2 * half - 1, 1e30, -1e30, HUGE_VAL, -HUGE_VAL, NAN};
+    const double far[] = {2 * half + 1, -2 * half - 1, 1e30, -1e30, HUGE_VAL, -HUGE_VAL, (double)NAN};
     for (int k = 0; k < 7; k++) {
         const vec3 got = look_up(p, far[k], 0.5);
         assert_true((got.x == 1 && got.z == 0) || (got.x == 0.25 && got.z == 1));

@@ -85,9 +85,9 @@ static void check_ranges(const bump *p, const double u[2], const double w[2])
 }
 
 static const map_layout layouts[] = {
-    {{2, 3}, {0, 0}, MAP_REPEAT, false, 0.1, 0.5},     {{2, 3}, {0.3, -0.2}, MAP_CLAMP, false, 0.1, 0.5},
-    {{0.7, 0.9}, {-1, 2}, MAP_MIRROR, false, -0.3, 0}, {{2, 3}, {0.5, 0.25}, MAP_REPEAT, true, 0.1, 0.25},
-    {{2, -3}, {0, 0}, MAP_CLAMP, true, 0.1, 0.5},      {{-5, 1}, {0, 0}, MAP_MIRROR, true, 2, 1},
+    {{2, 3}, {0, 0}, MAP_REPEAT, false, 0.1, 0.5, 0},     {{2, 3}, {0.3, -0.2}, MAP_CLAMP, false, 0.1, 0.5, 0},
+    {{0.7, 0.9}, {-1, 2}, MAP_MIRROR, false, -0.3, 0, 0}, {{2, 3}, {0.5, 0.25}, MAP_REPEAT, true, 0.1, 0.25, 0},
+    {{2, -3}, {0, 0}, MAP_CLAMP, true, 0.1, 0.5, 0},      {{-5, 1}, {0, 0}, MAP_MIRROR, true, 2, 1, 0},
 };
 enum { LAYOUTS = sizeof layouts / sizeof *layouts };
 
@@ -147,7 +147,7 @@ static void bounds_are_close(void **state)
     for (int i = 0; i < 64 * 64; i++)
         ramp[i] = (float)(i % 64) / 64;
     const image m = {64, 64, ramp};
-    const map_layout l = {{64, 64}, {0, 0}, MAP_CLAMP, false, 1, 0};
+    const map_layout l = {{64, 64}, {0, 0}, MAP_CLAMP, false, 1, 0, 0};
     bump *p = bump_of_map(&m, &l);
     assert_true(bump_prepare(p, NULL));
     for (int k = 0; k < 200; k++) {

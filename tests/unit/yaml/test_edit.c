@@ -99,11 +99,10 @@ static void values_fit_their_place(void **state)
 static const char *const texts[] = {
     "a: 1\n",
     "# c\n{a: {b: [1, 2, {c: x}], \"d\": \"y\"}, e: []}\n",
-    "%YAML 1.2\n--- # start\na:\n  b: # b\n  # b, too\n    c: 1\n    d: [1,\n      2]\n\n  e:\n  - 1\n  - f: 'x'\n    "
-    "g: "
-    "y\n...\n",
-    "a: |\n  one\n  # no comment\nb: >+\n  two\n\n  three\n\nc: {d: &x {e: 1}, f: !!str g}\nh:\n- - 1\n  - 2\n- {i: "
-    "[j: 1, k]}\n",
+    ("%YAML 1.2\n--- # start\na:\n  b: # b\n  # b, too\n    c: 1\n    d: [1,\n      2]\n\n"
+     "  e:\n  - 1\n  - f: 'x'\n    g: y\n...\n"),
+    ("a: |\n  one\n  # no comment\nb: >+\n  two\n\n  three\n\n"
+     "c: {d: &x {e: 1}, f: !!str g}\nh:\n- - 1\n  - 2\n- {i: [j: 1, k]}\n"),
     "a:\r\n  b: \"x\\\r\n    y\"\r\n  c: plain\r\n    more # c\r\nd:\r\n- 1\r\n-\r\n  e: 1\r\n",
     "\"a\":\n    'b':   {\"c\":1,'d':2}\n    e:    \xc3\xa4 \xe2\x82\xac # \xc3\xa4\n    f:\ng: {h: , i}\n",
 };
