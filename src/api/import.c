@@ -162,6 +162,13 @@ struct import_report {
     bool unwritten; /* one of them can't be written */
 };
 
+/* An error of the scene's file comes before the work. */
+static bool can_write(struct import_report *r, const char *path, errors *e)
+{
+    r->unwritten = !file_writer_probe(path, e);
+    return !r->unwritten;
+}
+
 /* Remove the files that were not there before. */
 static void take_back(struct import_report *r)
 {
@@ -237,7 +244,8 @@ static bool make(struct import_report *r, const char *model, const char *file, c
     wishes w = {0};
     files opened = {0};
     bool fresh, good = from || errors_add(e, "%s: its folder does not exist", file);
-    good = good && may_write(file, NULL, 0, o, &opened, &fresh, e) && make_wishes(&w, model, file, from, o, e);
+    good = good && may_write(file, NULL, 0, o, &opened, &fresh, e) && can_write(r, file, e) &&
+           make_wishes(&w, model, file, from, o, e);
     if (good && !model_scene_read(model, o->model_reader, w.n, (const char *const *)w.text, p, &opened, &r->made, why))
         good = errors_add(e, "%s: %s", model, why);
     good = good && may_write(file, NULL, 0, o, &opened, &fresh, e) && write_images(r, file, o, &opened, e);
