@@ -62,7 +62,7 @@ def made_small(lab: Lab, scene: Scene, name: str, seed: int, wrong: str) -> Scen
             found = tried(lab, other, name, seed)
         except (LookupError, ValueError, TypeError, StopIteration):
             return False  # it lacks what the property changes
-        return bool(found) and found.startswith("RefusedError") == refused
+        return bool(found and found.startswith("RefusedError") == refused)
 
     return shrunk(scene, fails)
 
