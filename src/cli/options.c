@@ -67,8 +67,11 @@ const command commands[] = {
      .needed = 2,
      .values = {SCENE_FILES},
      .text = "all intermediate values of one pixel, for each method",
-     .more = "X and Y count from the top left, from 0. The names are those of the method's description: r, s, t, Q, n, "
-             "P, tau and so on.",
+     .more =
+         "X and Y count from the top left, from 0. The names are those of the method's description: r, s, t, Q, n, "
+         "P, tau and so on. A first table has where each method starts shadow rays, a second one what its lights and "
+         "colours are. bare is the order as with --no-guard; fell is the order that was used instead, where tau "
+         "leaves the slab.",
      .example = {"kage pixel scenes/cube.yaml 320,240", "the pixel in the middle"}},
     {.name = "pov",
      .bit = POV,
@@ -292,9 +295,19 @@ const option options[] = {
      .about = ABOUT_RUN,
      .read = read_threads,
      .text = "number of threads (as many as there are processors)"},
+    {.name = "--limit",
+     .argument = "WHAT=N",
+     .commands = SCENES | IMPORT,
+     .about = ABOUT_RUN,
+     .read = read_limit,
+     .values = VALUES_LIMITS,
+     .text = "refuse a scene with more than N; may be repeated; bytes may have K, M or G behind them",
+     .more =
+         "The list of limits below says what WHAT is. A built-in limit can be made smaller, not larger. What passes "
+         "one is refused as a mistake of the scene, with its place."},
     {.name = "--max-memory",
      .argument = "SIZE",
-     .commands = RENDER | CHECK | PIXEL | POV | IMPORT,
+     .commands = SCENES | IMPORT,
      .about = ABOUT_RUN,
      .read = read_memory,
      .text = "refuse what needs more memory: bytes, or with K, M, G or T behind it (7/8 of the machine's)",
