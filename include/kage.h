@@ -123,15 +123,43 @@ typedef struct kage_mesh_array {
     const uint32_t *triangles;               /* 3 vertices each */
 } kage_mesh_array;
 
-/* What a call may take (docs/limits.md). Zero: the default. */
+/* What a call may take, and what a scene and its files may have (docs/limits.md). Zero: the default. Those below
+ * `seconds` can only be smaller than the built-in ones, which kage_limit_get tells. They hold where a scene is read,
+ * and for what it reads later: what passes one is an error of the scene (KAGE_BAD_INPUT) and is refused before it is
+ * taken, but for triangles, which are counted when their file has been decoded. */
 typedef struct kage_limits {
-    int64_t memory; /* bytes that a scene, those that are changed from it, and their films may take together while the
-                     * call runs. What would take more is refused before it is taken, with KAGE_NO_MEMORY and the figure
-                     * that it needs. 0: 7/8 of the machine's memory; below 0: no limit */
-    double seconds; /* of the call, by the wall clock; then it ends as if it were cancelled, with KAGE_OUT_OF_TIME. 0:
-                     * no limit */
+    int64_t memory;  /* bytes that a scene, those that are changed from it, and their films may take together while the
+                      * call runs. What would take more is refused before it is taken, with KAGE_NO_MEMORY and the figure
+                      * that it needs. 0: 7/8 of the machine's memory; below 0: no limit */
+    double seconds;  /* of the call, by the wall clock; then it ends as if it were cancelled, with KAGE_OUT_OF_TIME. 0:
+                      * no limit */
+    int64_t scene;   /* bytes of the scene's text */
+    int64_t nesting; /* levels of maps and lists in it */
+    int64_t expression;         /* bytes of an expression */
+    int64_t expression_nesting; /* levels of brackets, signs and powers in it */
+    int64_t picture;            /* pixels along a side of the picture */
+    int64_t depth;              /* rays in a row: the scene's render.depth */
+    int64_t objects;            /* in the scene's file */
+    int64_t file;               /* bytes of a map, an image, a list of copies, patches or a model */
+    int64_t side;               /* samples along a side of a map or an image */
+    int64_t samples;            /* of a map or an image */
+    int64_t copies;             /* points of a list of them */
+    int64_t triangles;          /* of a model */
+    int64_t patches;            /* of an object */
     void *reserved[6];
 } kage_limits;
+
+/* One of the limits of what a scene and its files may have. */
+typedef struct kage_limit {
+    const char *name; /* as the option --limit has it: the field's, with - for _; NULL: no such limit */
+    const char *text; /* what is counted, in one line */
+    int64_t most;     /* the built-in limit */
+    int bytes;        /* it is of bytes */
+    size_t offset;    /* of its int64_t in kage_limits */
+} kage_limit;
+
+KAGE_API int kage_limit_count(void);
+KAGE_API kage_limit kage_limit_get(int index);
 
 typedef struct kage_load_options {
     const char *const *sets; /* set_count changes of the scene, PATH=VALUE as for `kage render --set` */
@@ -150,7 +178,7 @@ typedef struct kage_load_options {
     const kage_image_array *images;
     const kage_mesh_array *meshes;
     int image_count, mesh_count;
-    const kage_limits *limits; /* NULL: the defaults; of kage_scene_change: those of `scene` */
+    const kage_limits *limits; /* NULL: the defaults; of kage_scene_change: those of `scene`, as are fields of 0 */
     long survey; /* not 0: only what kage_scene_get_info and kage_scene_survey need is built now, and what displaced
                   * surfaces, `exact` and `horizon` need at the first render: of a map ten times its memory */
     void *reserved[3];

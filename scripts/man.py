@@ -33,6 +33,7 @@ ABOUT = {
 }
 FROM_STDIN = "A SCENE `-` is read from standard input."
 SEE = {"kage": "kage(1)", "kage-scene": "kage-scene(5)", "libkage": "kage(3)", "bumpshadow": "bumpshadow(3)"}
+LIMITS = "What `--limit WHAT=N` can make smaller:"
 MESSAGES = "Messages are on standard error; of a scene they are `file:line:column: what is wrong`, and show the place."
 
 
@@ -109,6 +110,11 @@ def kage_page(page: Page, table: Table) -> None:
         for option in table["options"]:
             if option["about"] == group:
                 page.entry(tag(option), inline(f"{words(option)} {of_whom(table, option)}"))
+    page.heading("LIMITS")
+    page.text(inline(LIMITS))
+    for limit in table["limits"]:
+        page.entry(f"\\fB{escaped(limit['name'], code=True)}\\fR",
+                   escaped(f"{capital(limit['text'])}: {limit['most']}."))
     page.heading("METHODS")
     for method in table["methods"]:
         page.entry(f"\\fB{escaped(method['name'], code=True)}\\fR", escaped(method["text"]))
@@ -138,7 +144,9 @@ def kage_markdown(table: Table) -> str:
             argument = f" `{option['argument']}`" if option["argument"] else ""
             out.append(f"| {names}{argument} | {words(option)} |".replace("8|16", "8\\|16").replace("y|z", "y\\|z"))
         out.append("")
-    out += ["## Methods", "", "| method | what it does |", "|---|---|"]
+    out += ["## Limits", "", LIMITS, "", "| limit | of what | built in |", "|---|---|---|"]
+    out += [f"| `{limit['name']}` | {limit['text']} | {limit['most']} |" for limit in table["limits"]]
+    out += ["", "## Methods", "", "| method | what it does |", "|---|---|"]
     out += [f"| `{method['name']}` | {method['text']} |" for method in table["methods"]]
     out += ["", "## Exit status", "", "| status | meaning |", "|---|---|"]
     out += [f"| {end['status']} | {end['text']} |" for end in table["exit"]]

@@ -47,6 +47,9 @@ bool watch_stopped(const watch *w);
 /* Whether the limits can be used. False: an error is in *e. */
 bool limits_are_good(const kage_limits *limits, errors *e);
 
+/* Those of what a scene and its files have, where they are set; the others stay. l may be NULL. */
+void limits_take(limits *to, const kage_limits *l);
+
 /* The most bytes by limits; NULL: by default. */
 int64_t limits_memory(const kage_limits *limits);
 
@@ -71,6 +74,7 @@ struct kage_scene {
     char *folder, *model_reader, **set;
     int sets, threads;
     allowance memory;
+    limits limits;  /* of what it reads */
     bool from_file; /* first->path is a file's */
     arrays arrays;
     shelf spare; /* of the scene that it is a change of: what its further readings had made */

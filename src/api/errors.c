@@ -152,18 +152,6 @@ double watch_left(const watch *w) { return w->end > 0 ? fmax(w->end - clock_seco
 
 bool watch_stopped(const watch *w) { return w->cancelled || w->late; }
 
-bool limits_are_good(const kage_limits *l, errors *e)
-{
-    return !l || (l->seconds >= 0 && l->seconds < HUGE_VAL) ||
-           errors_add(e, "a limit of %g seconds, expected a number above 0, or 0 for none", l->seconds);
-}
-
-int64_t limits_memory(const kage_limits *l)
-{
-    const int64_t asked = l ? l->memory : 0;
-    return asked > 0 ? asked : asked < 0 ? 0 : memory_default();
-}
-
 progress watch_begin(watch *w, kage_progress *call, void *user, const c_locale *locale, const kage_limits *l,
                      const allowance *from)
 {
@@ -173,5 +161,5 @@ progress watch_begin(watch *w, kage_progress *call, void *user, const c_locale *
         w->memory = (memory){.from = from->budget, .limit = own ? limits_memory(l) : from->most};
     if (l && l->seconds > 0)
         w->end = clock_seconds() + l->seconds;
-    return (progress){show, w, &w->memory};
+    return (progress){.show = show, .user = w, .memory = &w->memory};
 }

@@ -52,7 +52,7 @@ static void tell(telling *t, node *at, size_t used, int depth)
 kage_status kage_file_paths(const char *path, kage_path_call *call, void *user, kage_errors **to)
 {
     errors e = {0};
-    telling t = {.y = yaml_open(path, NULL, 0, 0, NULL, "", &e), .call = call, .user = user};
+    telling t = {.y = yaml_open(path, NULL, 0, 0, NULL, "", NULL, &e), .call = call, .user = user};
     const bool good = t.y;
     if (good) {
         tell(&t, yaml_root(t.y), 0, 0);

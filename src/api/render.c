@@ -292,8 +292,8 @@ static bool fill_bands(kage_film *f, const job *j, const kage_render_options *o,
         next = part.y1 - y < rows ? part.y1 : y + rows;
         const double from = (y - part.y0) / all, end = (next - part.y0) / all, half = (from + end) / 2;
         progress_part first = {p, "rendering", from, half}, second = {p, "rendering", half, end};
-        const progress rendering = {progress_part_show, &first, p->memory},
-                       writing = {progress_part_show, &second, p->memory};
+        const progress rendering = {progress_part_show, &first, p->memory, p->limits},
+                       writing = {progress_part_show, &second, p->memory, p->limits};
         film_move(f->film, y, next);
         good = fill(f, j, o, &rendering, &t, &seconds, e) && picture_add(to, f->film, &writing);
     }

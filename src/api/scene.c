@@ -46,7 +46,7 @@ static bool init_lock(pthread_mutex_t *lock)
     return good;
 }
 
-static kage_scene *new_scene(const kage_scene *before, const kage_limits *limits)
+static kage_scene *new_scene(const kage_scene *before, const kage_limits *l)
 {
     kage_scene *k = calloc(1, sizeof *k);
     if (!k || !init_lock(&k->lock)) {
@@ -54,7 +54,10 @@ static kage_scene *new_scene(const kage_scene *before, const kage_limits *limits
         return NULL;
     }
     k->memory.budget = before ? budget_share(before->memory.budget) : budget_open();
-    k->memory.most = before && !(limits && limits->memory) ? before->memory.most : limits_memory(limits);
+    k->memory.most = before && !(l && l->memory) ? before->memory.most : limits_memory(l);
+    if (before)
+        k->limits = before->limits;
+    limits_take(&k->limits, l);
     if (k->memory.budget)
         return k;
     pthread_mutex_destroy(&k->lock);
@@ -139,7 +142,8 @@ static kage_status load(kage_scene *before, scene_source *from, const kage_load_
     c_locale l = c_locale_begin();
     watch w;
     kage_scene *k = new_scene(before, o.limits);
-    const progress p = watch_begin(&w, o.progress, o.user, &l, o.limits, k ? &k->memory : NULL);
+    progress p = watch_begin(&w, o.progress, o.user, &l, o.limits, k ? &k->memory : NULL);
+    p.limits = k ? &k->limits : NULL;
     from->progress = &p;
     const bool good = k && read_first(k, before, from, &o, &e) && !watch_stopped(&w) && scene_describe(k);
     c_locale_end(&l);
@@ -213,6 +217,8 @@ static scene *read_again(kage_scene *k, reading r, const progress *p, errors *e)
         set[i] = k->set[i];
     memcpy(set + k->sets, more, sizeof more);
     const shelf *all[SHELVES];
+    progress within = p ? *p : (progress){0};
+    within.limits = &k->limits;
     const scene_source from = {
         .path = k->first->path,
         .text = k->first->source,
@@ -222,7 +228,7 @@ static scene *read_again(kage_scene *k, reading r, const progress *p, errors *e)
         .set = set,
         .threads = k->threads,
         .model_reader = k->model_reader,
-        .progress = p,
+        .progress = &within,
         .arrays = &k->arrays,
         .shelves = shelves_of(k, all),
         .shelf = all,

@@ -4,6 +4,7 @@
 #define KAGE_BASE_FILES_H
 
 #include <stdbool.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <sys/stat.h>
 #include <sys/types.h>
@@ -18,6 +19,9 @@ typedef struct files {
     file_id *id; /* owned */
     int count;
 } files;
+
+/* Bytes of a file that a scene names. */
+#define FILES_MOST ((int64_t)1 << 34)
 
 /* Open an input to read it. A pipe would be waited for, a device may have no end: what is no regular file is not
  * opened. NULL, with a reason in *why. */

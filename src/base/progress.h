@@ -1,10 +1,11 @@
-/* What long work gets from its caller: a callback that shows its progress and may stop it, and the memory that it may
- * take. */
+/* What long work gets from its caller: a callback that shows its progress and may stop it, the memory that it may
+ * take, and limits for what it reads. */
 #ifndef KAGE_BASE_PROGRESS_H
 #define KAGE_BASE_PROGRESS_H
 
 #include <stdbool.h>
 
+#include "base/limits.h"
 #include "base/memory.h"
 
 /* `what`, while the objects of a scene are read. */
@@ -14,11 +15,18 @@ typedef struct progress {
     /* Called with the kind of work and the share of it that is done, 0..1. False: stop, with an error. May be NULL. */
     bool (*show)(void *user, const char *what, double share);
     void *user;
-    memory *memory; /* NULL: without a limit */
+    memory *memory;       /* NULL: without a limit */
+    const limits *limits; /* NULL: the built-in ones */
 } progress;
 
 /* For memory_new. w may be NULL. */
 static inline memory *progress_memory(const progress *w) { return w ? w->memory : NULL; }
+
+/* As limit_of; w may be NULL. */
+static inline cap progress_limit(const progress *w, limit_kind kind, int64_t built_in)
+{
+    return limit_of(w ? w->limits : NULL, kind, built_in);
+}
 
 /* False: stop. w may be NULL. */
 static inline bool progress_show(const progress *w, const char *what, double share)

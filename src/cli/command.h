@@ -52,7 +52,7 @@ typedef struct arguments {
     const char *camera; /* of a model */
     double brightness;
     int frames;         /* of view, to measure */
-    kage_limits limits; /* of memory */
+    kage_limits limits; /* all but the seconds */
     double seconds;     /* that the command may take; 0: any */
     bool z_up;
     bool stats, quiet, no_cast, overwrite, resume, report, help;
@@ -110,6 +110,9 @@ void tidy(const arguments *a, const char *output);
 bool outputs_spare_inputs(const kage_scene *s, const char *const *output, int outputs);
 
 bool has_ending(const char *path, const char *ending);
+
+/* The built-in limit: "4096"; of bytes "64M". */
+const char *limit_text(const kage_limit *l, char text[32]);
 
 /* ---- wrap.c ---- */
 

@@ -73,6 +73,16 @@ static void print_flat(const kage_scene_info *s)
     }
 }
 
+const char *limit_text(const kage_limit *l, char text[32])
+{
+    int unit = 0;
+    int64_t n = l->most;
+    for (; l->bytes && n % 1024 == 0 && unit < 3; unit++)
+        n /= 1024;
+    snprintf(text, 32, "%lld%.1s", (long long)n, &"\0KMG"[unit]);
+    return text;
+}
+
 bool has_ending(const char *path, const char *ending)
 {
     const size_t n = strlen(path), m = strlen(ending);
@@ -97,8 +107,8 @@ void tidy(const arguments *a, const char *output)
         kage_errors_free(notes);
 }
 
-/* All of standard input. NULL: an error is on stderr. */
-static char *read_stdin(size_t *size)
+/* All of standard input, which may have `most` bytes; 0: as the library allows. NULL: an error is on stderr. */
+static char *read_stdin(int64_t most, size_t *size)
 {
     enum { BLOCK = 1 << 16, MOST = 1 << 28 };
     char *text = NULL;
@@ -108,9 +118,9 @@ static char *read_stdin(size_t *size)
             continue;
         room = room ? 2 * room : BLOCK;
         char *more = room <= MOST ? realloc(text, room) : NULL;
-        if (!more) {
-            free(text);
-            usage_error("-: the scene on standard input is too large");
+        if (!more || (most && (int64_t)*size > most)) { /* the library refuses what is a little larger */
+            free(more ? more : text);
+            usage_error("-: the scene on standard input is too large%s", more ? " (--limit scene)" : "");
             return NULL;
         }
         text = more;
@@ -128,7 +138,7 @@ static kage_status read_given(const char *path, const kage_load_options *o, kage
     size_t size;
     if (strcmp(path, "-") != 0)
         return kage_scene_load(path, o, s, e);
-    char *text = read_stdin(&size);
+    char *text = read_stdin(o->limits->scene, &size);
     *s = NULL;
     *e = NULL;
     const kage_status status = text ? kage_scene_parse(text, size, "stdin", NULL, o, s, e) : KAGE_BAD_INPUT;

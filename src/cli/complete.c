@@ -35,6 +35,18 @@ static void offer_methods(const char *before, const char *typed)
     }
 }
 
+/* Their values follow. */
+static void offer_limits(const char *before, const char *typed)
+{
+    char word[64], text[128], most[32];
+    for (int k = 0; k < kage_limit_count(); k++) {
+        const kage_limit l = kage_limit_get(k);
+        const int n = snprintf(word, sizeof word, "%s=", l.name);
+        snprintf(text, sizeof text, "%s, %s at most", l.text, limit_text(&l, most));
+        offer(before, typed, word, n, true, text);
+    }
+}
+
 static void offer_commands(const char *typed)
 {
     for (int k = 0; k < command_count; k++)
@@ -111,6 +123,8 @@ static void offer_values(const char *before, const char *typed, const char *valu
         return;
     if (strcmp(values, VALUES_METHODS) == 0)
         offer_methods(before, typed);
+    else if (strcmp(values, VALUES_LIMITS) == 0)
+        offer_limits(before, typed);
     else if (strcmp(values, VALUES_COMMANDS) == 0)
         offer_commands(typed);
     else if (strcmp(values, VALUES_PATHS) == 0)

@@ -20,10 +20,17 @@ static void print_entry(const char *names, int text_at, const char *text)
 
 static void print_option(const option *o)
 {
-    char names[128];
+    char names[128], text[1024];
     snprintf(names, sizeof names, "  %s%s%s%s%s", o->letter ? o->letter : "  ", o->letter ? ", " : "  ", o->name,
              o->argument ? " " : "", o->argument ? o->argument : "");
-    print_entry(names, TEXT_AT, o->text);
+    int used = snprintf(text, sizeof text, "%s", o->text);
+    for (int k = 0; o->values && strcmp(o->values, VALUES_LIMITS) == 0 && k < kage_limit_count(); k++) {
+        const kage_limit l = kage_limit_get(k);
+        char most[32];
+        used += snprintf(text + used, sizeof text - (size_t)used, "%s %s %s",
+                         k ? "," : ". WHAT, and the most without the option:", l.name, limit_text(&l, most));
+    }
+    print_entry(names, TEXT_AT, text);
 }
 
 static void print_options(int bits)

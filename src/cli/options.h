@@ -37,6 +37,7 @@ typedef enum option_group {
 #define VALUES_PATHS "@paths"
 #define VALUES_LAYERS "@layers"
 #define VALUES_COMMANDS "@commands"
+#define VALUES_LIMITS "@limits" /* --help lists them behind the text */
 
 typedef struct option {
     const char *name, *letter; /* "--output", "-o"; letter: NULL: none */
@@ -91,6 +92,7 @@ bool read_threshold(arguments *a, const char *name, const char *v);
 bool read_crop(arguments *a, const char *name, const char *v);
 bool read_threads(arguments *a, const char *name, const char *v);
 bool read_memory(arguments *a, const char *name, const char *v);
+bool read_limit(arguments *a, const char *name, const char *v);
 bool read_seconds(arguments *a, const char *name, const char *v);
 bool read_frames(arguments *a, const char *name, const char *v);
 bool read_layers(arguments *a, const char *name, const char *v);

@@ -62,6 +62,17 @@ int command_table(void)
         print_field("more", o->more);
         printf("\"commands\": %d, \"about\": %d}", o->commands, (int)o->about);
     }
+    printf("],\n\"limits\": [");
+    for (int k = 0; k < kage_limit_count(); k++) {
+        const kage_limit l = kage_limit_get(k);
+        char most[32];
+        printf("%s\n  {", k ? "," : "");
+        print_field("name", l.name);
+        print_field("most", limit_text(&l, most));
+        printf("\"text\": ");
+        print_text(l.text);
+        printf("}");
+    }
     printf("],\n\"exit\": [");
     for (int k = 0; k < exit_meaning_count; k++) {
         printf("%s{\"status\": %d, \"text\": ", k ? ", " : "", exit_meanings[k].status);

@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/spelling.h"
+
 /* Read exactly n whole numbers, 0 to 1000000, with `separator` between them. */
 static bool whole_numbers(const char *text, char separator, int n, int *out)
 {
@@ -193,7 +195,7 @@ bool read_threads(arguments *a, const char *name, const char *v)
 }
 
 /* Bytes, or with K, M, G or T behind it 1024, 1024^2 ... bytes. */
-bool read_memory(arguments *a, const char *name, const char *v)
+static bool read_bytes(const char *v, int64_t *to)
 {
     static const char units[] = "KMGT";
     char *end = NULL;
@@ -204,8 +206,47 @@ bool read_memory(arguments *a, const char *name, const char *v)
         x *= 1024;
     end = unit ? end + 1 : end;
     if (!(x >= 1 && x <= 1e18) || *end || digits + (unit != NULL) != strlen(v))
-        return usage_error("%s %s: expected a size in bytes, or with K, M, G or T behind it: 4G", name, v);
-    a->limits.memory = (int64_t)x;
+        return false;
+    *to = (int64_t)x;
+    return true;
+}
+
+bool read_memory(arguments *a, const char *name, const char *v)
+{
+    return read_bytes(v, &a->limits.memory) ||
+           usage_error("%s %s: expected a size in bytes, or with K, M, G or T behind it: 4G", name, v);
+}
+
+/* The error that there is no limit of the name that v begins with. */
+static bool refuse_limit(const char *name, const char *v)
+{
+    char words[512] = "", near[SPELLING_LONGEST + 1] = "", typed[SPELLING_LONGEST + 2];
+    size_t used = 0;
+    for (int k = 0; k < kage_limit_count() && used < sizeof words; k++)
+        used += (size_t)snprintf(words + used, sizeof words - used, "%s%s", k ? " " : "", kage_limit_get(k).name);
+    snprintf(typed, sizeof typed, "%.*s", (int)strcspn(v, "="), v);
+    spelling_nearest(typed, words, near, sizeof near);
+    return *near ? usage_error("%s %s: no such limit, did you mean '%s'?", name, v, near)
+                 : usage_error("%s %s: no such limit, expected WHAT=N with one of: %s", name, v, words);
+}
+
+bool read_limit(arguments *a, const char *name, const char *v)
+{
+    const size_t n = strcspn(v, "=");
+    kage_limit l = {0};
+    for (int k = 0; k < kage_limit_count() && !l.name; k++)
+        if (strncmp(kage_limit_get(k).name, v, n) == 0 && !kage_limit_get(k).name[n])
+            l = kage_limit_get(k);
+    if (!l.name)
+        return refuse_limit(name, v);
+    char most[32], *end = NULL;
+    const char *value = v + n + (v[n] == '=');
+    int64_t x = 0;
+    const bool good =
+        l.bytes ? read_bytes(value, &x) : *value >= '0' && *value <= '9' && ((x = strtoll(value, &end, 10)), !*end);
+    if (!good || x < 1 || x > l.most)
+        return usage_error("%s %s: expected %s=N, N from 1 to %s (%s)", name, v, l.name, limit_text(&l, most), l.text);
+    *(int64_t *)((char *)&a->limits + l.offset) = x;
     return true;
 }
 

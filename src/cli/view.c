@@ -52,10 +52,33 @@ static int start(char **argv)
     return EXIT_INPUT;
 }
 
+enum { LIMITS = 32, LIMIT_TEXT = 64 };
+
+/* Add --max-memory and --limit, as numbers alone, in text[]. Returns how many words there are then. */
+static int add_limits(const kage_limits *l, char text[LIMITS][LIMIT_TEXT], char **argv, int n)
+{
+    int used = 0;
+    if (l->memory) {
+        snprintf(text[used], LIMIT_TEXT, "%lld", (long long)l->memory);
+        argv[n++] = (char *)"--max-memory";
+        argv[n++] = text[used++];
+    }
+    for (int k = 0; k < kage_limit_count() && used < LIMITS; k++) {
+        const kage_limit of = kage_limit_get(k);
+        const int64_t most = *(const int64_t *)((const char *)l + of.offset);
+        if (!most)
+            continue;
+        snprintf(text[used], LIMIT_TEXT, "%s=%lld", of.name, (long long)most);
+        argv[n++] = (char *)"--limit";
+        argv[n++] = text[used++];
+    }
+    return n;
+}
+
 int command_view(const arguments *a)
 {
-    char *argv[2 * MAX_SETS + 8], threads[16], frames[16];
-    int n = 1;
+    char *argv[2 * MAX_SETS + 2 * LIMITS + 8], threads[16], frames[16], limit[LIMITS][LIMIT_TEXT];
+    int n = add_limits(&a->limits, limit, argv, 1);
     for (int k = 0; k < a->sets; k++) {
         argv[n++] = (char *)"--set";
         argv[n++] = a->set[k];

@@ -8,6 +8,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "base/limits.h"
+
 enum { EXPR_BATCH = 64 };
 
 /* The value and the partials of an expression at up to EXPR_BATCH points. */
@@ -24,6 +26,9 @@ typedef struct expr_error {
 
 /* Parse `text`. The caller frees the result with expr_free. NULL on error, with the reason in *error. */
 expr *expr_parse(const char *text, expr_error *error);
+
+/* The same within a caller's limits, or NULL. */
+expr *expr_parse_within(const limits *l, const char *text, expr_error *error);
 
 /* Evaluate at n <= EXPR_BATCH points (u[i], w[i]). Order 0 writes out->v, order 1 also u and w, order 2 also uu, uw
  * and ww. Reentrant; allocates nothing. Outside a function's domain (log of a negative number) the result is NaN or

@@ -24,6 +24,7 @@ enum { TABLES = sizeof tables / sizeof *tables };
 typedef struct parser {
     const char *text, *at; /* at: the first byte not yet read, never a blank between two calls */
     int depth;
+    cap deepest, longest;
     bool failed; /* the first error stands in *error */
     expr_error *error;
     emitter emitter;
@@ -225,8 +226,8 @@ static operand parse_primary(parser *p)
 
 static operand parse_signed(parser *p)
 {
-    if (++p->depth > EXPR_MAX_DEPTH)
-        return fail(p, p->at, "nesting too deep, expected at most %d levels", (int)EXPR_MAX_DEPTH);
+    if (++p->depth > p->deepest.most)
+        return fail(p, p->at, "nesting too deep, expected at most %d levels%s", (int)p->deepest.most, p->deepest.by);
     bool minus = false;
     const char *where = p->at;
     while (*p->at == '+' || *p->at == '-') {
@@ -268,9 +269,10 @@ static operand parse_sum(parser *p)
 
 static operand parse_whole(parser *p)
 {
-    if (strnlen(p->text, EXPR_MAX_TEXT + 1) > EXPR_MAX_TEXT) {
-        p->at = p->text + EXPR_MAX_TEXT;
-        return fail(p, p->at, "text too long, expected at most %d bytes", (int)EXPR_MAX_TEXT);
+    const size_t most = (size_t)p->longest.most;
+    if (strnlen(p->text, most + 1) > most) {
+        p->at = p->text + most;
+        return fail(p, p->at, "text too long, expected at most %d bytes%s", (int)most, p->longest.by);
     }
     skip_blanks(p);
     if (!*p->at)
@@ -281,9 +283,15 @@ static operand parse_whole(parser *p)
     return *p->at ? unexpected(p, "an operator or the end") : a;
 }
 
-expr *expr_parse(const char *text, expr_error *error)
+expr *expr_parse(const char *text, expr_error *error) { return expr_parse_within(NULL, text, error); }
+
+expr *expr_parse_within(const limits *l, const char *text, expr_error *error)
 {
-    parser p = {.text = text, .at = text, .error = error};
+    parser p = {.text = text,
+                .at = text,
+                .deepest = limit_of(l, LIMIT_EXPRESSION_NESTING, EXPR_MAX_DEPTH),
+                .longest = limit_of(l, LIMIT_EXPRESSION, EXPR_MAX_TEXT),
+                .error = error};
     emitter_begin(&p.emitter);
     operand result = parse_whole(&p);
     if (p.failed)

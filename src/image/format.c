@@ -22,24 +22,30 @@ bool image_refuse_memory(const image_stream *s, char *why)
     return image_refuse(why, "%s", memory_words(progress_memory(s->progress), words));
 }
 
-static const char *refuse_size(int64_t width, int64_t height)
+/* width and height are those of a file, up to 2^32. False, with a reason. */
+static bool size_is_good(const image_stream *s, int64_t width, int64_t height, char *why)
 {
+    const cap side = progress_limit(s->progress, LIMIT_SIDE, IMAGE_MAX_SIDE);
+    const cap all = progress_limit(s->progress, LIMIT_SAMPLES, IMAGE_MAX_PIXELS);
     if (width < 1 || height < 1)
-        return "the image has no samples";
-    if (width > IMAGE_MAX_SIDE || height > IMAGE_MAX_SIDE || width * height > IMAGE_MAX_PIXELS)
-        return "the image is too large: the limits are 65536 samples a side and 2^28 in all";
-    return NULL;
+        return image_refuse(why, "the image has no samples");
+    if (width > side.most || height > side.most)
+        return image_refuse(why, "the image is too large: it has %lld x %lld samples, expected at most %lld a side%s",
+                            (long long)width, (long long)height, (long long)side.most, side.by);
+    return width * height <= all.most ||
+           image_refuse(why, "the image is too large: it has %lld samples, expected at most %lld%s",
+                        (long long)(width * height), (long long)all.most, all.by);
 }
 
 bool image_begin(image_stream *s, int64_t width, int64_t height, char *why)
 {
-    const char *refused = refuse_size(width, height);
+    if (!size_is_good(s, width, height, why))
+        return false;
     s->width = (int)width;
     s->height = (int)height;
     s->range[0] = INFINITY;
     s->range[1] = -INFINITY;
-    if (!refused)
-        refused = s->to->begin(s->to->user, s->width, s->height);
+    const char *refused = s->to->begin(s->to->user, s->width, s->height);
     return !refused || (*refused ? image_refuse(why, "%s", refused) : image_refuse_memory(s, why));
 }
 

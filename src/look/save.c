@@ -60,7 +60,8 @@ static kage_status write_picture(const save_order *o, const char *scene, const c
 {
     kage_scene *s = NULL;
     kage_film *f = NULL;
-    const kage_load_options how = {.threads = o->threads, .progress = o->progress, .user = o->user};
+    const kage_load_options how = {
+        .threads = o->threads, .progress = o->progress, .user = o->user, .limits = o->limits};
     const kage_render_options render = {.threads = o->threads, .progress = o->progress, .user = o->user};
     const kage_write_options write = {.threads = o->threads, .progress = o->progress, .user = o->user};
     kage_status status = kage_scene_load(scene, &how, &s, errors);

@@ -9,6 +9,7 @@ typedef struct save_order {
     const char *path;  /* of that file */
     const look *look;
     int threads;
+    const kage_limits *limits;
     kage_progress *progress; /* may end it */
     void *user;
 } save_order;

@@ -29,13 +29,19 @@ bool mesh_refuse_memory(const progress *w, char why[MESH_WHY])
     return false;
 }
 
+bool mesh_count_is_good(int triangles, const progress *w, char why[MESH_WHY])
+{
+    const cap most = progress_limit(w, LIMIT_TRIANGLES, MESH_MOST);
+    if (triangles < 1 || triangles > most.most)
+        snprintf(why, MESH_WHY, "%d triangles, expected 1 to %d%s", triangles, (int)most.most, most.by);
+    return triangles >= 1 && triangles <= most.most;
+}
+
 bool mesh_array_read(const mesh_array *a, const progress *w, mesh_data *out, char why[MESH_WHY])
 {
     const size_t n = (size_t)a->triangles;
-    if (a->triangles < 1 || a->triangles > MESH_MOST) {
-        snprintf(why, MESH_WHY, "%d triangles, expected 1 to %d", a->triangles, MESH_MOST);
+    if (!mesh_count_is_good(a->triangles, w, why))
         return false;
-    }
     for (size_t k = 0; k < 3 * n; k++)
         if (a->corners[k] >= (uint32_t)a->vertices) {
             snprintf(why, MESH_WHY, "triangle %zu (from 0) has the vertex %lu, expected 0 to %d", k / 3,

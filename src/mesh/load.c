@@ -29,8 +29,10 @@ static bool take_triangles(void *user, reader_pipe *p)
     memory *m = progress_memory(to->progress);
     char why[MESH_WHY];
     const mesh_data come = p->letter.data;
-    if (p->letter.is != LETTER_DONE || come.n <= 0 || come.n > MESH_MOST || come.parts <= 0 || come.parts > come.n)
+    if (p->letter.is != LETTER_DONE || come.parts <= 0 || come.parts > come.n)
         return reader_fails(p, "its reader failed, expected a valid file");
+    if (!mesh_count_is_good(come.n, to->progress, why))
+        return reader_fails(p, why);
     const size_t n = (size_t)come.n, parts = (size_t)come.parts;
     *out = (mesh_data){come.n,     memory_new(m, sizeof *out->at * n),       memory_new(m, sizeof *out->skin * n),
                        come.notes, memory_new(m, sizeof *out->part * parts), come.parts};

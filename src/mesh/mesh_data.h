@@ -86,6 +86,9 @@ bool mesh_data_part(const mesh_data *d, const char *name, const progress *w, mes
 /* Say in `why` that there is not enough memory, and what is needed. Always false. (array.c) */
 bool mesh_refuse_memory(const progress *w, char why[MESH_WHY]);
 
+/* Whether a model may have so many triangles. False, with the reason. (array.c) */
+bool mesh_count_is_good(int triangles, const progress *w, char why[MESH_WHY]);
+
 /* Check the numbers, remove triangles without an area, and find a normal for every corner: the file's where it is
  * usable, otherwise the mean over the triangles about the vertex that are within `crease` degrees of this one. False,
  * with the reason: a coordinate beyond `most`, no triangle left, or out of memory. The result does not depend on the

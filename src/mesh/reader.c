@@ -28,7 +28,7 @@
 #endif
 
 enum {
-    MOST_MIB = 1024, /* of a file: no model of MESH_MOST triangles is larger */
+    MOST_BYTES = 1 << 30, /* of a file: no model of MESH_MOST triangles is larger */
     PATH_SIZE = 4096,
     PATIENCE = 10, /* the limit of its time by the clock, in those of its processor time */
 };
@@ -178,8 +178,11 @@ static void clean(char *text)
         text[n - 1] = 0;
 }
 
-static bool can_open(const char *path, size_t *size, char why[MESH_WHY])
+static bool can_open(const char *path, const progress *w, size_t *size, char why[MESH_WHY])
 {
+    cap most = progress_limit(w, LIMIT_FILE, MOST_BYTES);
+    if (most.most > MOST_BYTES)
+        most = (cap){MOST_BYTES, ""};
     static const char *const ends[] = {".obj", ".ply", ".stl", ".gltf", ".glb", ".off", ".dae", ".fbx", ".3ds"};
     const char *dot = strrchr(path, '.');
     bool known = false;
@@ -196,8 +199,9 @@ static bool can_open(const char *path, size_t *size, char why[MESH_WHY])
                  ".fbx or .3ds");
     else if (about.st_size == 0)
         snprintf(why, MESH_WHY, "the file is empty");
-    else if ((size_t)about.st_size > MOST_MIB * MIB)
-        snprintf(why, MESH_WHY, "the file is too large, expected at most %d MiB", MOST_MIB);
+    else if (about.st_size > most.most)
+        snprintf(why, MESH_WHY, "it has %lld bytes, expected at most %lld%s", (long long)about.st_size,
+                 (long long)most.most, most.by);
     else
         *size = (size_t)about.st_size;
     if (f)
@@ -287,7 +291,7 @@ static bool run(const reader_call *c, char **argv, int seconds, char why[MESH_WH
 bool reader_run(const reader_call *c, char why[MESH_WHY])
 {
     size_t size = 0;
-    char **argv = can_open(c->path, &size, why) ? calloc((size_t)c->count + 3, sizeof *argv) : NULL;
+    char **argv = can_open(c->path, c->show, &size, why) ? calloc((size_t)c->count + 3, sizeof *argv) : NULL;
     if (!argv) {
         if (size)
             snprintf(why, MESH_WHY, "out of memory");

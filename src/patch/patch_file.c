@@ -76,12 +76,15 @@ static bool number(const char *name, const char *text, const char **at, double m
 }
 
 /* Read all numbers of the text. Returns how many; -1 with an error. */
-static int numbers(const char *name, const char *text, double most, double *v, errors *e)
+static int numbers(const char *name, const char *text, double most, cap allowed, double *v, errors *e)
 {
+    char message[160];
     int n = 0;
     for (const char *at = skip(text); *at; at = skip(at)) {
-        if (n == COUNT_MAX) {
-            wrong(name, text, at, "more than 4096 patches, expected no more", e);
+        if (n == 48 * allowed.most) {
+            snprintf(message, sizeof message, "too many patches, expected at most %d%s", (int)allowed.most,
+                     allowed.by);
+            wrong(name, text, at, message, e);
             return -1;
         }
         if (!number(name, text, &at, most, &v[n], e))
@@ -90,7 +93,6 @@ static int numbers(const char *name, const char *text, double most, double *v, e
     }
     if (n > 0 && n % 48 == 0)
         return n;
-    char message[160];
     snprintf(message, sizeof message,
              "the file ends after %d number%s, expected 48 for each patch: 16 control points of x, y and z", n,
              n == 1 ? "" : "s");
@@ -99,12 +101,12 @@ static int numbers(const char *name, const char *text, double most, double *v, e
     return -1;
 }
 
-vec3 *patch_file_read(const char *path, const char *name, double most, int *patches, errors *e)
+vec3 *patch_file_read(const char *path, const char *name, double most, cap allowed, int *patches, errors *e)
 {
     char *text = read_all(path, name, e);
     double *v = text ? malloc(sizeof *v * COUNT_MAX) : NULL;
     vec3 *point = NULL;
-    int n = v ? numbers(name, text, most, v, e) : -1;
+    int n = v ? numbers(name, text, most, allowed, v, e) : -1;
     if (text && !v)
         errors_add(e, "out of memory");
     if (n > 0 && !(point = malloc(sizeof *point * (size_t)(n / 3))))

@@ -5,12 +5,14 @@
 #define KAGE_PATCH_PATCH_FILE_H
 
 #include "base/errors.h"
+#include "base/limits.h"
 #include "base/vec3.h"
 
-enum { PATCHES_MAX = 4096 };
+enum { PATCHES_MAX = 4096 }; /* of an object */
 
-/* Read the control points, 16 * *patches of them; owned by the caller. Coordinates are within +-most. NULL with an
- * error in *e, as `name:line:col: ...`; name: the file as the scene has it. */
-vec3 *patch_file_read(const char *path, const char *name, double most, int *patches, errors *e);
+/* Read the control points, 16 * *patches of them; owned by the caller. Coordinates are within +-most, and there
+ * are at most `allowed` patches, PATCHES_MAX or fewer. NULL with an error in *e, as `name:line:col: ...`; name: the
+ * file as the scene has it. */
+vec3 *patch_file_read(const char *path, const char *name, double most, cap allowed, int *patches, errors *e);
 
 #endif

@@ -196,6 +196,13 @@ static size_t count_lines(const char *at)
     return n;
 }
 
+static bool too_many(const points_file *f, const char *at, cap rows)
+{
+    char message[128];
+    snprintf(message, sizeof message, "too many points, expected at most %d%s", (int)rows.most, rows.by);
+    return points_wrong_at(f, at, message);
+}
+
 bool points_csv(points_file *f)
 {
     points *p = f->p;
@@ -209,12 +216,15 @@ bool points_csv(points_file *f)
         return false;
     if (!(p->line = memory_new(progress_memory(f->progress), sizeof *p->line * most)))
         return points_no_memory(f);
+    const cap rows = progress_limit(f->progress, LIMIT_COPIES, POINTS_MOST);
     int32_t line = 1;
     for (const char *k = f->text; k < at; k = next_line(k))
         line += next_line(k) <= at;
     for (at = next_line(at), line++; *at; at = next_line(at), line++) {
         if (is_empty(at))
             continue;
+        if (p->n == rows.most)
+            return too_many(f, at, rows);
         p->line[p->n] = line;
         if (read_row(f, &h, at))
             p->n++;

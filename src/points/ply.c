@@ -223,6 +223,9 @@ bool points_ply(points_file *f)
     const int before = f->e->count;
     if (!read_head(f, &h))
         return false;
+    const cap most = progress_limit(f->progress, LIMIT_COPIES, POINTS_MOST);
+    if (h.points > most.most)
+        return errors_add(f->e, "%s: %lld vertices, expected at most %d%s", f->name, h.points, (int)most.most, most.by);
     if ((unsigned long long)h.points > f->size)
         return errors_add(f->e, "%s: %lld vertices in %zu bytes, expected a longer file", f->name, h.points, f->size);
     if (!points_make(f, h.columns, h.kind, (size_t)h.points))

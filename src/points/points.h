@@ -14,7 +14,8 @@
 #include "base/errors.h"
 #include "base/progress.h"
 
-enum { POINTS_COLUMNS = 16, POINTS_LABELS = 256, POINTS_LABEL_SIZE = 64 };
+/* POINTS_MOST: of a list. */
+enum { POINTS_MOST = 1 << 28, POINTS_COLUMNS = 16, POINTS_LABELS = 256, POINTS_LABEL_SIZE = 64 };
 
 /* A column that is asked for: its name and range. `needed`: a file without it is an error. */
 typedef struct points_column {

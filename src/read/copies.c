@@ -125,7 +125,7 @@ static bool read_file(reader *r, node *at, const object *o, rows *k)
     static const int sizes[3] = {SX, SY, SZ}, turns[3] = {RX, RY, RZ};
     node *file = yaml_need(r->y, at, "file", "copies");
     k->name = file ? yaml_text(r->y, file, "a CSV or PLY file") : NULL;
-    char *path = k->name ? reader_beside(r, k->name) : NULL;
+    char *path = k->name ? reader_input(r, file, k->name) : NULL;
     const bool good = path && points_read(path, k->name, columns, "material", r->from->progress, &k->p, r->e);
     free(path);
     return good && one_of(r, k, SCALE, sizes) && one_of(r, k, TURN, turns) &&

@@ -82,7 +82,7 @@ static void read_light(reader *r, node *v, light *l)
 void reader_lights(reader *r)
 {
     scene *s = r->s;
-    node *at = reader_named(r, "lights", SCENE_MAX_ITEMS, sizeof *s->light, &s->light, &s->lights), *key;
+    node *at = reader_named(r, "lights", (cap){SCENE_MAX_ITEMS, ""}, sizeof *s->light, &s->light, &s->lights), *key;
     for (int i = 0; at && i < s->lights; i++) {
         node *v = yaml_pair(at, i, &key);
         light *l = &s->light[i];

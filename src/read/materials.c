@@ -130,7 +130,9 @@ void reader_materials(reader *r)
 {
     node *k;
     scene *s = r->s;
-    node *at = reader_named(r, "materials", SCENE_MAX_ITEMS, sizeof *s->material, &s->material, &s->materials), *key;
+    node *at =
+             reader_named(r, "materials", (cap){SCENE_MAX_ITEMS, ""}, sizeof *s->material, &s->material, &s->materials),
+         *key;
     for (int i = 0; at && i < s->materials; i++) {
         node *v = yaml_pair(at, i, &key);
         material *m = &s->material[i];

@@ -241,7 +241,8 @@ static void read_names(reader *r, queue *q)
 void reader_objects(reader *r)
 {
     scene *s = r->s;
-    node *at = reader_named(r, "objects", SCENE_MAX_OBJECTS, sizeof *s->object, &s->object, &s->objects);
+    const cap most = reader_limit(r, LIMIT_OBJECTS, SCENE_MAX_OBJECTS);
+    node *at = reader_named(r, "objects", most, sizeof *s->object, &s->object, &s->objects);
     const size_t n = (size_t)s->objects + 1;
     s->kept = s->objects;
     if (!at)

@@ -144,8 +144,9 @@ static vec3 *read_points(reader *r, node *at, int *patches)
     *patches = yaml_list(r->y, at, expected);
     if (*patches < 0)
         return NULL;
-    if (*patches < 1 || *patches > PATCHES_MAX) {
-        yaml_error(r->y, at, "%d patches, expected 1 to %d", *patches, PATCHES_MAX);
+    const cap most = reader_limit(r, LIMIT_PATCHES, PATCHES_MAX);
+    if (*patches < 1 || *patches > most.most) {
+        yaml_error(r->y, at, "%d patches, expected 1 to %d%s", *patches, (int)most.most, most.by);
         return NULL;
     }
     vec3 *point = reader_made(r, malloc(sizeof *point * 16 * (size_t)*patches));
@@ -162,13 +163,13 @@ static vec3 *read_points(reader *r, node *at, int *patches)
 static vec3 *read_file(reader *r, node *at, int *patches)
 {
     const char *name = yaml_text(r->y, at, "the file of the patches");
-    char *path = name ? reader_beside(r, name) : NULL;
+    char *path = name ? reader_input(r, at, name) : NULL;
     vec3 *point = NULL;
     const char *why = NULL;
     FILE *there = path ? files_open_input(path, &why) : NULL;
     if (there) {
         fclose(there);
-        point = patch_file_read(path, path, BIG, patches, r->e);
+        point = patch_file_read(path, path, BIG, reader_limit(r, LIMIT_PATCHES, PATCHES_MAX), patches, r->e);
     } else if (path)
         yaml_error(r->y, at, "'%s' can't be used: %s", name, why);
     free(path);

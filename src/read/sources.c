@@ -37,7 +37,7 @@ bool reader_source(reader *r, node *file, bool is_mesh, const char *what, source
     if (!to->name)
         return false;
     if (strncmp(to->name, ARRAY_PREFIX, prefix) != 0) {
-        to->path = reader_beside(r, to->name);
+        to->path = reader_input(r, file, to->name);
         if (to->path)
             identify(to);
         return to->path;

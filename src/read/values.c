@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 /* "there is not enough memory", and what is needed. */
 static const char *memory_needed(const reader *r, char text[MEMORY_WORDS])
@@ -139,6 +140,19 @@ char *reader_beside(reader *r, const char *file)
     return path;
 }
 
+char *reader_input(reader *r, node *file, const char *name)
+{
+    const cap most = reader_limit(r, LIMIT_FILE, FILES_MOST);
+    char *path = reader_beside(r, name);
+    struct stat about;
+    if (!path || stat(path, &about) != 0 || !S_ISREG(about.st_mode) || about.st_size <= most.most)
+        return path;
+    yaml_error(r->y, file, "'%s' can't be used: it has %lld bytes, expected at most %lld%s", name,
+               (long long)about.st_size, (long long)most.most, most.by);
+    free(path);
+    return NULL;
+}
+
 /* Few letters are allowed: names are used in --set and as layers of the image. */
 char *reader_plain_name(reader *r, node *key)
 {
@@ -166,14 +180,14 @@ bool reader_second(reader *r, node *key, const char *name)
     return yaml_error(r->y, key, "a second '%s', expected each name once", name);
 }
 
-node *reader_named(reader *r, const char *key, int most, size_t size, void *items_at, int *count)
+node *reader_named(reader *r, const char *key, cap most, size_t size, void *items_at, int *count)
 {
     node *at = yaml_need(r->y, yaml_root(r->y), key, "the scene");
     if (!at || !yaml_map(r->y, at, key, NULL))
         return NULL;
     int n = yaml_size(at);
-    if (n > most) {
-        yaml_error(r->y, at, "%d %s, expected at most %d", n, key, most);
+    if (n > most.most) {
+        yaml_error(r->y, at, "%d %s, expected at most %d%s", n, key, (int)most.most, most.by);
         return NULL;
     }
     void *items = reader_made(r, calloc((size_t)(n ? n : 1), size));
@@ -200,7 +214,7 @@ expr *reader_expr(reader *r, node *at, const char *what)
 {
     expr_error wrong;
     const char *text = yaml_text(r->y, at, what);
-    expr *e = text ? expr_parse(text, &wrong) : NULL;
+    expr *e = text ? expr_parse_within(reader_limits(r), text, &wrong) : NULL;
     if (text && !e)
         yaml_error_in(r->y, at, wrong.offset, "%s", wrong.message);
     return e;

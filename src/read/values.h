@@ -40,6 +40,16 @@ void *reader_made(reader *r, void *p);
 /* Where this scene's memory is from. */
 static inline memory *reader_memory(const reader *r) { return progress_memory(r->from->progress); }
 
+/* The caller's limits, or NULL; and the one that holds. */
+static inline const limits *reader_limits(const reader *r)
+{
+    return r->from->progress ? r->from->progress->limits : NULL;
+}
+static inline cap reader_limit(const reader *r, limit_kind kind, int64_t built_in)
+{
+    return limit_of(reader_limits(r), kind, built_in);
+}
+
 /* A copy of the text, owned by the caller. NULL: the text is NULL, or there is an error. */
 char *reader_copy(reader *r, const char *text);
 
@@ -83,13 +93,16 @@ char *reader_name(reader *r, node *map, node *key);
 /* Add the error that a name is there twice. Always false. */
 bool reader_second(reader *r, node *key, const char *name);
 
-/* The map of at most `most` named things under a required key of the scene. Sets *items_at to one zeroed item of `size`
- * bytes for each, owned by the scene. NULL with an error; *count is then unchanged. */
-node *reader_named(reader *r, const char *key, int most, size_t size, void *items_at, int *count);
+/* The map of at most `most.most` named things under a required key of the scene. Sets *items_at to one zeroed item of
+ * `size` bytes for each, owned by the scene. NULL with an error; *count is then unchanged. */
+node *reader_named(reader *r, const char *key, cap most, size_t size, void *items_at, int *count);
 
 /* The path of a file that is given relative to the scene's folder; owned by the caller. Adds the file to those that the
  * scene is made from. NULL: out of memory, with an error. */
 char *reader_beside(reader *r, const char *file);
+
+/* The same of a file that is read; file: the node of its name. NULL, with an error: it has too many bytes, too. */
+char *reader_input(reader *r, node *file, const char *name);
 
 /* Whether an image was read (if not, *e has the reason) and has at least 2 x 2 values. False with an error. Frees *e.
  */

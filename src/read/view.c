@@ -1,15 +1,23 @@
 /* The keys image, camera and render: the picture's size, its view, and how it is rendered. */
 #include "read/parts.h"
 
+#include <stdio.h>
+
 static void read_image(reader *r)
 {
     scene *s = r->s;
     node *at = yaml_get(yaml_root(r->y), "image");
     int size[2] = {640, 480};
+    const cap most = reader_limit(r, LIMIT_PICTURE, SCENE_MAX_SIDE);
+    char what[128];
+    snprintf(what, sizeof what, "[width, height] in pixels, from 1 to %d%s", (int)most.most, most.by);
     if (at && yaml_map(r->y, at, "image", "size background")) {
         reader_color(r, at, "background", &s->background);
-        reader_counts(r, at, "size", SCENE_MAX_SIDE, "[width, height] in pixels, from 1 to 32768", size);
+        reader_counts(r, at, "size", (int)most.most, what, size);
     }
+    if ((!at || !yaml_get(at, "size")) && most.most < size[0])
+        yaml_error(r->y, at ? at : yaml_root(r->y), "no size of the picture, which is then %d x %d pixels, expected %s",
+                   size[0], size[1], what);
     s->width = size[0];
     s->height = size[1];
 }
@@ -40,6 +48,14 @@ static void read_camera(reader *r)
     if (across ? !camera_orthographic(c, from, to, up, width, columns, rows)
                : !camera_look(c, from, to, up, fov, columns, rows))
         reader_up_along(r, at);
+}
+
+static void read_depth(reader *r, node *at)
+{
+    const cap most = reader_limit(r, LIMIT_DEPTH, SCENE_MAX_DEPTH);
+    char what[128];
+    snprintf(what, sizeof what, "how many rays follow one another, 1 to %d%s", (int)most.most, most.by);
+    yaml_whole(r->y, at, 1, (int)most.most, what, &r->s->depth);
 }
 
 static void read_render(reader *r)
@@ -74,7 +90,7 @@ static void read_render(reader *r)
     reader_number(r, at, "aa_threshold", 0, false, 3,
                   "how much two pixels may differ, red, green and blue together, 0 to 3", &s->aa_threshold);
     if ((k = yaml_get(at, "depth")))
-        yaml_whole(r->y, k, 1, SCENE_MAX_DEPTH, "how many rays follow one another, 1 to 32", &s->depth);
+        read_depth(r, k);
     s->displaced = reader_word(r, at, "surface", "smooth displaced", "smooth or displaced") == 1;
     if ((k = yaml_get(at, "self_shadow")))
         yaml_bool(r->y, k, "true or false", &s->self_shadow);

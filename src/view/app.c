@@ -36,7 +36,7 @@ bool app_start(app *a, const app_options *o, kage_scene *scene)
     }
     view_start(&a->state, width, height);
     a->event = SDL_RegisterEvents(1);
-    const worker_options w = {o->path, o->sets, o->set_count, o->threads, a->event};
+    const worker_options w = {o->path, o->sets, o->set_count, o->threads, o->limits, a->event};
     a->worker = worker_start(&w, scene);
     if (!a->worker) {
         kage_scene_free(scene);

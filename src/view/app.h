@@ -10,6 +10,7 @@ typedef struct app_options {
     const char *path;
     const char **sets;
     int set_count, threads;
+    kage_limits limits;
     int frames;  /* not 0: measure so many */
     bool report; /* print a line for each picture that is shown */
 } app_options;

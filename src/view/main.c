@@ -34,6 +34,18 @@ static bool read_number(const char *text, int most, int *to)
     return *text >= '0' && *text <= '9' && !*end && v >= 1 && v <= most;
 }
 
+/* NAME=N, as `kage view` passes what --limit sets. */
+static bool read_limit(const char *text, kage_limits *to)
+{
+    const size_t n = strcspn(text, "=");
+    for (int k = 0; k < kage_limit_count() && text[n]; k++) {
+        const kage_limit of = kage_limit_get(k);
+        if (strncmp(of.name, text, n) == 0 && !of.name[n])
+            return (*(int64_t *)((char *)to + of.offset) = strtoll(text + n + 1, NULL, 10)) > 0;
+    }
+    return false;
+}
+
 /* The arguments, as `kage view` passes them: changes all are --set. 0, or the exit status. */
 static int read_arguments(app_options *o, int argc, char **argv)
 {
@@ -51,6 +63,12 @@ static int read_arguments(app_options *o, int argc, char **argv)
         } else if (strcmp(arg, "--frames") == 0) {
             if (!read_number(value, 1000000, &o->frames))
                 return complain("--frames", "expected a whole number, 1 to 1000000");
+        } else if (strcmp(arg, "--max-memory") == 0) {
+            if ((o->limits.memory = strtoll(value, NULL, 10)) <= 0)
+                return complain("--max-memory", "expected bytes");
+        } else if (strcmp(arg, "--limit") == 0) {
+            if (!read_limit(value, &o->limits))
+                return complain("--limit", "expected NAME=N; see kage view --help");
         } else if (*arg == '-' || o->path)
             return complain(arg, "not expected here; see kage view --help");
         else {
@@ -74,8 +92,11 @@ static int show_progress(void *user, const char *what, double share)
 /* A scene that never was good ends the program as it ends `kage render`. */
 static kage_scene *load(const app_options *o)
 {
-    const kage_load_options how = {
-        .sets = o->sets, .set_count = o->set_count, .threads = o->threads, .progress = show_progress};
+    const kage_load_options how = {.sets = o->sets,
+                                   .set_count = o->set_count,
+                                   .threads = o->threads,
+                                   .progress = show_progress,
+                                   .limits = &o->limits};
     kage_scene *s = NULL;
     kage_errors *e = NULL;
     if (kage_scene_load(o->path, &how, &s, &e) == KAGE_OK)

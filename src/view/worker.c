@@ -57,11 +57,14 @@ static void push(worker *w)
     SDL_PushEvent(&e);
 }
 
-/* All errors as one text, and how many there are. Frees the list. NULL: no memory. */
-static char *text_of(kage_errors *e)
+/* All errors as one text, and how many there are; without a list, what the status means. Frees the list. NULL: no
+ * memory. */
+static char *text_of(kage_status status, kage_errors *e)
 {
     const int count = kage_errors_count(e), found = kage_errors_found(e);
     size_t size = 64;
+    if (count == 0)
+        return strdup(status == KAGE_NO_MEMORY ? "there is not enough memory" : "the picture can't be made");
     for (int k = 0; k < count; k++)
         size += strlen(kage_errors_get(e, k)->message) + 1;
     char *text = calloc(1, size);
@@ -76,7 +79,7 @@ static char *text_of(kage_errors *e)
 /* Replace the errors of the file or of the look. */
 static void set_errors(worker *w, char **which, kage_status status, kage_errors *e)
 {
-    char *text = status == KAGE_OK ? NULL : text_of(e);
+    char *text = status == KAGE_OK ? NULL : text_of(status, e);
     SDL_LockMutex(w->lock);
     char *before = *which;
     *which = text;
@@ -135,8 +138,12 @@ static int ended(void *user, const char *what, double share)
 /* Read the scene again. False: it has errors, and stays as it was. */
 static bool reload(worker *w)
 {
-    const kage_load_options o = {
-        .sets = w->o.sets, .set_count = w->o.set_count, .threads = w->o.threads, .progress = ended, .user = w};
+    const kage_load_options o = {.sets = w->o.sets,
+                                 .set_count = w->o.set_count,
+                                 .threads = w->o.threads,
+                                 .progress = ended,
+                                 .user = w,
+                                 .limits = &w->o.limits};
     kage_scene *s = NULL;
     kage_errors *e = NULL;
     const kage_status status = kage_scene_load(w->o.path, &o, &s, &e);
@@ -155,7 +162,7 @@ static bool reload(worker *w)
 
 static void save(worker *w)
 {
-    const save_order o = {w->base, w->o.path, &w->done.look, w->o.threads, ended, w};
+    const save_order o = {w->base, w->o.path, &w->done.look, w->o.threads, &w->o.limits, ended, w};
     char text[SAVE_TEXT];
     save_picture(&o, text);
     SDL_LockMutex(w->lock);

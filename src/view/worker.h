@@ -16,6 +16,7 @@ typedef struct worker_options {
     const char *path;        /* of the scene */
     const char *const *sets; /* its changes from the command line */
     int set_count, threads;
+    kage_limits limits;
     Uint32 event; /* of SDL, which is pushed when there is something new for the window */
 } worker_options;
 

@@ -18,14 +18,15 @@ static const char scene_expected[] = "expected a map with camera, lights, materi
 /* ---- the bytes ---- */
 
 /* Are the bytes a text that can be a scene? If not, adds an error with its place. */
-static bool is_text(const char *path, const char *text, size_t n, errors *e)
+static bool is_text(const char *path, const char *text, size_t n, cap most, errors *e)
 {
     char message[80];
     int line, column;
     size_t bad = text_not_utf8(text, n);
     const char *zero = memchr(text, 0, bad);
-    if (n > YAML_MAX_BYTES)
-        return errors_add(e, "%s: the scene is too large, expected at most %d MiB", path, YAML_MAX_BYTES >> 20);
+    if ((int64_t)n > most.most)
+        return errors_add(e, "%s: the scene is too large, expected at most %lld bytes%s", path, (long long)most.most,
+                          most.by);
     int anchors = 0; /* libfyaml's time grows with their square */
     for (size_t k = 0; k < n; k++)
         anchors += text[k] == '&';
@@ -41,11 +42,11 @@ static bool is_text(const char *path, const char *text, size_t n, errors *e)
 }
 
 /* A copy of the file, or of `text`, ended by a 0. The caller frees it. NULL: an error is added. */
-static char *read_bytes(const char *path, const char *text, size_t *size, errors *e)
+static char *read_bytes(const char *path, const char *text, size_t *size, int64_t allowed, errors *e)
 {
     const char *why = NULL;
     FILE *f = text ? NULL : files_open_input(path, &why);
-    const size_t most = YAML_MAX_BYTES + 1, n = text && *size < most ? *size : most;
+    const size_t most = (size_t)allowed + 1, n = text && *size < most ? *size : most;
     char *bytes = text || f ? malloc(n + 1) : NULL;
     bool good = bytes != NULL;
     if (bytes && text)
@@ -70,12 +71,12 @@ static char *read_bytes(const char *path, const char *text, size_t *size, errors
     return NULL;
 }
 
-static char *read_all(const char *path, const char *from, size_t *size, errors *e)
+static char *read_all(const char *path, const char *from, size_t *size, cap most, errors *e)
 {
-    char *text = read_bytes(path, from, size, e);
+    char *text = read_bytes(path, from, size, most.most, e);
     if (text && *size >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0) /* a byte order mark */
         memmove(text, text + 3, (*size -= 3) + 1);
-    if (!text || !is_text(path, text, *size, e)) {
+    if (!text || !is_text(path, text, *size, most, e)) {
         free(text);
         return NULL;
     }
@@ -117,7 +118,7 @@ static bool load(yaml *y)
 }
 
 yaml *yaml_open(const char *path, const char *text, size_t size, int sets, const char *const *set, const char *optional,
-                errors *e)
+                const limits *l, errors *e)
 {
     yaml *y = calloc(1, sizeof *y);
     if (!y) {
@@ -127,12 +128,13 @@ yaml *yaml_open(const char *path, const char *text, size_t size, int sets, const
     y->errors = e;
     y->path = strdup(path);
     y->size = size;
-    y->text = read_all(path, text, &y->size, e);
+    y->text = read_all(path, text, &y->size, limit_of(l, LIMIT_SCENE, YAML_MAX_BYTES), e);
     y->diag = new_diag();
     const bool good = y->path && y->diag;
     if (!good)
         errors_add(e, "%s: out of memory", path);
-    if (!good || !y->text || !load(y) || !yaml_change(y, sets, set, optional)) {
+    if (!good || !y->text || !load(y) || !yaml_change(y, sets, set, optional) ||
+        !yaml_nesting_is_good(y, limit_of(l, LIMIT_NESTING, YAML_MAX_NESTING))) {
         yaml_close(y);
         return NULL;
     }

@@ -44,6 +44,9 @@ bool yaml_add_error(yaml *y, const origin *o, int line, int column, const char *
 /* Add the first syntax error that libfyaml found; later ones are mostly consequences of it. Always false. */
 bool yaml_syntax_errors(yaml *y, const origin *o);
 
+/* Whether no map or list of the document has too many around it. False with an error. */
+bool yaml_nesting_is_good(yaml *y, cap most);
+
 /* Make the changes to the loaded document. A wrong one adds an error and is skipped. False: out of memory. */
 bool yaml_change(yaml *y, int sets, const char *const *set, const char *optional);
 

@@ -116,6 +116,10 @@ bool yaml_error_in(yaml *y, node *at, size_t offset, const char *fmt, ...)
 
 /* ---- syntax ---- */
 
+#define TEXT_OF(x) #x
+#define NUMBER_TEXT(x) TEXT_OF(x)
+#define TOO_DEEP "nested too deep, expected at most " NUMBER_TEXT(YAML_MAX_NESTING) " levels of maps and lists"
+
 /* Clearer words for some of libfyaml's messages. */
 static const char *reworded(const char *message)
 {
@@ -123,7 +127,8 @@ static const char *reworded(const char *message)
         {"invalid tab as indendation in a mapping", "a tab as indentation, expected spaces"},
         {"did not find expected node content", "no value here, expected one, or the bracket that closes"},
         {"could not find expected ':'", "a line without ':', expected 'key: value'"},
-        {"Max depth (64) exceeded", "nested too deep, expected at most 64 levels"},
+        {"Max depth (64) exceeded", TOO_DEEP},
+        {"depth limit exceeded", TOO_DEEP},
         {"flow sequence without a closing bracket", "a list that is not closed, expected ']'"},
         {"flow mapping without a closing brace", "a map that is not closed, expected '}'"},
     };

@@ -14,18 +14,22 @@
 #include <stdbool.h>
 
 #include "base/errors.h"
+#include "base/limits.h"
 
 struct fy_node;
 typedef struct fy_node node;
 typedef struct yaml yaml;
 
+/* Of maps and lists, libfyaml's own limit: a value within them is a level to it, too. */
+#define YAML_MAX_NESTING 63
 enum { YAML_MAX_BYTES = 1 << 26 };
 
 /* Read the file at `path`, or `text` of `size` bytes if that is not NULL (then `path` is only its name), and make the
  * changes PATH=VALUE (PATH: keys and indices with dots between them; VALUE: YAML). A change may create the top-level
- * maps named in `optional`. Errors go to e, until yaml_close. NULL: there is no document. One thread at a time. */
+ * maps named in `optional`. l: the caller's limits, or NULL. Errors go to e, until yaml_close. NULL: there is no
+ * document. One thread at a time. */
 yaml *yaml_open(const char *path, const char *text, size_t size, int sets, const char *const *set, const char *optional,
-                errors *e);
+                const limits *l, errors *e);
 void yaml_close(yaml *y);
 
 /* The text with changes in it, which yaml_open has made of it without an error; comments and layout stay. free() it.

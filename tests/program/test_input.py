@@ -608,7 +608,7 @@ WHOLE = [
     ("surrogate", b"# \xed\xa0\x80\n", ":1:3: the byte 0xED, expected a text in UTF-8"),
     ("utf-16", "camera: 1\n".encode("utf-16"), ":1:1: the byte 0xFF, expected a text in UTF-8"),
     ("nul", b"camera: 1\nli\0ghts: 2\n", ":2:3: the byte 0x00, expected a text in UTF-8"),
-    ("too-large", b"#" * ((1 << 26) + 1), ": the scene is too large, expected at most 64 MiB"),
+    ("too-large", b"#" * ((1 << 26) + 1), ": the scene is too large, expected at most 67108864 bytes"),
     ("anchors", b"".join(b"k%d: &a%d 1\n" % (i, i) for i in range(100000)),
      ": 100000 times '&', expected at most 1000: kage takes no anchors"),
 ]

@@ -25,8 +25,10 @@ static inline reading *reading_of(const char *text)
     strcpy(t->path, "/scenes/test.yaml");
     t->s.path = t->path;
     t->from = (scene_source){.path = t->path, .text = text, .size = strlen(text)};
-    t->r = (reader){
-        .y = yaml_open(t->path, text, strlen(text), 0, NULL, "", &t->e), .s = &t->s, .e = &t->e, .from = &t->from};
+    t->r = (reader){.y = yaml_open(t->path, text, strlen(text), 0, NULL, "", NULL, &t->e),
+                    .s = &t->s,
+                    .e = &t->e,
+                    .from = &t->from};
     assert_non_null(t->r.y);
     return t;
 }

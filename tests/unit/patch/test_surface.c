@@ -64,7 +64,8 @@ static surface *teapot(void)
 {
     errors e = {0};
     int n;
-    vec3 *p = patch_file_read(KAGE_TESTS_DIR "/../scenes/data/teapot.txt", "teapot.txt", 1e6, &n, &e);
+    vec3 *p =
+        patch_file_read(KAGE_TESTS_DIR "/../scenes/data/teapot.txt", "teapot.txt", 1e6, (cap){PATCHES_MAX, ""}, &n, &e);
     assert_non_null(p);
     assert_int_equal(n, 32);
     for (int k = 0; k < 16 * n; k++)

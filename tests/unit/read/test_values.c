@@ -117,11 +117,11 @@ static void named_things_are_counted(void **state)
     double *things = NULL;
     int n = 0;
     (void)state;
-    assert_non_null(reader_named(&t->r, "lights", 4096, sizeof *things, &things, &n));
+    assert_non_null(reader_named(&t->r, "lights", (cap){4096, ""}, sizeof *things, &things, &n));
     assert_int_equal(n, 3);
     NEAR(things[2], 0, 0);
     free(things);
-    assert_null(reader_named(&t->r, "objects", 4096, sizeof *things, &things, &n));
+    assert_null(reader_named(&t->r, "objects", (cap){4096, ""}, sizeof *things, &things, &n));
     assert_int_equal(n, 3);
     reading_told(t, "the scene lacks its 'objects'");
     reading_end(t);

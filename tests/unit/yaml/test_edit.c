@@ -199,7 +199,7 @@ static int try_changes(const char *text)
     int made = 0;
     for (int k = 0; k < n; k++) {
         errors e = {0};
-        yaml *y = yaml_open("t", text, strlen(text), made, set, "image render", &e);
+        yaml *y = yaml_open("t", text, strlen(text), made, set, "image render", NULL, &e);
         if (!y)
             fail_msg("%s\n%s", text, e.text);
         if (path_in(y, path)) {
@@ -213,9 +213,9 @@ static int try_changes(const char *text)
     errors e = {0};
     char *new = yaml_edited(text, made, set);
     assert_non_null(new);
-    yaml *x = yaml_open("t", text, strlen(text), made, set, "image render", &e);
+    yaml *x = yaml_open("t", text, strlen(text), made, set, "image render", NULL, &e);
     assert_int_equal(e.count, 0);
-    yaml *y = yaml_open("t", new, strlen(new), 0, NULL, "image render", &e);
+    yaml *y = yaml_open("t", new, strlen(new), 0, NULL, "image render", NULL, &e);
     if (!y || !same(x, yaml_root(x), y, yaml_root(y)))
         fail_msg("%s\n%s%s%s\ngive\n%s\n%s", text, set[0], made > 1 ? "\n" : "", made > 1 ? set[1] : "", new,
                  e.text ? e.text : "");
