@@ -10,7 +10,10 @@ from numpy.typing import NDArray
 
 @dataclass(frozen=True, eq=False)
 class Limits:
-    """What a call may take (docs/limits.md). Zero: the default."""
+    """What a call may take, and what a scene and its files may have (docs/limits.md). Zero: the default. Those
+    below `seconds` can only be smaller than the built-in ones, which kage_limit_get tells. They hold where a scene
+    is read, and for what it reads later: what passes one is an error of the scene (KAGE_BAD_INPUT) and is refused
+    before it is taken, but for triangles, which are counted when their file has been decoded."""
 
     #: bytes that a scene, those that are changed from it, and their films may take together while the call
     #: runs. What would take more is refused before it is taken, with KAGE_NO_MEMORY and the figure that it
@@ -19,6 +22,48 @@ class Limits:
     #: of the call, by the wall clock; then it ends as if it were cancelled, with KAGE_OUT_OF_TIME. 0: no
     #: limit
     seconds: float
+    #: bytes of the scene's text
+    scene: int
+    #: levels of maps and lists in it
+    nesting: int
+    #: bytes of an expression
+    expression: int
+    #: levels of brackets, signs and powers in it
+    expression_nesting: int
+    #: pixels along a side of the picture
+    picture: int
+    #: rays in a row: the scene's render.depth
+    depth: int
+    #: in the scene's file
+    objects: int
+    #: bytes of a map, an image, a list of copies, patches or a model
+    file: int
+    #: samples along a side of a map or an image
+    side: int
+    #: of a map or an image
+    samples: int
+    #: points of a list of them
+    copies: int
+    #: of a model
+    triangles: int
+    #: of an object
+    patches: int
+
+
+@dataclass(frozen=True, eq=False)
+class Limit:
+    """One of the limits of what a scene and its files may have."""
+
+    #: as the option --limit has it: the field's, with - for _; None: no such limit
+    name: str | None
+    #: what is counted, in one line
+    text: str
+    #: the built-in limit
+    most: int
+    #: it is of bytes
+    bytes: int
+    #: of its int64_t in kage_limits
+    offset: int
 
 
 @dataclass(frozen=True, eq=False)
