@@ -18,7 +18,7 @@ static int finish(int status)
 static int print_methods(void)
 {
     for (int k = 0; k < kage_method_count(); k++)
-        printf("%-8s  %s\n", kage_method_get(k).name, kage_method_get(k).text);
+        print_wrapped(stdout, printf("%-8s  ", kage_method_get(k).name), 10, COLUMNS, kage_method_get(k).text);
     return 0;
 }
 

@@ -67,8 +67,11 @@ const command commands[] = {
      .needed = 2,
      .values = {SCENE_FILES},
      .text = "all intermediate values of one pixel, for each method",
-     .more = "X and Y count from the top left, from 0. The names are those of the method's description: r, s, t, Q, n, "
-             "P, tau and so on.",
+     .more =
+         "X and Y count from the top left, from 0. The names are those of the method's description: r, s, t, Q, n, "
+         "P, tau and so on. A first table has where each method starts shadow rays, a second one what its lights and "
+         "colours are. bare is the order as with --no-guard; fell is the order that was used instead, where tau "
+         "leaves the slab.",
      .example = {"kage pixel scenes/cube.yaml 320,240", "the pixel in the middle"}},
     {.name = "pov",
      .bit = POV,

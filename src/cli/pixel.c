@@ -46,12 +46,23 @@ static void print_surface(const kage_probe *p)
     print_vector("n", p->n);
 }
 
-static void print_row(const kage_probe_row *x, int lights)
+static void print_method(const kage_probe_row *x)
 {
     char label[32];
     snprintf(label, sizeof label, "%s%s", x->method, x->guard ? "" : " bare");
-    printf("%-10s %13.6g %13.6g  %11.6g %11.6g %11.6g  %-6s", label, x->tau, x->t0, x->origin[0], x->origin[1],
-           x->origin[2], x->fell_back ? x->fell_back : "");
+    printf("%-10s", label);
+}
+
+static void print_start(const kage_probe_row *x)
+{
+    print_method(x);
+    printf(" %12.6g %11.6g %12.6g %12.6g %12.6g", x->tau, x->t0, x->origin[0], x->origin[1], x->origin[2]);
+    printf(x->fell_back ? "  %s\n" : "\n", x->fell_back);
+}
+
+static void print_light(const kage_probe_row *x, int lights)
+{
+    print_method(x);
     for (int l = 0; l < lights; l++)
         if (x->visible[l] > 0 && x->visible[l] < 1) /* an area light, partly visible */
             printf(" %-9.4g", x->visible[l]);
@@ -60,14 +71,18 @@ static void print_row(const kage_probe_row *x, int lights)
     printf("  %.4f %.4f %.4f\n", x->color[0], x->color[1], x->color[2]);
 }
 
-static void print_table(const kage_scene_info *s, const kage_probe *p)
+/* Where shadow rays start, and what comes of it: two tables, as a terminal has 80 columns. */
+static void print_tables(const kage_scene_info *s, const kage_probe *p)
 {
-    printf("\n%-10s %13s %13s  %11s %11s %11s  %-6s", "method", "tau", "t0", "r + s t0: x", "y", "z", "fell");
+    printf("\n%-10s %12s %11s %12s %12s %12s  fell\n", "method", "tau", "t0", "r + s t0: x", "y", "z");
+    for (int k = 0; k < p->row_count; k++)
+        print_start(&p->rows[k]);
+    printf("\n%-10s", "method");
     for (int l = 0; l < s->light_count; l++)
         printf(" %-9.9s", s->lights[l].name);
     printf("  red    green  blue\n");
     for (int k = 0; k < p->row_count; k++)
-        print_row(&p->rows[k], s->light_count);
+        print_light(&p->rows[k], s->light_count);
 }
 
 static void print_probe(const kage_scene_info *s, int x, int y, const kage_probe *p)
@@ -86,9 +101,9 @@ static void print_probe(const kage_scene_info *s, int x, int y, const kage_probe
         printf("no value   of P, n' or the surface: it is smooth here, and no method shifts\n");
     if (p->bumped)
         print_bump(p);
-    print_table(s, p);
+    print_tables(s, p);
     if (p->sends)
-        printf("without the light that it mirrors or lets through; such rays start at r + s t0, too\n");
+        printf("without mirrored and refracted light; such rays start at r + s t0, too\n");
 }
 
 static bool read_pixel(const char *text, const kage_scene_info *s, int *x, int *y)

@@ -378,8 +378,9 @@ long shift_group(hit_group *g, const bump *P, method m, bool guard)
 
 STAGE static void within(int n, const real *restrict t, real *restrict tau)
 {
+    const real most = R(1) - R(1) / 1024; /* of the way back */
     for (int i = 0; i < n; i++)
-        tau[i] = real_max(tau[i], -t[i]);
+        tau[i] = real_max(tau[i], -most * t[i]);
 }
 
 void shift_within(hit_group *g) { within(g->n, g->t, g->tau); }

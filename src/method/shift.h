@@ -21,8 +21,10 @@ long shift_group(hit_group *g, const bump *bump, method m, bool guard);
  * counted. */
 void shift_known(hit_group *g);
 
-/* tau >= -t, so that the shifted place is not before the ray's start: an eye can be inside the slab of P, and secondary
- * rays start there. Without the guard a camera ray's tau is the bare formula's. */
+/* tau > -t, so that the shifted place is behind the ray's start: an eye can be inside the slab of P, and secondary rays
+ * start there. It is 1/1024 of the way behind: the start of a secondary ray is a point of another surface, and whether
+ * a ray from that very point meets that surface would be decided by rounding. Without the guard a camera ray's tau is
+ * the bare formula's. */
 void shift_within(hit_group *g);
 
 /* g->t0 = t_hit + tau. */

@@ -27,6 +27,20 @@ static void fit_screen(int bar, int *width, int *height)
     }
 }
 
+/* SDL takes a driver that shows nothing where it finds no screen. That is for those who ask for it. */
+static bool has_screen(void)
+{
+    const char *const driver = SDL_GetCurrentVideoDriver(), *const blind[] = {"offscreen", "dummy", "evdev"};
+    if (SDL_GetHint(SDL_HINT_VIDEODRIVER) || !driver)
+        return driver;
+    for (size_t k = 0; k < SDL_arraysize(blind); k++)
+        if (strcmp(driver, blind[k]) == 0) {
+            SDL_SetError("no screen was found: DISPLAY or WAYLAND_DISPLAY must name one");
+            return false;
+        }
+    return true;
+}
+
 bool window_open(window *w, const char *title, int *width, int *height)
 {
     const int letters = 14, least[] = {320, 200};
@@ -34,7 +48,7 @@ bool window_open(window *w, const char *title, int *width, int *height)
     SDL_SetHint(SDL_HINT_FRAMEBUFFER_ACCELERATION, "0"); /* the pixels are made here; a copy is all that is needed */
     SDL_SetHint(SDL_HINT_VIDEO_X11_NET_WM_BYPASS_COMPOSITOR, "0");
     SDL_SetHint(SDL_HINT_MOUSE_FOCUS_CLICKTHROUGH, "1");
-    if (SDL_Init(SDL_INIT_VIDEO) != 0 || !(w->to.font = font_open(letters)))
+    if (SDL_Init(SDL_INIT_VIDEO) != 0 || !has_screen() || !(w->to.font = font_open(letters)))
         return false;
     w->bar = 2 * font_line(w->to.font) + 8;
     fit_screen(w->bar, width, height);

@@ -87,7 +87,9 @@ def test_ways_to_write_options(kage: Kage) -> None:
 
 
 def test_methods(kage: Kage) -> None:
-    names = [line.split()[0] for line in kage.good("methods").splitlines()]
+    lines = kage.good("methods").splitlines()
+    assert max(map(len, lines)) <= 80
+    names = [line.split()[0] for line in lines if not line.startswith(" ")]
     assert names == ["none", "0", "1", "2", "2+", "iter:K", "march:N", "exact", "auto[:E]"]
 
 
@@ -370,8 +372,8 @@ def test_every_method_is_the_same_where_the_surface_is_flat(kage: Kage) -> None:
 
 def pixel(kage: Kage, scene: Path, x: int, y: int, *options: object) -> tuple[dict[str, list[float]],
                                                                               dict[str, list[str]]]:
-    """The values of `kage pixel`, and its table: method -> columns."""
-    head, _, table = kage.good("pixel", scene, f"{x},{y}", *options).partition("\n\n")
+    """The values of `kage pixel`, and its two tables as one: method -> columns."""
+    head, *tables = kage.good("pixel", scene, f"{x},{y}", *options).split("\n\n")
     values = {}
     for line in head.splitlines():
         name, *rest = re.sub(r" to | in tau", " ", line).split()
@@ -379,11 +381,12 @@ def pixel(kage: Kage, scene: Path, x: int, y: int, *options: object) -> tuple[di
             values[name] = [float(v) for v in rest]
         except ValueError:
             continue
-    rows = {}
-    for line in table.splitlines()[1:]:
+    rows: dict[str, list[str]] = {}
+    for line in [line for table in tables for line in table.splitlines()[1:]]:
+        assert len(line) <= 80
         match = re.match(r"(\S+(?: bare)?)\s+(.*)", line)
         assert match
-        rows[match[1]] = match[2].split()
+        rows.setdefault(match[1], []).extend(match[2].split())
     return values, rows
 
 

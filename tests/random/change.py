@@ -119,16 +119,18 @@ def mirrored_bump(made: Scene, bump: Tree, shape: str) -> None:
         raise CannotError("where a map begins that comes from the other end")
     else:
         name = bump["map"]["file"]
-        made.files[f"mirrored_{name}"] = mirror_file(made.files[name], name)
+        joined = bump["wrap"] == "repeat" and bump.get("samples") == "corners"
+        made.files[f"mirrored_{name}"] = mirror_file(made.files[name], name, joined)
         bump["map"] = bump["map"] | {"file": f"mirrored_{name}"}
         if shape == "plane":
             bump["offset"] = [-bump["size"][0], 0]  # the map lies from 0 to its size, so now from -size to 0
 
 
-def mirror_file(data: bytes, name: str) -> bytes:
-    if name.endswith(".exr"):
-        return files.exr(files.exr_values(data)[:, ::-1])
-    return files.png(np.ascontiguousarray(files.pixels(data)[:, ::-1]))
+def mirror_file(data: bytes, name: str, joined: bool) -> bytes:
+    """joined: the last column is not looked at, as it is where the first one comes again."""
+    to, old = (files.exr, files.exr_values(data)) if name.endswith(".exr") else (files.png, files.pixels(data))
+    columns = np.arange(old.shape[1])[::-1] % (old.shape[1] - joined)
+    return to(np.ascontiguousarray(old[:, columns]))
 
 
 def mirrored(scene: Scene) -> Scene:

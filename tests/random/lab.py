@@ -94,8 +94,8 @@ class Lab:
         """more: options of kage.Scene.render, or of the request to the worker: first, then, save, file, name."""
         for name, data in scene.named().items():
             (self.folder / name).write_bytes(data)
-        request = {key: more.pop(key) for key in ("first", "then", "save", "file", "name") if key in more}
-        request |= {"folder": str(self.folder), "text": scene.text(), "options": {"threads": 1} | more}
+        own: dict[str, Any] = {key: more.pop(key) for key in ("first", "then", "save", "file", "name") if key in more}
+        request = own | {"folder": str(self.folder), "text": scene.text(), "options": {"threads": 1} | more}
         if build not in self.workers:
             self.workers[build] = Worker(self.builds[build], self.seconds)
         self.pictures += 1

@@ -119,7 +119,7 @@ def meet(rays: Rays, kind: str, it: Tree) -> np.ndarray:
         enter, leave = np.minimum(a, b).max(1), np.maximum(a, b).min(1)
         return np.where(enter <= leave, first(enter, leave), FAR)
     if kind in ("sphere", "ellipsoid"):
-        radii = np.ones(3) * it.get("radii", it.get("radius"))
+        radii = np.ones(3) * (it["radii"] if "radii" in it else it["radius"])
         p, s = (rays[0] - np.array(it["center"])) / radii, rays[1] / radii
         return first(*roots(dot(s, s), dot(p, s), dot(p, p) - 1))
     if kind == "torus":

@@ -144,17 +144,17 @@ def eyes(r: random.Random, k: float) -> tuple[list[float], list[float]]:
     """Where the eye is and where it looks: from afar, along the surface, on it, in it, straight down on a pole."""
     return r.choice(
         (
-            (times(k, (0.3, 2, -3)), [0, 0, 0]),
-            (times(k, (0, 3, 0)), [0, 0, 0]),
-            (times(k, (0, 0, -3)), [0, 0, 0]),
+            (times(k, (0.3, 2, -3)), [0.0, 0.0, 0.0]),
+            (times(k, (0, 3, 0)), [0.0, 0.0, 0.0]),
+            (times(k, (0, 0, -3)), [0.0, 0.0, 0.0]),
             (times(k, (0, 1e-4, -3)), times(k, (0, 1e-4, 3))),
-            ([0, 0, 0], times(k, (0, 0, 1))),
+            ([0.0, 0.0, 0.0], times(k, (0, 0, 1))),
             (times(k, (0, 0.5, 0)), times(k, (0, -1, 0))),
             (times(k, (0, 1, 0)), times(k, (1, 1, 0))),
             (times(k, (0.1, 0.05, 0.1)), times(k, (1, 0.05, 0.3))),
-            (times(1e5 * k, (1, 2, -3)), [0, 0, 0]),
+            (times(1e5 * k, (1, 2, -3)), [0.0, 0.0, 0.0]),
             (times(k, (2, 0, 0)), times(k, (-1, 0, 0))),
-            (times(k, (0, -2, 1)), [0, 0, 0]),
+            (times(k, (0, -2, 1)), [0.0, 0.0, 0.0]),
         )
     )
 
@@ -217,7 +217,8 @@ def trial(r: random.Random) -> tuple[Scene, dict[str, Any], bool]:
     """A scene, options of its render, and whether its bump may be without a value."""
     k = r.choice((1, 1, 1, 10.0 ** r.randint(-5, 5), 3e-6, 9e5))
     kind, without = r.choice(SHAPES), r.random() < 0.5
-    bump = {"function": r.choice(WITHOUT if without else HEIGHTS), "scale": min(k, 1e6) * r.choice((1, 1, 0.1, -1))}
+    bump: Scene = {"function": r.choice(WITHOUT if without else HEIGHTS),
+                   "scale": min(k, 1e6) * r.choice((1, 1, 0.1, -1))}
     eye, at = eyes(r, k)
     up = [0, 0, 1] if eye[0] == at[0] and eye[2] == at[2] else [0, 1, 0]
     camera: Scene = {"from": eye, "at": at, "up": up}

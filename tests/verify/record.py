@@ -11,7 +11,7 @@ import json
 import shlex
 import subprocess
 import sys
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 TOP = Path(__file__).resolve().parents[2]
@@ -29,14 +29,16 @@ def told(figures: Mapping[str, int | float]) -> str:
     return ", ".join(f"{value} {label}" for label, value in figures.items())
 
 
-def record(name: str, figures: Mapping[str, int | float], failures: int) -> int:
+def record(name: str, figures: Mapping[str, int | float], failures: int, arguments: Sequence[str] | None = None) -> int:
     """Keep what the check `name` found. Returns the exit status.
 
-    figures: a label, and the number that stands before it in the table.
+    figures: a label, and the number that stands before it in the table. arguments: those that would ask for this alone,
+    where the command line asked for more.
     """
     KEPT.mkdir(parents=True, exist_ok=True)
     today = datetime.datetime.now(datetime.UTC).date().isoformat()
-    command = shlex.join(["scripts/venv", "python", "-m", f"tests.verify.{name}", *sys.argv[1:]])  # as it was asked for
+    module = f"tests.verify.{name.partition('-')[0]}"
+    command = shlex.join(["scripts/venv", "python", "-m", module, *(sys.argv[1:] if arguments is None else arguments)])
     found = {"name": name, "command": command, "date": today, "commit": commit(),
              "figures": dict(figures), "failures": failures}
     (KEPT / f"{name}.json").write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")

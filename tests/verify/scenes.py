@@ -43,7 +43,8 @@ def folder_of(build: str) -> Path:
 def make(build: str, jobs: int) -> None:
     how = [word.replace("CC=", "CC=ccache ") if os.environ.get("CCACHE") else word for word in BUILDS[build]]
     subprocess.run(["make", "-s", f"-j{jobs}", "BOOTSTRAP=no", f"PYTHON={sys.executable}",
-                    f"BUILD={folder_of(build)}", *how, "python"], cwd=TOP, check=True)
+                    f"BUILD={folder_of(build)}", *how, "python", *(["programs"] if build == "float" else [])],
+                   cwd=TOP, check=True)
 
 
 def tried(lab: Lab, scene: Scene, name: str, seed: int) -> str | None:
@@ -62,7 +63,7 @@ def made_small(lab: Lab, scene: Scene, name: str, seed: int, wrong: str) -> Scen
             found = tried(lab, other, name, seed)
         except (LookupError, ValueError, TypeError, StopIteration):
             return False  # it lacks what the property changes
-        return bool(found) and found.startswith("RefusedError") == refused
+        return bool(found and found.startswith("RefusedError") == refused)
 
     return shrunk(scene, fails)
 

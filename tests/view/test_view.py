@@ -304,6 +304,15 @@ def test_no_screen_is_told(kage: Kage, scene: Path) -> None:
     assert done.returncode == 1 and "kage: no window: " in done.stderr
 
 
+@needs_window
+def test_without_a_screen_no_driver_shows_nothing(kage: Kage, scene: Path) -> None:
+    """SDL would choose its driver `offscreen`, which had run for ever, unseen."""
+    for name in ("SDL_VIDEODRIVER", "DISPLAY", "WAYLAND_DISPLAY"):
+        kage.environment.pop(name, None)
+    done = kage("view", scene)
+    assert done.returncode == 1 and "kage: no window: no screen was found" in done.stderr
+
+
 def test_without_the_window_the_rest_works_and_says_what_is_missing(kage: Kage, scene: Path) -> None:
     alone = shutil.copy(PROGRAM, kage.folder / "kage")
     done = subprocess.run([alone, "view", scene], capture_output=True, text=True, check=False)

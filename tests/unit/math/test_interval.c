@@ -150,6 +150,15 @@ static void test_an_underflow_is_not_zero(void **state)
     CHECK(interval_exp(interval_at(-1000)).hi, >, 0);
 }
 
+/* -0 is 0 as a base: 0^-1 is beyond all bounds, 0^0 is 1. */
+static void test_powers_of_zero(void **state)
+{
+    (void)state;
+    const interval z = interval_pow(interval_at(-0.0), (interval){-1, 1});
+    CHECK(z.lo, <=, 0);
+    CHECK(z.hi, >=, 1);
+}
+
 static void test_reciprocal_at_zero(void **state)
 {
     (void)state;
@@ -225,6 +234,7 @@ int main(void)
         cmocka_unit_test(test_two_operands),
         cmocka_unit_test(test_zero_stays_zero),
         cmocka_unit_test(test_an_underflow_is_not_zero),
+        cmocka_unit_test(test_powers_of_zero),
         cmocka_unit_test(test_reciprocal_at_zero),
         cmocka_unit_test(test_infinities_that_cancel_are_unknown),
         cmocka_unit_test(test_outside_the_domain),

@@ -234,6 +234,24 @@ static void march_below_the_top(void **state)
     bump_free(P);
 }
 
+/* What starts at the shifted place does not start on the surface that the ray comes from, nor before it. */
+static void shifts_end_behind_the_rays_start(void **state)
+{
+    (void)state;
+    bump *P = function("0.1*u");
+    hit_group *g = wave(P, 1);
+    for (int i = 0; i < LANES; i++)
+        g->tau[i] = R(0.6) * (real)(i % 5 - 3) * g->t[i];
+    shift_within(g);
+    shift_origins(g);
+    for (int i = 0; i < LANES; i++) {
+        const double t = g->t[i], tau = 0.6 * (i % 5 - 3) * t;
+        NEAR(g->t0[i], fmax(t + tau, t / 1024), 4 * EPS * t);
+        CHECK(g->t0[i], >, 0);
+    }
+    bump_free(P);
+}
+
 /* The guard keeps every shift within the slab. */
 static void guarded_shifts_stay_in_the_slab(void **state)
 {
@@ -306,6 +324,7 @@ int main(void)
         cmocka_unit_test(march_and_iter_come_near),
         cmocka_unit_test(counts),
         cmocka_unit_test(guarded_shifts_stay_in_the_slab),
+        cmocka_unit_test(shifts_end_behind_the_rays_start),
         cmocka_unit_test(pole),
         cmocka_unit_test(march_below_the_top),
     };
