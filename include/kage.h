@@ -124,9 +124,9 @@ typedef struct kage_mesh_array {
 } kage_mesh_array;
 
 /* What a call may take, and what a scene and its files may have (docs/limits.md). Zero: the default. Those below
- * `seconds` can only be smaller than the built-in ones, which kage_limit_get tells. They hold where a scene is read,
- * and for what it reads later: what passes one is an error of the scene (KAGE_BAD_INPUT) and is refused before it is
- * taken, but for triangles, which are counted when their file has been decoded. */
+ * `seconds` can only be smaller than the built-in ones (kage_limit_get tells these). They hold where a scene is
+ * read, and for what it reads later: what passes one is an error of the scene (KAGE_BAD_INPUT) and is refused before it
+ * is taken, but for triangles, which are counted when their file has been decoded. */
 typedef struct kage_limits {
     int64_t memory;  /* bytes that a scene, those that are changed from it, and their films may take together while the
                       * call runs. What would take more is refused before it is taken, with KAGE_NO_MEMORY and the figure

@@ -196,7 +196,7 @@ static bool may_write(const char *path, const void *bytes, size_t size, const ka
     if (files_have_path(opened, path))
         return errors_add(e, "%s: the model is made from this file, expected another name", path);
     return *fresh || o->overwrite || (bytes && has_bytes(path, bytes, size)) ||
-           errors_add(e, "%s: it exists, expected a new name, or leave to overwrite it (--overwrite)", path);
+           errors_add(e, "%s: it exists, expected a new name, or --overwrite", path);
 }
 
 static bool write_images(struct import_report *r, const char *file, const kage_import_options *o, const files *opened,

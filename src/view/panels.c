@@ -48,21 +48,41 @@ void panel_help(canvas *c, int width, int height)
               rows < lines ? "h closes this; the rest: kage view --help" : "h closes this list");
 }
 
+/* The bytes of the text's first line, at most `letters` long: it ends at a space where there is one. */
+static int line_bytes(const char *text, int letters)
+{
+    const int n = (int)strcspn(text, "\n");
+    int space = 0, k = 0;
+    for (int seen = 0; k < n; k++) {
+        seen += ((unsigned char)text[k] & 0xc0) != 0x80;
+        if (seen > letters)
+            return space ? space : k;
+        if (text[k] == ' ')
+            space = k;
+    }
+    return n;
+}
+
+/* A message goes on in the next line where it is longer than the window; a line of the file, with its caret, is cut. */
 void panel_errors(canvas *c, int width, int height, const char *errors, bool of_file)
 {
     const int line = font_line(c->font), margin = font_advance(c->font), most = (height - 3 * line) / line;
+    bool begins = true, quoted = false;
     dim(c, 0, 0, width, height);
     int y = line / 2;
     font_draw(c->font, c->s, margin, y, width, warm,
-              of_file ? "The scene has errors; this is the last good picture. It is read again when its file changes."
+              of_file ? "The scene has errors; this is the last good picture."
                       : "This look of the scene has errors; r takes all changes back.");
     y += 2 * line;
     for (int k = 0; *errors && k < most; k++) {
         char text[256];
-        const int n = (int)strcspn(errors, "\n");
+        quoted = begins ? *errors == ' ' : quoted;
+        const int x = begins ? margin : 5 * margin;
+        const int n = quoted ? (int)strcspn(errors, "\n") : line_bytes(errors, SDL_max(1, (width - x) / margin));
         snprintf(text, sizeof text, "%.*s", SDL_min(n, (int)sizeof text - 1), errors);
-        font_draw(c->font, c->s, margin, y, width, *text == ' ' ? pale : white, text);
-        errors += errors[n] ? n + 1 : n;
+        font_draw(c->font, c->s, x, y, width, quoted ? pale : white, text);
+        begins = errors[n] == '\n';
+        errors += n + (errors[n] == '\n' || errors[n] == ' ');
         y += line;
     }
 }
