@@ -16,6 +16,9 @@ from typing import Generic, TypeVar
 
 T = TypeVar("T")
 
+#: Seconds after which the caller looks again.
+STEP = 0.05
+
 #: Seconds after which what a worker was told to stop, and did not, is left behind.
 PATIENCE = 0.1
 
@@ -28,7 +31,9 @@ class Job(Generic[T]):
 
     def __init__(self, function: Callable[[], T]) -> None:
         self.function: Callable[[], T] | None = function
-        self.ended = threading.Event()
+        self.ended = False
+        self.running = threading.Lock()
+        self.running.acquire()
         self.values: list[T] = []
         self.raised: BaseException | None = None
         self.wanted = True
@@ -43,7 +48,16 @@ class Job(Generic[T]):
             self.raised = raised
         finally:
             self.function = None  # and what it holds
-            self.ended.set()
+            self.ended = True
+            self.running.release()
+
+    def wait(self, seconds: float) -> bool:
+        """Whether it has ended. Ctrl-C may come at any moment: an Event, which has a lock in Python, would at some turn
+        it into a RuntimeError. A lock that is taken and not given back does no harm here.
+        """
+        if not self.ended and self.running.acquire(timeout=seconds):
+            self.running.release()
+        return self.ended
 
     def value(self) -> T:
         if self.raised is not None:
@@ -79,14 +93,14 @@ def run(function: Callable[[], T], look: Callable[[], object], stop: Callable[[]
     job = Job(function)
     try:
         worker.jobs.put(job)
-        while not job.ended.wait(0.05):
+        while not job.wait(STEP):
             look()
         look()
     except BaseException:
         stop()
-        if not job.ended.wait(PATIENCE):
+        if not job.wait(PATIENCE):
             job.wanted = False
-            left[:] = [other for other in left if not other.ended.is_set()]
+            left[:] = [other for other in left if not other.ended]
             if files:
                 left.append(job)  # type: ignore[arg-type]
             raise
@@ -98,7 +112,7 @@ def run(function: Callable[[], T], look: Callable[[], object], stop: Callable[[]
 
 def wait_for_left() -> None:
     for job in left:
-        job.ended.wait(LAST_PATIENCE)
+        job.wait(LAST_PATIENCE)
 
 
 atexit.register(wait_for_left)

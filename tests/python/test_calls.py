@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import random
+import signal
 import subprocess
 import threading
 import time
@@ -13,6 +15,7 @@ import numpy as np
 import pytest
 
 import kage
+from kage import workers
 from tests.conftest import TOP
 
 CUBE = TOP / "scenes" / "cube.yaml"
@@ -104,6 +107,21 @@ def test_ctrl_c_ends_the_making_of_tables(python: Python, name: str) -> None:
     smooth, options, step = TABLES[name]
     out, err = python(IN_STEP.format(smooth=smooth, options=options, step=step)).communicate(timeout=120)
     assert err == "" and float(out) < 0.8, (out, err)
+
+
+def test_ctrl_c_is_always_itself(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whatever the caller is at while it waits; it looks far oftener here, as Ctrl-C must come between two steps."""
+    chance, ended = random.Random(1), threading.Event()
+    monkeypatch.setattr(workers, "STEP", 2e-5)
+    before = signal.signal(signal.SIGALRM, signal.default_int_handler)
+    try:
+        for _ in range(1000):
+            ended.clear()
+            with pytest.raises(KeyboardInterrupt):
+                signal.setitimer(signal.ITIMER_REAL, chance.uniform(5e-4, 1e-3))
+                workers.run(lambda: ended.wait(10), lambda: None, ended.set, files=False)
+    finally:
+        signal.signal(signal.SIGALRM, before)
 
 
 def test_progress_is_told() -> None:
