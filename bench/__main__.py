@@ -115,7 +115,10 @@ def measured(options: argparse.Namespace) -> Report:
 
 def stored(options: argparse.Namespace) -> Report:
     """As it was measured, but judged by today's claims and told in today's words."""
-    data: Report = json.loads((options.out / "report.json").read_text())
+    path = options.out / "report.json"
+    if not path.exists():
+        raise MeasureError(f"{path}: not there; --again needs the report of a bench, so run make bench first")
+    data: Report = json.loads(path.read_text())
     data["claims"] = judge(data)
     data["answer"] = summary.answer(data)
     return data

@@ -92,7 +92,7 @@ def scene_title(report: Report, scene: str) -> str:
 
 def method_name(method: str) -> str:
     """As in a sentence: 0 is `order 0`, `1 bare` is `order 1, bare`, none is `bump only`."""
-    return f"order {method.replace(' ', ', ')}" if method[:1].isdigit() else data.label(method)
+    return f"order {method.replace(' bare', ', bare')}" if method[:1].isdigit() else data.label(method)
 
 
 def peer_name(name: str) -> str:

@@ -94,8 +94,8 @@ KAGE_API void kage_errors_free(kage_errors *errors); /* NULL: nothing */
 typedef struct kage_scene kage_scene;
 
 /* Called now and then during a long call, in the caller's thread. what: the current step ("objects", "reading",
- * "unpacking", "checking", "building", "rendering", "writing"); share: how much of it is done, 0..1. If it returns
- * nonzero, the call ends soon with KAGE_CANCELLED. It may call the library. */
+ * "smoothing", "unpacking", "checking", "building", "horizons", "rendering", "writing"); share: how much of it is done,
+ * 0..1. If it returns nonzero, the call ends soon with KAGE_CANCELLED. It may call the library. */
 typedef int kage_progress(void *user, const char *what, double share);
 
 /* Arrays in the caller's memory, in place of files: where a scene can name a file, "array:NAME" names one of them. They

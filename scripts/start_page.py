@@ -24,21 +24,22 @@ class Entry:
     title: str
     about: str
     picture: str = ""  # shown with it, where it is there
+    whole: bool = False  # all of the picture, not cut to fit
 
 
 PAGES = (
     Entry("gallery/index.html", "Gallery", "Scenes by bump mapping only and by their best method, under a slider.",
           "gallery/wall.png"),
     Entry("bench/index.html", "Benchmark report",
-          "What each method costs, and how wrong it is; the paper's claims, judged.", "../docs/cost-error.svg"),
+          "What each method costs, and how wrong it is; the paper's claims, judged.", "../docs/cost-error.svg", True),
     Entry("speed/index.html", "Speed report", "What kage demands of its own speed, beside other programs."),
-    Entry("figures.png", "The paper's figures", "Figures 4 to 8, by kage.", "figures.png"),
+    Entry("figures.png", "The paper's figures", "Figures 4 to 8, by kage.", "figures.png", True),
     Entry("relief.png", "kage --relief",
           "The same bumps: shaded only, with the shadow of the paper, as kage sees them, and truly displaced.",
-          "relief.png"),
+          "relief.png", True),
 )
 LIVE = Entry("../docs/live/index.html", "Live",
-             "Three scenes in your browser: turn the eye, move the light, change the bumps.")
+             "Three scenes in your browser: turn the eye, move the light, change the bumps.", "figure8.png")
 
 
 def there(folder: Path) -> list[Entry]:

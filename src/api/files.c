@@ -10,10 +10,7 @@
 kage_status kage_file_probe(const char *path, kage_errors **to)
 {
     errors e = {0};
-    file_writer f;
-    const bool good = file_writer_open(&f, path, &e);
-    if (good)
-        file_writer_close(&f, "", &e);
+    const bool good = file_writer_probe(path, &e);
     return errors_give(&e, good ? KAGE_OK : KAGE_NOT_WRITTEN, NULL, to);
 }
 

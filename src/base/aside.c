@@ -147,13 +147,20 @@ static bool is_ours(const char *name)
     return n > 0 && m > 0 && !pid[n + 1 + m];
 }
 
+/* Whether the name is still that of the open file: its process may have renamed it, and used the name again. */
+static bool is_still(const char *name, const struct stat *opened)
+{
+    struct stat st;
+    return lstat(name, &st) == 0 && st.st_dev == opened->st_dev && st.st_ino == opened->st_ino;
+}
+
 /* Remove the file, if it is one, and nobody holds its lock. */
 static bool remove_left(const char *name)
 {
     struct stat st;
     const int fd = open(name, O_RDONLY | O_NONBLOCK | O_NOFOLLOW | O_CLOEXEC);
-    const bool removed =
-        fd >= 0 && fstat(fd, &st) == 0 && S_ISREG(st.st_mode) && flock(fd, LOCK_EX | LOCK_NB) == 0 && unlink(name) == 0;
+    const bool removed = fd >= 0 && fstat(fd, &st) == 0 && S_ISREG(st.st_mode) && flock(fd, LOCK_EX | LOCK_NB) == 0 &&
+                         is_still(name, &st) && unlink(name) == 0;
     if (fd >= 0)
         close(fd);
     return removed;

@@ -249,3 +249,12 @@ bool file_writer_close(file_writer *f, const char *why, errors *e)
         return fail(f->path, strerror(f->error), e);
     return !why || (*why && fail(f->path, why, e));
 }
+
+bool file_writer_probe(const char *path, errors *e)
+{
+    file_writer f;
+    const bool good = file_writer_open(&f, path, e);
+    if (good)
+        file_writer_close(&f, "", e);
+    return good;
+}

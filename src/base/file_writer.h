@@ -48,4 +48,7 @@ bool file_writer_write(file_writer *f, const void *data, size_t size, uint64_t o
  * reason if a write failed, else `why`, unless that is empty. */
 bool file_writer_close(file_writer *f, const char *why, errors *e);
 
+/* Whether a file could be written at `path` now. Nothing is changed. */
+bool file_writer_probe(const char *path, errors *e);
+
 #endif

@@ -109,6 +109,9 @@ void tidy(const arguments *a, const char *output);
 /* Whether no output is one of the scene's input files. False: the error is on stderr. */
 bool outputs_spare_inputs(const kage_scene *s, const char *const *output, int outputs);
 
+/* Report an output that is named a second time, also by another path. */
+bool outputs_differ(const char *const *output, int outputs);
+
 bool has_ending(const char *path, const char *ending);
 
 /* The built-in limit: "4096"; of bytes "64M". */

@@ -3,10 +3,13 @@
 
 #include <stdarg.h>
 #include <errno.h>
+#include <libgen.h>
+#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+#include <sys/stat.h>
 
 static void print_text(const char *fmt, va_list args) CLI_PRINTF(1, 0);
 static void print_text(const char *fmt, va_list args)
@@ -94,6 +97,35 @@ bool outputs_spare_inputs(const kage_scene *s, const char *const *output, int ou
     for (int k = 0; k < outputs; k++)
         if (kage_scene_uses_file(s, output[k]))
             return usage_error("%s: the scene is made from this file, expected -o with another name", output[k]);
+    return true;
+}
+
+/* A file by its folder and its name there, as it need not be there yet. */
+typedef struct place {
+    struct stat folder;
+    char name[PATH_MAX];
+} place;
+
+/* Where an output will be. False: nowhere, or at the end of a pipe or a device. */
+static bool find_place(const char *output, place *p)
+{
+    struct stat st;
+    char part[PATH_MAX]; /* the file that all links lead to, with .part behind it */
+    const size_t n = kage_file_part(output, part, sizeof part);
+    if (n == 0 || n >= sizeof part || (stat(output, &st) == 0 && !S_ISREG(st.st_mode)))
+        return false;
+    strcpy(p->name, base_name(part));
+    return stat(dirname(part), &p->folder) == 0;
+}
+
+bool outputs_differ(const char *const *output, int outputs)
+{
+    place a, b;
+    for (int k = 1; k < outputs; k++)
+        for (int j = 0; j < k; j++)
+            if (find_place(output[j], &a) && find_place(output[k], &b) && strcmp(a.name, b.name) == 0 &&
+                a.folder.st_dev == b.folder.st_dev && a.folder.st_ino == b.folder.st_ino)
+                return usage_error("-o %s: the same file as -o %s, expected another one", output[k], output[j]);
     return true;
 }
 

@@ -14,8 +14,9 @@ static bool render_can_begin(const arguments *a)
         return usage_error("-o -: standard output is a terminal, expected a pipe or a file, as in kage render %s -o - "
                            "> FILE.png",
                            a->operand[0]);
-    return a->outputs > 0 || strcmp(a->operand[0], "-") != 0 ||
-           usage_error("a scene from standard input gives the picture no name, expected -o FILE");
+    if (!a->outputs && strcmp(a->operand[0], "-") == 0)
+        return usage_error("a scene from standard input gives the picture no name, expected -o FILE");
+    return outputs_differ(a->output, a->outputs);
 }
 
 /* The scene's file name with .png, in the current folder. NULL: out of memory. */

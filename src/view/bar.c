@@ -7,7 +7,10 @@
 
 const char *bar_method(const char *method, char text[2 * VIEW_METHOD])
 {
-    snprintf(text, 2 * VIEW_METHOD, "%s%s", isdigit((unsigned char)*method) ? "order " : "", method);
+    if (strcmp(method, "none") == 0)
+        snprintf(text, 2 * VIEW_METHOD, "bump only");
+    else
+        snprintf(text, 2 * VIEW_METHOD, "%s%s", isdigit((unsigned char)*method) ? "order " : "", method);
     return text;
 }
 
@@ -20,7 +23,7 @@ static void make_left(char *text, size_t size, const frame *f)
         snprintf(text, size, "true displacement");
     else
         snprintf(text, size, "shadows %s \xc2\xb7 shade %s \xc2\xb7 own %s", method, f->shifted ? "shifted" : "smooth",
-                 f->own);
+                 strcmp(f->own, "none") == 0 ? "off" : f->own);
 }
 
 /* On the right: how far the picture is, its time, the frames a second, the key for help. */

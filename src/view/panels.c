@@ -48,46 +48,42 @@ void panel_help(canvas *c, int width, int height)
               rows < lines ? "h closes this; the rest: kage view --help" : "h closes this list");
 }
 
-/* Draw n bytes of text at y, broken at spaces where the canvas ends. Returns the y below. */
-static int draw_broken(canvas *c, int y, int width, int height, SDL_Color color, const char *text, int n)
+/* The bytes of the text's first line, at most `letters` long: it ends at a space where there is one. */
+static int line_bytes(const char *text, int letters)
 {
-    const int margin = font_advance(c->font), columns = SDL_max(8, width / margin - 2);
-    char part[256];
-    while (n > 0 && y < height) {
-        int take = SDL_min(n, SDL_min(columns, (int)sizeof part - 1)), space = take;
-        while (take < n && space > 0 && text[space] != ' ')
-            space--;
-        take = space > 0 ? space : take;
-        while (take < n && take > 1 && ((unsigned char)text[take] & 0xc0) == 0x80) /* within a letter */
-            take--;
-        snprintf(part, sizeof part, "%.*s", take, text);
-        font_draw(c->font, c->s, margin, y, width, color, part);
-        take += take < n && text[take] == ' ';
-        text += take;
-        n -= take;
-        y += font_line(c->font);
+    const int n = (int)strcspn(text, "\n");
+    int space = 0, k = 0;
+    for (int seen = 0; k < n; k++) {
+        seen += ((unsigned char)text[k] & 0xc0) != 0x80;
+        if (seen > letters)
+            return space ? space : k;
+        if (text[k] == ' ')
+            space = k;
     }
-    return y;
+    return n;
 }
 
+/* A message goes on in the next line where it is longer than the window; a line of the file, with its caret, is cut. */
 void panel_errors(canvas *c, int width, int height, const char *errors, bool of_file)
 {
-    const char *title =
-        of_file ? "The scene has errors; this is the last good picture. It is read again when its file changes."
-                : "This look of the scene has errors; r takes all changes back.";
-    const int line = font_line(c->font);
+    const int line = font_line(c->font), margin = font_advance(c->font), most = (height - 3 * line) / line;
+    bool begins = true, quoted = false;
     dim(c, 0, 0, width, height);
-    int y = line + draw_broken(c, line / 2, width, height, warm, title, (int)strlen(title));
-    while (*errors && y < height - line) {
-        const int n = (int)strcspn(errors, "\n");
-        if (*errors == ' ') { /* a line of the file, and the caret below it */
-            char text[256];
-            snprintf(text, sizeof text, "%.*s", SDL_min(n, (int)sizeof text - 1), errors);
-            font_draw(c->font, c->s, font_advance(c->font), y, width, pale, text);
-            y += line;
-        } else
-            y = draw_broken(c, y, width, height, white, errors, n);
-        errors += errors[n] ? n + 1 : n;
+    int y = line / 2;
+    font_draw(c->font, c->s, margin, y, width, warm,
+              of_file ? "The scene has errors; this is the last good picture."
+                      : "This look of the scene has errors; r takes all changes back.");
+    y += 2 * line;
+    for (int k = 0; *errors && k < most; k++) {
+        char text[256];
+        quoted = begins ? *errors == ' ' : quoted;
+        const int x = begins ? margin : 5 * margin;
+        const int n = quoted ? (int)strcspn(errors, "\n") : line_bytes(errors, SDL_max(1, (width - x) / margin));
+        snprintf(text, sizeof text, "%.*s", SDL_min(n, (int)sizeof text - 1), errors);
+        font_draw(c->font, c->s, x, y, width, quoted ? pale : white, text);
+        begins = errors[n] == '\n';
+        errors += n + (errors[n] == '\n' || errors[n] == ' ');
+        y += line;
     }
 }
 

@@ -105,6 +105,12 @@ def test_whole_pictures_in_words(sample: tuple[dict, Path], written: Path) -> No
     assert "2.70 % of the receiver is at the silhouette" in part
 
 
+@pytest.mark.parametrize("method, name", [("none", "bump only"), ("0", "order 0"), ("1 bare", "order 1, bare"),
+                                          ("0 shifted, own 8", "order 0 shifted, own 8"), ("relief", "relief")])
+def test_methods_by_name(method: str, name: str) -> None:
+    assert tables.method_name(method) == name
+
+
 def test_sweeps_csv(sample: tuple[dict, Path], written: Path) -> None:
     data, _ = sample
     rows = read_csv(written / "sweeps.csv")

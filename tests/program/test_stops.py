@@ -10,13 +10,21 @@ import re
 import signal
 import subprocess
 import time
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
 from tests.conftest import PROGRAM, TOP, Kage, start
-from tests.support.stops import SIGNALS, cpu_seconds, listens, sleeps, stop_and_wait, whole_or_absent
+from tests.support.stops import (
+    SIGNALS,
+    cpu_seconds,
+    listens,
+    open_bytes,
+    sleeps,
+    stop_and_wait,
+    wait_until,
+    whole_or_absent,
+)
 
 CUBE = TOP / "tests" / "data" / "cube.yaml"
 
@@ -29,26 +37,6 @@ def lasted(tmp_path_factory: pytest.TempPathFactory) -> float:
     begin = time.monotonic()
     subprocess.run([*map(str, RENDER), "--quiet"], cwd=tmp_path_factory.mktemp("whole"), check=True)
     return time.monotonic() - begin
-
-
-def wait_until(process: subprocess.Popen[str], true: Callable[[], bool]) -> None:
-    end = time.monotonic() + 100
-    while not true():
-        assert process.poll() is None
-        assert time.monotonic() < end
-        time.sleep(0.002)
-
-
-def open_bytes(process: subprocess.Popen[str]) -> int:
-    """The size of the largest file that the process has open and that has no name, or one for a time."""
-    sizes = [0]
-    for link in Path(f"/proc/{process.pid}/fd").iterdir():
-        try:
-            if re.search(r" \(deleted\)$|/\.kage-[^/]*$", str(link.readlink())):
-                sizes.append(link.stat().st_size)
-        except OSError:
-            continue
-    return max(sizes)
 
 
 @pytest.mark.parametrize("share", [0.1, 0.4, 0.7, 0.9])

@@ -1,5 +1,6 @@
 /* For LD_PRELOAD: makes the n-th call of one of the system's functions fail. FAIL_CALL: its name; FAIL_AT: n, from 1;
- * FAIL_ERRNO: what errno is set to; 0: the call does only one byte. FAIL_LOG: a file that is made when it fails.
+ * FAIL_ERRNO: what errno is set to; 0: the call does only one byte. FAIL_ON: all later calls fail, too. FAIL_IN: only
+ * in the program of this name. FAIL_LOG: a file that is made when it fails.
  */
 #define _GNU_SOURCE
 
@@ -20,7 +21,11 @@ static bool fails(const char *name, bool *is_short)
     static int calls;
     const char *call = getenv("FAIL_CALL"), *at = getenv("FAIL_AT"), *code = getenv("FAIL_ERRNO");
     *is_short = false;
-    if (!call || !at || !code || strcmp(call, name) != 0 || __atomic_add_fetch(&calls, 1, __ATOMIC_SEQ_CST) != atoi(at))
+    const char *in = getenv("FAIL_IN");
+    if (!call || !at || !code || strcmp(call, name) != 0 || (in && strcmp(in, program_invocation_short_name) != 0))
+        return false;
+    const int n = __atomic_add_fetch(&calls, 1, __ATOMIC_SEQ_CST);
+    if (n < atoi(at) || (n > atoi(at) && !getenv("FAIL_ON")))
         return false;
     if (!real_open)
         *(void **)&real_open = dlsym(RTLD_NEXT, "open");

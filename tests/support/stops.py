@@ -6,6 +6,8 @@ import os
 import re
 import signal
 import subprocess
+import time
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -38,6 +40,26 @@ def listens(pid: int, number: signal.Signals) -> bool:
     """Whether the process has a handler for the signal."""
     caught = re.search(r"^SigCgt:\s*(\w+)$", Path(f"/proc/{pid}/status").read_text(), re.MULTILINE)
     return caught is not None and int(caught[1], 16) >> number - 1 & 1 == 1
+
+
+def wait_until(process: subprocess.Popen[str], true: Callable[[], bool]) -> None:
+    end = time.monotonic() + 100
+    while not true():
+        assert process.poll() is None
+        assert time.monotonic() < end
+        time.sleep(0.002)
+
+
+def open_bytes(process: subprocess.Popen[str]) -> int:
+    """The size of the largest file that the process has open and that has no name, or one for a time."""
+    sizes = [0]
+    for link in Path(f"/proc/{process.pid}/fd").iterdir():
+        try:
+            if re.search(r" \(deleted\)$|/\.kage-[^/]*$", str(link.readlink())):
+                sizes.append(link.stat().st_size)
+        except OSError:
+            continue
+    return max(sizes)
 
 
 def stop_and_wait(process: subprocess.Popen[str], number: signal.Signals) -> tuple[float, str]:

@@ -22,7 +22,7 @@ const SCENES = {
  * `around` last; `on` are the lines to point at, `branch` that of tau_find. */
 const METHODS = {
   none: {
-    name: "none", long: "bump mapping alone",
+    name: "bump only", long: "bump only",
     story: "The shadow ray starts at the smooth hit, as in every renderer with bump mapping. The shadow’s edge does "
       + "not know of the bumps: the object seems to float.",
     formula: [], around: [], branch: "    return 0.0;", on: [],

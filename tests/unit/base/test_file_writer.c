@@ -6,6 +6,8 @@
 #include <fcntl.h>
 #include <sys/file.h>
 #include <sys/stat.h>
+#include <sys/syscall.h>
+#include <unistd.h>
 
 #include "base/aside.h"
 #include "base/file_writer.h"
@@ -211,6 +213,38 @@ static void test_stale_files_are_removed(void **state)
     assert_true(unlink(".kage-2-0") == 0 && unlink(".kage-3-0") == 0);
 }
 
+/* What another process does just before a file is locked. The library's calls of flock come here. */
+static void (*before_lock)(void);
+
+int flock(int fd, int how)
+{
+    void (*const other)(void) = before_lock;
+    before_lock = NULL;
+    if (other)
+        other();
+    return (int)syscall(SYS_flock, fd, how);
+}
+
+static void use_the_name_again(void)
+{
+    assert_int_equal(rename(".kage-1-0", "out"), 0);
+    put(".kage-1-0", "busy");
+}
+
+/* Another process gives its file the right name while this one looks at it, and begins with the next. */
+static void test_a_name_that_is_used_again_is_not_removed(void **state)
+{
+    (void)state;
+    errors e = {0};
+    put(".kage-1-0", "whole");
+    before_lock = use_the_name_again;
+    aside_remove_stale("out", &e);
+    CHECK(e.count, ==, 0);
+    assert_string_equal(text_of("out"), "whole");
+    assert_string_equal(text_of(".kage-1-0"), "busy");
+    assert_int_equal(unlink(".kage-1-0"), 0);
+}
+
 /* A descriptor is written to where it stands, also where it is a file's. */
 static void test_a_descriptor_is_written_to(void **state)
 {
@@ -247,6 +281,7 @@ int main(void)
         IN_FOLDER(test_a_part_lies_where_the_link_leads),
         IN_FOLDER(test_a_part_is_written_by_one_at_a_time),
         IN_FOLDER(test_stale_files_are_removed),
+        IN_FOLDER(test_a_name_that_is_used_again_is_not_removed),
         IN_FOLDER(test_a_descriptor_is_written_to),
     };
     return cmocka_run_group_tests_name("file_writer", tests, NULL, NULL);

@@ -260,6 +260,8 @@ static void every_key_is_in_the_help(void **state)
             told = view_keys[j].name && strchr(view_keys[j].name, c);
         if (!told)
             fail_msg("no help tells of %c", c);
+        if (view_keys[k].help && strlen(view_keys[k].help) > 60) /* the panel of 74 columns cuts it */
+            fail_msg("the help of %s is too long", view_keys[k].name);
         for (int j = 0; j < k; j++)
             if (c && view_keys[j].key == c)
                 fail_msg("%c is there twice", c);
