@@ -94,8 +94,8 @@ KAGE_API void kage_errors_free(kage_errors *errors); /* NULL: nothing */
 typedef struct kage_scene kage_scene;
 
 /* Called now and then during a long call, in the caller's thread. what: the current step ("objects", "reading",
- * "unpacking", "checking", "building", "rendering", "writing"); share: how much of it is done, 0..1. If it returns
- * nonzero, the call ends soon with KAGE_CANCELLED. It may call the library. */
+ * "smoothing", "unpacking", "checking", "building", "horizons", "rendering", "writing"); share: how much of it is done,
+ * 0..1. If it returns nonzero, the call ends soon with KAGE_CANCELLED. It may call the library. */
 typedef int kage_progress(void *user, const char *what, double share);
 
 /* Arrays in the caller's memory, in place of files: where a scene can name a file, "array:NAME" names one of them. They
@@ -124,13 +124,13 @@ typedef struct kage_mesh_array {
 } kage_mesh_array;
 
 /* What a call may take, and what a scene and its files may have (docs/limits.md). Zero: the default. Those below
- * `seconds` can only be smaller than the built-in ones, which kage_limit_get tells. They hold where a scene is read,
- * and for what it reads later: what passes one is an error of the scene (KAGE_BAD_INPUT) and is refused before it is
- * taken, but for triangles, which are counted when their file has been decoded. */
+ * `seconds` can only be smaller than the built-in ones (kage_limit_get tells these). They hold where a scene is
+ * read, and for what it reads later: what passes one is an error of the scene (KAGE_BAD_INPUT) and is refused before it
+ * is taken, but for triangles, which are counted when their file has been decoded. */
 typedef struct kage_limits {
     int64_t memory;  /* bytes that a scene, those that are changed from it, and their films may take together while the
-                      * call runs. What would take more is refused before it is taken, with KAGE_NO_MEMORY and the figure
-                      * that it needs. 0: 7/8 of the machine's memory; below 0: no limit */
+                      * call runs. What would take more is refused before it is taken, with KAGE_NO_MEMORY and the
+                      * figure that it needs. 0: 7/8 of the machine's memory; below 0: no limit */
     double seconds;  /* of the call, by the wall clock; then it ends as if it were cancelled, with KAGE_OUT_OF_TIME. 0:
                       * no limit */
     int64_t scene;   /* bytes of the scene's text */

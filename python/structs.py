@@ -1,4 +1,4 @@
-"""Write kage/structs.py: the structs that the library returns as dataclasses, from include/kage.h.
+"""Write kage/structs.py: structs of the library as dataclasses, from include/kage.h.
 
     python structs.py [--check]
 
@@ -20,13 +20,19 @@ from build_ext import HEADER, HERE, declarations
 MADE = HERE / "kage" / "structs.py"
 
 #: Structs that the caller fills in, or that errors.py and picture.py turn into something else.
-OTHERS = re.compile(r"kage_(\w+_options|\w+_array|error|metadata|import_report)")
+OTHERS = re.compile(r"kage_(\w+_options|\w+_array|error|metadata|import_report|limit)")
 
 #: An int that is yes or no; kage.h says so in words only.
 FLAGS = {"fades", "transformed", "mirrors", "transparent", "bounded", "guard", "displaced", "self_shadow", "shifted",
          "orthographic", "regular", "bumped", "sends"}
 
-HEAD = '''"""What the library returns, as dataclasses. Made from include/kage.h by python/structs.py: do not edit."""
+#: A struct that the caller fills in by its name in Python; 0 is each field's default.
+GIVEN = "kage_limits"
+
+#: What a status is called as an exception.
+EXCEPTIONS = {"KAGE_BAD_INPUT": "InputError", "KAGE_NO_MEMORY": "NoMemoryError", "KAGE_OUT_OF_TIME": "OutOfTimeError"}
+
+HEAD = '''"""What the library takes and returns, as dataclasses. Made from include/kage.h by structs.py: do not edit."""
 
 from __future__ import annotations
 
@@ -50,7 +56,8 @@ def class_name(struct: str) -> str:
 def words(comment: str | None) -> str:
     """A comment's text in one line, in words of Python."""
     line = re.sub(r"\s*\n\s*\*?\s*", " ", comment or "").strip()
-    return re.sub(r"\bkage_\w+(?=\.)", lambda struct: class_name(struct[0]), line).replace("NULL", "None")
+    line = re.sub(r"\bkage_\w+(?=\.)", lambda struct: class_name(struct[0]), line).replace("NULL", "None")
+    return re.sub(r"\bKAGE_\w+", lambda status: EXCEPTIONS.get(status[0], status[0]), line)
 
 
 def counts(fields: dict[str, Any]) -> dict[str, str]:
@@ -76,7 +83,7 @@ def python_type(name: str, kind: Any, comment: str, counted: bool) -> str:
 
 
 def lines_of(struct: str, title: str, body: str, fields: dict[str, Any]) -> Iterator[str]:
-    yield "\n\n@dataclass(frozen=True, eq=False)"
+    yield f"\n\n@dataclass(frozen=True{'' if struct == GIVEN else ', eq=False'})"
     yield f"class {class_name(struct)}:"
     text = title or f"{struct} of kage.h."
     yield from textwrap.wrap(f'"""{text}"""', 116, initial_indent="    ", subsequent_indent="    ")
@@ -91,7 +98,8 @@ def lines_of(struct: str, title: str, body: str, fields: dict[str, Any]) -> Iter
         for name in kept:
             # `objects` of a survey has a count elsewhere: that of the scene.
             counted = name in counting.values() or "for each" in text
-            yield f"    {name}: {python_type(name, fields[name], text, counted)}"
+            default = " = 0" if struct == GIVEN else ""
+            yield f"    {name}: {python_type(name, fields[name], text, counted)}{default}"
 
 
 def python_text() -> str:

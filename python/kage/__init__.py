@@ -14,9 +14,10 @@ docs/python.md is the guide, docs/scene.md describes scenes, docs/method.md the 
 from __future__ import annotations
 
 from kage import gbuffer, heights, methods
-from kage.errors import InputError, KageError, NoMemoryError, OptionError, OutputError
+from kage.errors import InputError, KageError, NoMemoryError, OptionError, OutOfTimeError, OutputError
 from kage.picture import Picture
 from kage.scene import Scene, load
+from kage.structs import Limits
 from kage.version import METHODS, PRECISION, __version__
 
 __all__ = [
@@ -24,8 +25,10 @@ __all__ = [
     "PRECISION",
     "InputError",
     "KageError",
+    "Limits",
     "NoMemoryError",
     "OptionError",
+    "OutOfTimeError",
     "OutputError",
     "Picture",
     "Scene",

@@ -51,6 +51,10 @@ class NoMemoryError(KageError, MemoryError):
     """There is not enough memory."""
 
 
+class OutOfTimeError(KageError, TimeoutError):
+    """It takes more than `Limits.seconds`."""
+
+
 def exceptions() -> dict[int, type[KageError]]:
     """The exception of each kage_status that is a failure."""
     return {
@@ -58,6 +62,7 @@ def exceptions() -> dict[int, type[KageError]]:
         lib.KAGE_BAD_OPTION: OptionError,
         lib.KAGE_NOT_WRITTEN: OutputError,
         lib.KAGE_NO_MEMORY: NoMemoryError,
+        lib.KAGE_OUT_OF_TIME: OutOfTimeError,
     }
 
 

@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 from typing import Any, Literal, TypedDict, TypeVar
 
 from kage.calls import Listener
+from kage.structs import Limits
 
 #: None: a bar on a terminal and in notebooks, for what lasts. True: always a bar. False: none. Or what is called with
 #: the step ("rendering", "writing", ...) and how much of it is done, 0..1; what it raises ends the call.
@@ -32,6 +33,7 @@ class How(TypedDict, total=False):
     timing: bool  #: whether `Stats.stages` are timed, which costs about 1 %
     threads: int | None  #: None: as many as there are processors
     progress: Progress  #: None: a bar, where somebody sees it
+    limits: Limits | None  #: of memory and time; None: the scene's memory, and any time
 
 
 class RenderOptions(How, total=False):
@@ -47,6 +49,7 @@ class WriteOptions(TypedDict, total=False):
     layers: str | Sequence[str] | None  #: of an EXR: names of planes, "N" for N.X N.Y N.Z; None: all
     threads: int | None  #: None: as many as there are processors
     progress: Progress  #: None: a bar, where somebody sees it
+    limits: Limits | None  #: of memory and time; None: the scene's memory, and any time
 
 
 class FileOptions(How, total=False):

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import asdict
 from typing import Any
 
 from kage._kage import ffi, lib
 from kage.calls import Call
 from kage.errors import OptionError
+from kage.structs import Limits
 from kage.text import bytes_of
 
 
@@ -26,6 +28,17 @@ class Struct:
     def text(self, field: str, value: str | None) -> None:
         if value is not None:
             setattr(self.c, field, self.keep(ffi.new("char[]", bytes_of(value))))
+
+    def limits(self, limits: Limits | None) -> None:
+        if limits is None:
+            return
+        if not isinstance(limits, Limits):
+            raise OptionError(f"limits is {limits!r}, expected kage.Limits(...)")
+        values = asdict(limits)
+        seconds, memory = values.pop("seconds"), values.pop("memory")
+        numbers = {name: whole(f"limits.{name}", value, 0, 1 << 62) for name, value in values.items()}
+        memory = whole("limits.memory", memory, -1, 1 << 62)
+        self.c.limits = self.keep(ffi.new("kage_limits *", {"memory": memory, "seconds": float(seconds), **numbers}))
 
     def keep(self, value: Any) -> Any:
         self.kept.append(value)
@@ -60,6 +73,7 @@ def render_struct(options: Mapping[str, Any], call: Call) -> Struct:
     layers = options.get("layers")
     made.c.layers = layers is None or bool(layers)
     made.c.timing = bool(options.get("timing"))
+    made.limits(options.get("limits"))
     return made
 
 
@@ -73,6 +87,7 @@ def write_struct(options: Mapping[str, Any], call: Call | None = None) -> Struct
         made.c.bits = whole("bits", options["bits"], 8, 16)
     if options.get("band") is not None:
         made.c.band = whole("band", options["band"], 16, lib.KAGE_MAX_SIDE)
+    made.limits(options.get("limits"))
     made.c.resume, made.c.keep = bool(options.get("resume")), bool(options.get("keep"))
     return made
 

@@ -17,7 +17,7 @@ from kage.picture import Picture
 from kage.progress import watched
 from kage.requests import Struct, check_names, one_of, render_struct, whole, write_struct
 from kage.source import Source, Text, changes_of
-from kage.structs import PovrayReport, Probe, SceneInfo, Stats, Survey
+from kage.structs import Limits, PovrayReport, Probe, SceneInfo, Stats, Survey
 from kage.text import bytes_of, text_of
 from kage.version import __version__
 
@@ -56,6 +56,7 @@ class Scene:
         aa: aa x aa samples a pixel, 1 to 16. aa_threshold: only where neighbours differ by more, above 0 and up to 3.
         timing: whether the stages in `Picture.stats` are timed. threads: default as many as there are processors.
         progress: None, a bar where somebody sees it; True, False; or a function of the step and the share done.
+        limits: a `kage.Limits` of memory and time (default: the scene's memory, and any time).
         layers: whether the picture has the other planes besides R, G and B (default True).
 
         The picture depends neither on the threads nor on the crop.
@@ -144,6 +145,7 @@ class Scene:
         surface: Literal["smooth", "displaced"] | None = None,
         cast: bool = True,
         progress: Progress = None,
+        limits: Limits | None = None,
     ) -> PovrayReport:
         """Write the scene for POV-Ray 3.7 (docs/povray.md).
 
@@ -152,6 +154,7 @@ class Scene:
         handle, report, place = self._handle, ffi.new("kage_povray_report *"), bytes_of(path)
         with watched(progress, Path(path).name) as call:
             made = Struct("kage_povray_options", call)
+            made.limits(limits)
             made.text("command", f"kage {__version__} in Python")
             made.c.no_cast = not cast
             made.c.displaced = one_of("surface", surface, no="smooth", yes="displaced")
@@ -186,6 +189,7 @@ def load(
     arrays: Mapping[str, Any] | None = None,
     threads: int | None = None,
     progress: Progress = None,
+    limits: Limits | None = None,
 ) -> Scene:
     """Read a scene: a file's path, a text of YAML, or a dict with the keys of docs/scene.md.
 
@@ -193,14 +197,16 @@ def load(
     maps, images and meshes, see docs/python.md.
     sets: changes, as {"objects.ground.bump.scale": 0.1}. folder: where relative names of files begin, for a text or a
     dict (default: the current folder). name: what errors and pictures call a text or a dict (default "scene").
-    arrays: what "array:NAME" is, where the scene has that in place of a file. All errors of the scene are raised at
-    once, as an InputError.
+    arrays: what "array:NAME" is, where the scene has that in place of a file. limits: a `kage.Limits`, of what reading
+    may take and of what the scene and its files may have; it also holds for changes of the scene. All errors of the
+    scene are raised at once, as an InputError.
     """
     named = Arrays(arrays)
     found = Text(source, folder, name, named)
     scene = ffi.new("kage_scene **")
     with watched(progress, found.name) as call:
         options = load_struct(sets or {}, named, call, threads)
+        options.limits(limits)
         return Scene(call.make(lambda: found.read(options.c, scene, call.errors), scene, lib.kage_scene_free))
 
 

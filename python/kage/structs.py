@@ -1,4 +1,4 @@
-"""What the library returns, as dataclasses. Made from include/kage.h by python/structs.py: do not edit."""
+"""What the library takes and returns, as dataclasses. Made from include/kage.h by structs.py: do not edit."""
 
 from __future__ import annotations
 
@@ -8,62 +8,45 @@ import numpy as np
 from numpy.typing import NDArray
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True)
 class Limits:
     """What a call may take, and what a scene and its files may have (docs/limits.md). Zero: the default. Those
-    below `seconds` can only be smaller than the built-in ones, which kage_limit_get tells. They hold where a scene
-    is read, and for what it reads later: what passes one is an error of the scene (KAGE_BAD_INPUT) and is refused
+    below `seconds` can only be smaller than the built-in ones (kage_limit_get tells these). They hold where a scene
+    is read, and for what it reads later: what passes one is an error of the scene (InputError) and is refused
     before it is taken, but for triangles, which are counted when their file has been decoded."""
 
     #: bytes that a scene, those that are changed from it, and their films may take together while the call
-    #: runs. What would take more is refused before it is taken, with KAGE_NO_MEMORY and the figure that it
+    #: runs. What would take more is refused before it is taken, with NoMemoryError and the figure that it
     #: needs. 0: 7/8 of the machine's memory; below 0: no limit
-    memory: int
-    #: of the call, by the wall clock; then it ends as if it were cancelled, with KAGE_OUT_OF_TIME. 0: no
-    #: limit
-    seconds: float
+    memory: int = 0
+    #: of the call, by the wall clock; then it ends as if it were cancelled, with OutOfTimeError. 0: no limit
+    seconds: float = 0
     #: bytes of the scene's text
-    scene: int
+    scene: int = 0
     #: levels of maps and lists in it
-    nesting: int
+    nesting: int = 0
     #: bytes of an expression
-    expression: int
+    expression: int = 0
     #: levels of brackets, signs and powers in it
-    expression_nesting: int
+    expression_nesting: int = 0
     #: pixels along a side of the picture
-    picture: int
+    picture: int = 0
     #: rays in a row: the scene's render.depth
-    depth: int
+    depth: int = 0
     #: in the scene's file
-    objects: int
+    objects: int = 0
     #: bytes of a map, an image, a list of copies, patches or a model
-    file: int
+    file: int = 0
     #: samples along a side of a map or an image
-    side: int
+    side: int = 0
     #: of a map or an image
-    samples: int
+    samples: int = 0
     #: points of a list of them
-    copies: int
+    copies: int = 0
     #: of a model
-    triangles: int
+    triangles: int = 0
     #: of an object
-    patches: int
-
-
-@dataclass(frozen=True, eq=False)
-class Limit:
-    """One of the limits of what a scene and its files may have."""
-
-    #: as the option --limit has it: the field's, with - for _; None: no such limit
-    name: str | None
-    #: what is counted, in one line
-    text: str
-    #: the built-in limit
-    most: int
-    #: it is of bytes
-    bytes: int
-    #: of its int64_t in kage_limits
-    offset: int
+    patches: int = 0
 
 
 @dataclass(frozen=True, eq=False)

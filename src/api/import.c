@@ -8,6 +8,7 @@
 #include "mesh/letter.h"
 #include "mesh/model_scene.h"
 
+#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -22,7 +23,8 @@ static const char *base_of(const char *path)
     return slash ? slash + 1 : path;
 }
 
-/* The folder of a file, with all links followed, and a slash at its end. To be freed; NULL: there is none. */
+/* The folder of a file, with all links followed, and a slash at its end. To be freed; NULL: there is none, or out of
+ * memory, as errno says. */
 static char *folder_of(const char *path)
 {
     const size_t n = (size_t)(base_of(path) - path);
@@ -55,16 +57,27 @@ static char *folder_between(const char *from, const char *to)
     return out;
 }
 
-/* A file's name as seen from a folder; as it is where its own folder does not exist. To be freed. */
+/* The folder of a file as seen from another one; as it is where it does not exist. To be freed. NULL: out of memory. */
+static char *folder_from(const char *from, const char *path)
+{
+    char *to = folder_of(path), *seen = NULL;
+    if (to)
+        seen = folder_between(from, to);
+    else if (errno != ENOMEM)
+        seen = strndup(path, (size_t)(base_of(path) - path));
+    free(to);
+    return seen;
+}
+
+/* The same of the file itself. */
 static char *name_from(const char *from, const char *path)
 {
-    char *to = folder_of(path), *between = to ? folder_between(from, to) : NULL;
+    char *folder = folder_from(from, path);
     const char *base = base_of(path);
-    char *name = between ? malloc(strlen(between) + strlen(base) + 1) : strdup(path);
-    if (name && between)
-        strcat(strcpy(name, between), base);
-    free(to);
-    free(between);
+    char *name = folder ? malloc(strlen(folder) + strlen(base) + 1) : NULL;
+    if (name)
+        strcat(strcpy(name, folder), base);
+    free(folder);
     return name;
 }
 
@@ -120,12 +133,10 @@ static bool make_wishes(wishes *w, const char *model, const char *file, const ch
                         errors *e)
 {
     w->text = calloc((size_t)LETTER_WISHES + 3 * (size_t)o->bump_count, sizeof *w->text);
-    char *to = folder_of(model);
     snprintf(w->brightness, sizeof w->brightness, "%.17g", o->brightness > 0 ? o->brightness : 1);
-    bool good = w->text && add(w, name_from(from, model)) && add(w, to ? folder_between(from, to) : strdup("")) &&
+    bool good = w->text && add(w, name_from(from, model)) && add(w, folder_from(from, model)) &&
                 add(w, stem_of(file)) && add(w, strdup(o->camera ? o->camera : "")) &&
                 add(w, strdup(o->z_up ? "z" : "y")) && add(w, strdup(w->brightness));
-    free(to);
     if (!good)
         return errors_add(e, "out of memory");
     for (int k = 0; k < o->bump_count && good; k++)
@@ -243,7 +254,8 @@ static bool make(struct import_report *r, const char *model, const char *file, c
     char why[MESH_WHY], *from = folder_of(file);
     wishes w = {0};
     files opened = {0};
-    bool fresh, good = from || errors_add(e, "%s: its folder does not exist", file);
+    bool fresh, good = from || (errno == ENOMEM ? errors_add(e, "out of memory")
+                                                : errors_add(e, "%s: its folder does not exist", file));
     good = good && may_write(file, NULL, 0, o, &opened, &fresh, e) && can_write(r, file, e) &&
            make_wishes(&w, model, file, from, o, e);
     if (good && !model_scene_read(model, o->model_reader, w.n, (const char *const *)w.text, p, &opened, &r->made, why))

@@ -32,9 +32,10 @@ static bool size_is_good(const image_stream *s, int64_t width, int64_t height, c
     if (width > side.most || height > side.most)
         return image_refuse(why, "the image is too large: it has %lld x %lld samples, expected at most %lld a side%s",
                             (long long)width, (long long)height, (long long)side.most, side.by);
-    return width * height <= all.most ||
-           image_refuse(why, "the image is too large: it has %lld samples, expected at most %lld%s",
-                        (long long)(width * height), (long long)all.most, all.by);
+    const long long samples = width * height;
+    return samples <= all.most ||
+           image_refuse(why, "the image is too large: it has %lld samples, expected at most %lld%s", samples,
+                        (long long)all.most, all.by);
 }
 
 bool image_begin(image_stream *s, int64_t width, int64_t height, char *why)

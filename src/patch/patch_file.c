@@ -82,8 +82,7 @@ static int numbers(const char *name, const char *text, double most, cap allowed,
     int n = 0;
     for (const char *at = skip(text); *at; at = skip(at)) {
         if (n == 48 * allowed.most) {
-            snprintf(message, sizeof message, "too many patches, expected at most %d%s", (int)allowed.most,
-                     allowed.by);
+            snprintf(message, sizeof message, "too many patches, expected at most %d%s", (int)allowed.most, allowed.by);
             wrong(name, text, at, message, e);
             return -1;
         }

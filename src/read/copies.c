@@ -296,6 +296,7 @@ void reader_copies(reader *r, node *v, int i)
     bool good = from && can_be_copied(r, at, o, from);
     good = (!transform || reader_transform(r, transform, &k.after)) && good;
     good = read_file(r, at, o, &k) && good && check_rows(r, from, &k);
+    good = good && r->s->material; /* without materials there is an error already */
     if (good && (k.row = reader_made(r, memory_new(reader_memory(r), sizeof *k.row * (size_t)k.p.n))))
         make_crowds(r, at, i, from, &k);
     memory_free(k.row);

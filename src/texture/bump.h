@@ -71,7 +71,7 @@ bump *bump_map_new(int width, int height, const map_layout *layout, const progre
 void bump_map_put(bump *p, int x, int y, int n, const float *samples);
 void bump_map_end(bump *p, int threads);
 
-/* Before bump_map_end: smooth the heights, as heights_smooth. False: out of memory. */
+/* Before bump_map_end: smooth the heights, as heights_smooth. */
 bool bump_map_smooth(bump *p, double radius, double most, int threads, const progress *w);
 
 /* P = scale f(u,w), with exact partials. Owns f, also on failure. Pmin to Pw_max hold for (u,w) in the given range
@@ -79,7 +79,7 @@ bool bump_map_smooth(bump *p, double radius, double most, int threads, const pro
 bump *bump_function_new(expr *f, double scale, const double u[2], const double w[2]);
 
 /* Make ready for `range` and set the second partials' bounds. Again: no effect. Several threads may do so, also while
- * others use all else of p. False: out of memory. */
+ * others use all else of p. False: out of memory, or stopped. */
 bool bump_prepare(bump *p, const progress *w);
 
 /* One owner more, who frees it, too. Returns p. */

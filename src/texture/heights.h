@@ -38,8 +38,8 @@ bool heights_new(heights *h, int width, int height, const map_layout *l, const p
 void heights_put(heights *h, int x, int y, int n, const float *samples);
 
 /* Once all samples are in, before heights_wrap: move each toward the mean around it, by a Gaussian with a standard
- * deviation of `radius` samples, but by no more than `most` scene units. False: out of memory, and nothing is moved.
- * (smooth.c) */
+ * deviation of `radius` samples, but by no more than `most` scene units. False: out of memory, or stopped: then it is
+ * not known which are moved. (smooth.c) */
 bool heights_smooth(heights *h, double radius, double most, int threads, const progress *w);
 
 /* Once all samples are in: lay out what is around them. The bounds do not depend on the threads. */

@@ -8,6 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/gate.h"
+
 enum {
     LEVELS = 32,
     BEHIND = 3, /* nodes that a level has behind the last whole one */
@@ -207,10 +209,11 @@ static real *node_of(const pyramid *y, int level, int row, int column)
 
 static int cell_at(int i, int cells, int repeat) { return i < cells ? i : repeat ? i % cells : cells - 1; }
 
-static void lay_bottom(pyramid *y, cell_range (*cell)(const void *user, int row, int column), const void *user)
+static void lay_bottom(pyramid *y, cell_range (*cell)(const void *user, int row, int column), const void *user,
+                       gate *on)
 {
     const table_grid *g = &y->grid;
-    for (int j = 0; j < y->rows[0]; j++)
+    for (int j = 0; j < y->rows[0] && gate_is_open(on); j++, gate_pass(on, 1))
         for (int i = 0; i < y->pitch[0]; i++) {
             real *to = node_of(y, 0, j, i);
             if (j >= g->rows || i >= g->columns) {
@@ -226,10 +229,10 @@ static void lay_bottom(pyramid *y, cell_range (*cell)(const void *user, int row,
         }
 }
 
-static void lay_level(pyramid *y, int level)
+static void lay_level(pyramid *y, int level, gate *on)
 {
     const table_grid *g = &y->grid;
-    for (int j = 0; j < y->rows[level]; j++)
+    for (int j = 0; j < y->rows[level] && gate_is_open(on); j++, gate_pass(on, 1))
         for (int i = 0; i < y->pitch[level]; i++) {
             const nodes r = below(j, level - 1, g->rows, g->repeat), c = below(i, level - 1, g->columns, g->repeat);
             real *to = node_of(y, level, j, i);
@@ -247,6 +250,7 @@ pyramid *pyramid_new(const table_grid *grid, cell_range (*cell)(const void *user
     const int longest = grid->columns > grid->rows ? grid->columns : grid->rows;
     pyramid *y = calloc(1, sizeof *y);
     int64_t nodes_in_all = 0;
+    gate on = {.to = w, .what = "building"};
     if (!y)
         return NULL;
     y->grid = *grid;
@@ -255,6 +259,7 @@ pyramid *pyramid_new(const table_grid *grid, cell_range (*cell)(const void *user
         y->pitch[k] = (grid->columns >> k) + BEHIND;
         y->rows[k] = (grid->rows >> k) + BEHIND;
         nodes_in_all += (int64_t)y->pitch[k] * y->rows[k];
+        on.all += y->rows[k];
         y->levels = k + 1;
     }
     y->node =
@@ -263,10 +268,13 @@ pyramid *pyramid_new(const table_grid *grid, cell_range (*cell)(const void *user
         free(y);
         return NULL;
     }
-    lay_bottom(y, cell, user);
+    lay_bottom(y, cell, user, &on);
     for (int k = 1; k < y->levels; k++)
-        lay_level(y, k);
-    return y;
+        lay_level(y, k, &on);
+    if (gate_is_open(&on))
+        return y;
+    pyramid_free(y);
+    return NULL;
 }
 
 void pyramid_free(pyramid *y)

@@ -23,7 +23,7 @@ typedef struct cell_range {
 typedef struct pyramid pyramid;
 
 /* Over the cells of a grid (1 x 1 at least), whose bounds cell(user, row, column) gives. About 43 bytes a cell in
- * float, from w's. NULL: out of memory, or more than 2^29 cells. */
+ * float, from w's. NULL: out of memory, more than 2^29 cells, or stopped. */
 pyramid *pyramid_new(const table_grid *grid, cell_range (*cell)(const void *user, int row, int column),
                      const void *user, const progress *w);
 

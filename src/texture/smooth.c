@@ -8,7 +8,7 @@
 
 #include <stdlib.h>
 
-#include "base/threads.h"
+#include "base/gate.h"
 #include "math/kmath.h"
 
 /* What the means need: weights, of which w[0] is a sample's own and the last is n samples away, and the indices of the
@@ -82,17 +82,24 @@ bool heights_smooth(heights *h, double radius, double most, int threads, const p
     kernel g;
     real *along = memory_new(progress_memory(w), (size_t)h->width * (size_t)h->height * sizeof *along);
     const bool good = kernel_new(&g, h, radius) && along;
+    gate on = {.to = w, .what = "smoothing", .all = 2L * h->height};
     threads = threads_of(threads);
     (void)threads; /* without OpenMP */
     if (good) {
 #pragma omp parallel for schedule(static) num_threads(threads)
         for (int row = 0; row < h->height; row++)
-            mean_along(h, &g, row, along + (size_t)row * (size_t)h->width);
+            if (gate_is_open(&on)) {
+                mean_along(h, &g, row, along + (size_t)row * (size_t)h->width);
+                gate_pass(&on, 1);
+            }
 #pragma omp parallel for schedule(static) num_threads(threads)
         for (int row = 0; row < h->height; row++)
-            mean_down(h, &g, row, along, most);
+            if (gate_is_open(&on)) {
+                mean_down(h, &g, row, along, most);
+                gate_pass(&on, 1);
+            }
     }
     kernel_free(&g);
     memory_free(along);
-    return good;
+    return good && gate_is_open(&on);
 }

@@ -233,6 +233,16 @@ def test_wrong_copies(kage: Kage, old: str, new: str, message: str) -> None:
     assert message in result.stderr.splitlines()[0], result.stderr
 
 
+@pytest.mark.parametrize(("materials", "message"), [
+    ("", "the scene lacks its 'materials'"), ("materials: 3\n", "materials is a single value, expected a map")])
+def test_no_materials(kage: Kage, materials: str, message: str) -> None:
+    head = head_of(SPHERE)
+    head = head[:head.index("materials:")] + materials + head[head.index("objects:"):]
+    result = kage("check", write_list(kage, head, "x,y,z\n1,2,3\n"))
+    assert result.returncode == 2
+    assert message in result.stderr.splitlines()[0], result.stderr
+
+
 def test_a_material_between_two(kage: Kage) -> None:
     text = "ply\nformat ascii 1.0\nelement vertex 1\n" + "".join(
         f"property float {name}\n" for name in ("x", "y", "z", "material")) + "end_header\n1 2 3 0.4\n"

@@ -177,7 +177,7 @@ def test_standard_input_is_within_them(kage: Kage) -> None:
         done = subprocess.run([PROGRAM, "check", "-", "--limit", f"scene={len(BARE)}"], input=text, text=True,
                               capture_output=True, cwd=kage.folder, timeout=60)
         assert done.returncode == status
-        assert not status or "too large" in done.stderr and "(--limit scene)" in done.stderr, done.stderr
+        assert not status or ("too large" in done.stderr and "(--limit scene)" in done.stderr), done.stderr
 
 
 @pytest.mark.parametrize(("value", "words"), [

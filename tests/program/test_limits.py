@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import json
 import re
 import struct
@@ -22,16 +23,19 @@ BARE = re.sub(r"\n +bump: .*", "", SCENE)
 BESIDE = 30 * MIB
 
 
+def png_of(width: int, height: int, bits: int, packed: bytes) -> bytes:
+    """A grey PNG of packed samples."""
+    parts = [(b"IHDR", struct.pack(">IIBBBBB", width, height, bits, 0, 0, 0, 0)), (b"IDAT", packed), (b"IEND", b"")]
+    return b"\x89PNG\r\n\x1a\n" + b"".join(
+        struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data)) for kind, data in parts)
+
+
 def png(path: Path, side: int) -> Path:
     """A grey map of 16 bits that is small as a file."""
-    def chunk(kind: bytes, data: bytes) -> bytes:
-        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
-
     pack = zlib.compressobj(1)
     row = b"\0" + b"\x40\x00\x41\x00" * (side // 2)
     data = b"".join(pack.compress(row) for _ in range(side)) + pack.flush()
-    head = struct.pack(">IIBBBBB", side, side, 16, 0, 0, 0, 0)
-    path.write_bytes(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", head) + chunk(b"IDAT", data) + chunk(b"IEND", b""))
+    path.write_bytes(png_of(side, side, 16, data))
     return path
 
 
@@ -186,6 +190,7 @@ EDGES = {
     "nesting": ("{center: [1, 1, 0], radius: 0.5}", "{center: [1, 1, 0], radius: 0.5}\n    bump: {function: '%s'}",
                 lambda k: "(" * (62 + k) + "u" + ")" * (62 + k), "nesting too deep"),
     "depth": ("aa: 1", "aa: 1, depth: %s", lambda k: str(32 + k), "32"),
+    "picture": ("size: [40, 30]", "size: [2, %s]", lambda k: str(32768 + k), "32768"),
     "steps": ("aa: 1", "aa: 1, shadow: 'march:%s'", lambda k: str(1024 + k), "1024"),
 }
 
@@ -201,6 +206,122 @@ def test_at_the_limit_and_beyond(kage: Kage, name: str) -> None:
         done = kage("check", "scene.yaml")
         assert done.returncode == (2 if over else 0), done.stderr
         assert not over or word in done.stderr, done.stderr
+
+
+def refused(kage: Kage, text: str, words: str, *files: str) -> None:
+    """One beyond a limit that stands by itself, told with the place; files: that are there besides the scene."""
+    (kage.folder / "scene.yaml").write_text(text)
+    done = kage("render", "scene.yaml", "-o", "out.png")
+    assert done.returncode == 2
+    place = r"(?:\S*/)?(?:scene\.yaml|\S+\.(?:ply|txt))(?::\d+:\d+)?: "
+    assert re.match(f"{place}.*{words}", done.stderr), done.stderr[:400]
+    assert kage.files() == {"scene.yaml", *files}
+
+
+def test_bytes_of_a_scene(kage: Kage) -> None:
+    """67108864 are taken, comments for the most part."""
+    most = 1 << 26
+    comments = ("#" * 127 + "\n") * (most // 128 - 10)
+    text = BARE + comments + "#" * (most - len(BARE) - len(comments))
+    (kage.folder / "scene.yaml").write_text(text)
+    assert (kage.folder / "scene.yaml").stat().st_size == most
+    assert kage("check", "scene.yaml").returncode == 0
+    refused(kage, text + "#", f"too large, expected at most {most} bytes")
+
+
+@pytest.mark.parametrize("shape", ["lists", "maps", "lines"])
+def test_nesting_of_a_scene(kage: Kage, shape: str) -> None:
+    """No key has a value of 63 levels, but up to there only the value is wrong."""
+    def text(levels: int) -> str:
+        inner = levels - 3  # the scene, its objects and one of them are around it
+        if shape == "lines":
+            return BARE + "    bump:\n" + "".join(" " * (6 + k) + f"k{k}:\n" for k in range(inner)) + " " * 80 + "1\n"
+        opening, closing = ("[", "]") if shape == "lists" else ("{k: ", "}")
+        return BARE + f"    bump: {opening * inner}1{closing * inner}\n"
+
+    (kage.folder / "scene.yaml").write_text(text(63))
+    done = kage("check", "scene.yaml")
+    assert done.returncode == 2 and "nested" not in done.stderr and "bump" in done.stderr, done.stderr
+    for levels in (64, 65, 3000):
+        refused(kage, text(levels), "nested too deep, expected at most 63 levels of maps and lists")
+
+
+#: Scenes with an image for a colour, and with a map.
+MAPPED = BARE + "    bump: {map: {file: big.png}, scale: 0.01, zero: 0.25, sign: up}\n"
+COLOURED = BARE.replace("color: [0.8, 0.7, 0.6]", "color: {image: {file: big.png, size: [1, 1]}}")
+
+
+@pytest.mark.parametrize("text", [MAPPED, COLOURED], ids=["map", "image"])
+def test_sides_and_samples_of_an_image(kage: Kage, text: str) -> None:
+    image = kage.folder / "big.png"
+    image.write_bytes(png_of(65536, 2, 8, zlib.compress((b"\0" + b"\x40" * 65536) * 2)))
+    (kage.folder / "scene.yaml").write_text(text)
+    assert kage("check", "scene.yaml").returncode == 0
+    for width, height, words in ((65537, 2, "65537 x 2 samples, expected at most 65536 a side"),
+                                 (2, 65537, "2 x 65537 samples, expected at most 65536 a side"),
+                                 (16384, 16385, f"{16384 * 16385} samples, expected at most 268435456")):
+        image.write_bytes(png_of(width, height, 8, zlib.compress(b"")))
+        refused(kage, text, words, "big.png")
+
+
+def test_bytes_of_a_file(kage: Kage) -> None:
+    """17179869184, of which none is on the disk: then it is only no image."""
+    with (kage.folder / "big.png").open("wb") as file:
+        file.truncate(1 << 34)
+    (kage.folder / "scene.yaml").write_text(MAPPED)
+    done = kage("check", "scene.yaml")
+    assert done.returncode == 2 and "its first bytes are those of neither" in done.stderr, done.stderr
+    with (kage.folder / "big.png").open("r+b") as file:
+        file.truncate((1 << 34) + 1)
+    refused(kage, MAPPED, "it has 17179869185 bytes, expected at most 17179869184", "big.png")
+
+
+def test_bytes_of_a_model(kage: Kage) -> None:
+    with (kage.folder / "big.stl").open("wb") as file:
+        file.truncate((1 << 30) + 1)
+    text = BARE.replace("sphere: {center: [1, 1, 0], radius: 0.5}", "mesh: {file: big.stl}")
+    refused(kage, text, "it has 1073741825 bytes, expected at most 1073741824", "big.stl")
+
+
+def test_triangles_of_a_model(kage: Kage) -> None:
+    """2^24 and 4096 of them: a mesh of 4096, at 4097 places. 2^24 take too much memory for a test."""
+    corners = struct.pack("<9f", 0, 0, 0, 1, 0, 0, 0, 1, 0)
+    indices = struct.pack("<3H", 0, 1, 2) * 4096
+    data = base64.b64encode(corners + indices).decode()
+    places = 4097
+    (kage.folder / "many.gltf").write_text(json.dumps({
+        "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": list(range(places))}],
+        "nodes": [{"mesh": 0, "translation": [k, 0, 0]} for k in range(places)],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0],
+                       "max": [1, 1, 0]},
+                      {"bufferView": 1, "componentType": 5123, "count": 3 * 4096, "type": "SCALAR"}],
+        "bufferViews": [{"buffer": 0, "byteOffset": 0, "byteLength": 36},
+                        {"buffer": 0, "byteOffset": 36, "byteLength": len(indices)}],
+        "buffers": [{"byteLength": 36 + len(indices), "uri": f"data:application/octet-stream;base64,{data}"}],
+    }))
+    text = BARE.replace("sphere: {center: [1, 1, 0], radius: 0.5}", "mesh: {file: many.gltf}")
+    refused(kage, text, "more than 16777216 triangles, expected no more", "many.gltf")
+
+
+def test_points_of_a_list(kage: Kage) -> None:
+    """A head that says more than there are is enough."""
+    for points, words in ((1 << 28, "268435456 vertices in .* bytes, expected a longer file"),
+                          ((1 << 28) + 1, "268435457 vertices, expected at most 268435456")):
+        axes = "".join(f"property float {axis}\n" for axis in "xyz")
+        (kage.folder / "dots.ply").write_text(
+            f"ply\nformat ascii 1.0\nelement vertex {points}\n{axes}end_header\n0 0 0\n")
+        refused(kage, BARE + "  dots:\n    copies: {of: ball, file: dots.ply}\n    material: clay\n", words, "dots.ply")
+
+
+def test_patches_of_an_object(kage: Kage) -> None:
+    """With so many a scene takes seconds: that all of them are looked at is enough."""
+    points = "".join(f"{x} 0 {z}\n" for z in (0, 0.3, 0.6, 1) for x in (0, 0.3, 0.6, 1))
+    text = BARE.replace("sphere: {center: [1, 1, 0], radius: 0.5}", "patches: {file: many.txt}")
+    (kage.folder / "many.txt").write_text(points * 4095 + points.removesuffix("1\n") + "one\n")
+    refused(kage, text, "'one' is no number", "many.txt")
+    (kage.folder / "many.txt").write_text(points * 4097)
+    refused(kage, text, "too many patches, expected at most 4096", "many.txt")
 
 
 def test_lights_at_the_limit_and_beyond(kage: Kage) -> None:

@@ -66,6 +66,46 @@ def test_ctrl_c_while_a_file_is_written(python: Python, tmp_path: Path) -> None:
     assert [path.name for path in tmp_path.iterdir()] == ["x.exr"] and (tmp_path / "x.exr").read_bytes() == b"older"
 
 
+#: Interrupts itself a moment after a step has begun, and prints at which share of that step it came out.
+IN_STEP = """
+import os, signal, threading
+import numpy as np
+import kage
+heights = np.random.default_rng(1).integers(0, 255, (3000, 3000), np.uint8)
+bump = {{"map": {{"file": heights}}, "scale": 0.1, "zero": 0.5, "sign": "up", "smooth": {smooth}}}
+floor = {{"rectangle": {{"origin": [-3, 0, 3], "u": [6, 0, 0], "w": [0, 0, -6]}}, "material": "clay", "bump": bump}}
+scene = {{"camera": {{"from": [0, 3, -5], "at": [0, 0, 0], "fov": 40}}, "image": {{"size": [8, 6]}},
+         "lights": {{"lamp": {{"at": [-4, 5, -2], "color": [1, 1, 1]}}}},
+         "materials": {{"clay": {{"color": [0.8, 0.7, 0.6]}}}}, "objects": {{"floor": floor}}}}
+shares = []
+def listen(what, share):
+    if what == "{step}":
+        shares.append(share)
+        if len(shares) == 1:
+            threading.Timer(0.01, os.kill, (os.getpid(), signal.SIGINT)).start()
+try:
+    kage.load(scene, progress=listen).render(progress=listen, {options})
+except KeyboardInterrupt:
+    print(shares[-1])
+"""
+
+#: A map's tables, each of which takes a second or so. smooth, what render is told, and the step.
+TABLES = {
+    "smooth": (16, "", "smoothing"),
+    "horizon": (0, 'bump_shadow="horizon"', "horizons"),
+    "exact": (0, 'bump_shadow="exact"', "building"),
+    "displaced": (0, 'surface="displaced"', "building"),
+}
+
+
+@pytest.mark.parametrize("name", TABLES)
+def test_ctrl_c_ends_the_making_of_tables(python: Python, name: str) -> None:
+    """Far from the end of them, however fast or busy the machine is."""
+    smooth, options, step = TABLES[name]
+    out, err = python(IN_STEP.format(smooth=smooth, options=options, step=step)).communicate(timeout=120)
+    assert err == "" and float(out) < 0.8, (out, err)
+
+
 def test_progress_is_told() -> None:
     steps: list[tuple[str, float]] = []
     kage.load(CUBE).render(size=(1500, 1000), aa=2, threads=1, progress=lambda *step: steps.append(step))

@@ -18,9 +18,10 @@ from pathlib import Path
 from tests.conftest import PROGRAM
 from tests.support.failing import OLDER
 
-#: $1: mount options of the disk, $2: of when it has the older files; $3 ...: the command. What it leaves is in after/.
+#: $1: the disk's size, $2: rw or ro, once it has the older files; $3 ...: the command. What it leaves is in after/.
 IN_DISK = """\
-mount -t tmpfs -o "$1" none disk && cp -R older/. disk && mount -o "remount,$2" disk || exit 99
+mount -t tmpfs -o "size=$1" none disk && cp -R older/. disk || exit 99
+test "$2" = rw || mount -o "remount,bind,$2" disk || exit 99
 shift 2
 (cd disk && exec "$@")
 status=$?
@@ -56,19 +57,19 @@ def run(folder: Path, command: Sequence[object], **more: str) -> subprocess.Comp
                           timeout=120, check=False)
 
 
-def on_disk(folder: Path, options: str, then: str, command: Sequence[object], older: Sequence[str]) -> Done:
+def on_disk(folder: Path, size: str, then: str, command: Sequence[object], older: Sequence[str]) -> Done:
     """Run kage on a disk of its own."""
     for name in ("disk", "older", "after"):
         (folder / name).mkdir()
     for name in older:
         (folder / "older" / name).write_bytes(OLDER)
-    done = run(folder, [*may_mount(), "sh", "-c", IN_DISK, "sh", options, then, PROGRAM, *command])
+    done = run(folder, [*may_mount(), "sh", "-c", IN_DISK, "sh", size, then, PROGRAM, *command])
     assert done.returncode != 99, done.stderr
     return Done(done.returncode, done.stderr, folder / "after")
 
 
 def on_small_disk(folder: Path, pages: int, command: Sequence[object], older: Sequence[str]) -> Done:
-    return on_disk(folder, f"size={4 * pages}k", "rw", command, older)
+    return on_disk(folder, f"{4 * pages}k", "rw", command, older)
 
 
 def where_writes_fail(folder: Path, library: Path, after: int, command: Sequence[object],
@@ -82,17 +83,17 @@ def where_writes_fail(folder: Path, library: Path, after: int, command: Sequence
 
 
 def on_read_only_disk(folder: Path, command: Sequence[object], older: Sequence[str]) -> Done:
-    return on_disk(folder, "size=40k", "ro", command, older)
+    return on_disk(folder, "40k", "ro", command, older)
 
 
 def without_permission(folder: Path, command: Sequence[object], older: Sequence[str]) -> Done:
-    """In a folder that the user may not change; root loses the right to do it nevertheless."""
+    """In a folder that the user may not change; who may nevertheless, as root, loses that right."""
     place = folder / "closed"
     place.mkdir()
     for name in older:
         (place / name).write_bytes(OLDER)
     place.chmod(0o555)
-    bound = ("setpriv", "--bounding-set", "-dac_override") if os.geteuid() == 0 else ()
+    bound = ("setpriv", "--bounding-set", "-dac_override") if os.access(place, os.W_OK) else ()
     done = run(place, [*bound, PROGRAM, *command])
     place.chmod(0o755)
     return Done(done.returncode, done.stderr, place)

@@ -202,6 +202,19 @@ def test_errors_of_a_look_leave_the_last_picture(kage: Kage, screen: Display, sc
 
 
 @needs_window
+def test_limits_hold_while_it_is_open(kage: Kage, screen: Display, scene: Path) -> None:
+    """A picture that is too large, and a scene that has grown. What is wrong stands in the window."""
+    objects = len(re.findall(r"material: ", scene.read_text()))
+    options = ("--limit", f"objects={objects}", "--max-memory", "4M")
+    with view(screen, PROGRAM, *options, scene, cwd=kage.folder) as window:
+        words = "there is not enough memory: it needs .* more than the limit of 4 MB"
+        window.key("l")  # a layer takes more
+        assert re.search(words, window.wait("^errors "))
+        scene.write_text(scene.read_text() + "  more: {sphere: {center: [0, 1, 0], radius: 1}, material: clay}\n")
+        assert f"expected at most {objects} (--limit objects)" in window.wait("^errors .*objects")
+
+
+@needs_window
 def test_help_and_values_lie_over_the_picture_on_demand(kage: Kage, screen: Display, scene: Path) -> None:
     with view(screen, PROGRAM, scene, cwd=kage.folder) as window:
         window.mouse(400, 20)

@@ -315,6 +315,32 @@ static void a_decimal_comma_changes_nothing(void **state)
     kage_scene_free(s);
 }
 
+/* Each limit has a field of its own, whose built-in value is taken, and one more is not. */
+static void limits_are_listed_and_checked(void **state)
+{
+    (void)state;
+    assert_null(kage_limit_get(-1).name);
+    assert_null(kage_limit_get(kage_limit_count()).name);
+    for (int k = 0; k < kage_limit_count(); k++) {
+        const kage_limit of = kage_limit_get(k);
+        for (int64_t more = 0; more <= 1; more++) {
+            kage_limits l = {0};
+            *(int64_t *)((char *)&l + of.offset) = of.most + more;
+            const kage_load_options o = {.limits = &l};
+            kage_scene *s = NULL;
+            kage_errors *e = NULL;
+            const kage_status status = kage_scene_parse(GROUND, strlen(GROUND), NULL, NULL, &o, &s, &e);
+            assert_int_equal(status, more ? KAGE_BAD_OPTION : KAGE_OK);
+            if (more)
+                assert_non_null(strstr(kage_errors_get(e, 0)->text, of.name));
+            kage_scene_free(s);
+            kage_errors_free(e);
+        }
+        for (int j = 0; j < k; j++)
+            assert_true(kage_limit_get(j).offset != of.offset);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -335,6 +361,7 @@ int main(void)
         cmocka_unit_test(reading_can_be_cancelled),
         cmocka_unit_test(preparing_a_patch_can_be_cancelled),
         cmocka_unit_test(wrong_options_are_named),
+        cmocka_unit_test(limits_are_listed_and_checked),
         cmocka_unit_test(the_methods_are_listed),
         cmocka_unit_test(a_decimal_comma_changes_nothing),
     };

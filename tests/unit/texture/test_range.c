@@ -230,13 +230,35 @@ static void no_bends_of_maps_and_kinks(void **state)
     }
 }
 
+static bool go_on(void *user, const char *what, double share)
+{
+    assert_string_equal(what, "building");
+    return ++*(int *)user > 0 && share < 0.5;
+}
+
+/* And begin again. */
+static void the_caller_may_stop_it(void **state)
+{
+    (void)state;
+    int calls = 0;
+    const progress w = {.show = go_on, .user = &calls};
+    bump *p = map_of(&(map_layout){.size = {1, 1}, .scale = 1});
+    assert_false(bump_prepare(p, &w));
+    BETWEEN(H, calls, 2 * H); /* of some 3 H rows of all levels */
+    assert_null(p->pyramid);
+    assert_true(bump_prepare(p, NULL));
+    assert_non_null(p->pyramid);
+    bump_free(p);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(bounds_of_maps),      cmocka_unit_test(bounds_far_away),
-        cmocka_unit_test(bounds_of_functions), cmocka_unit_test(bounds_of_mirrored_maps),
-        cmocka_unit_test(bounds_are_close),    cmocka_unit_test(any_rectangle),
-        cmocka_unit_test(bends_of_functions),  cmocka_unit_test(no_bends_of_maps_and_kinks),
+        cmocka_unit_test(bounds_of_maps),         cmocka_unit_test(bounds_far_away),
+        cmocka_unit_test(bounds_of_functions),    cmocka_unit_test(bounds_of_mirrored_maps),
+        cmocka_unit_test(bounds_are_close),       cmocka_unit_test(any_rectangle),
+        cmocka_unit_test(bends_of_functions),     cmocka_unit_test(no_bends_of_maps_and_kinks),
+        cmocka_unit_test(the_caller_may_stop_it),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -108,6 +108,24 @@ static void bounds_are_of_what_is_left(void **state)
     bump_free(p);
 }
 
+/* The caller ends it in its last third. */
+static bool go_on(void *user, const char *what, double share)
+{
+    assert_string_equal(what, "smoothing");
+    return ++*(int *)user > 0 && share < 0.7;
+}
+
+static void the_caller_may_stop_it(void **state)
+{
+    (void)state;
+    int calls = 0;
+    const progress w = {.show = go_on, .user = &calls};
+    heights h = map_of(MAP_REPEAT, false, 0, 0);
+    assert_false(heights_smooth(&h, 3, STEP, 1, &w));
+    BETWEEN(2 * HEIGHT / 2, calls, 2 * HEIGHT - 10);
+    memory_free(h.v);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -116,6 +134,7 @@ int main(void)
         cmocka_unit_test(slopes_come_back),
         cmocka_unit_test(threads_change_nothing),
         cmocka_unit_test(bounds_are_of_what_is_left),
+        cmocka_unit_test(the_caller_may_stop_it),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
