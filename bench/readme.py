@@ -85,8 +85,9 @@ def pixels_digest(path: Path) -> str:
 # Tables -------------------------------------------------------------------------------------------
 
 
-def table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
-    lines = ["| " + " | ".join(head) + " |", "|---" + "|---:" * (len(head) - 1) + "|"]
+def table(head: Sequence[str], rows: Sequence[Sequence[str]], other: str = "---:") -> str:
+    """The first column has words; `other`: how the others are aligned."""
+    lines = ["| " + " | ".join(head) + " |", "|---" + f"|{other}" * (len(head) - 1) + "|"]
     return "\n".join(lines + ["| " + " | ".join(row) + " |" for row in rows])
 
 
@@ -210,7 +211,7 @@ def claims_text(data: Kept) -> str:
     own = [textwrap.fill(f"- {claim['sentence']} Measured: {figures(claim)}.", 120, subsequent_indent="  ",
                          break_on_hyphens=False)
            for claim in held]
-    found = table([f"claim of [the paper]({PAPER})", "verdict"], rows)
+    found = table([f"claim of [the paper]({PAPER})", "verdict"], rows, "---")
     return "\n".join([found, "", "Of kage itself:", "", *own]) if own else found
 
 
@@ -222,7 +223,7 @@ def bounds_table(data: Kept) -> str:
     """What kage demands of itself, case by case."""
     rows = [[f"{claim['sentence']} {case['case']}", case["detail"], case["verdict"]]
             for claim in data["claims"] if claim["who"] == bounds.WHO for case in claim["cases"]]
-    return table(["bound", "figure", "verdict"], rows) if rows else NOT_YET
+    return table(["bound", "figure", "verdict"], rows, "---") if rows else NOT_YET
 
 
 # Where they are -----------------------------------------------------------------------------------

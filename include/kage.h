@@ -129,8 +129,8 @@ typedef struct kage_mesh_array {
  * is taken, but for triangles, which are counted when their file has been decoded. */
 typedef struct kage_limits {
     int64_t memory;  /* bytes that a scene, those that are changed from it, and their films may take together while the
-                      * call runs. What would take more is refused before it is taken, with KAGE_NO_MEMORY and the figure
-                      * that it needs. 0: 7/8 of the machine's memory; below 0: no limit */
+                      * call runs. What would take more is refused before it is taken, with KAGE_NO_MEMORY and the
+                      * figure that it needs. 0: 7/8 of the machine's memory; below 0: no limit */
     double seconds;  /* of the call, by the wall clock; then it ends as if it were cancelled, with KAGE_OUT_OF_TIME. 0:
                       * no limit */
     int64_t scene;   /* bytes of the scene's text */

@@ -157,7 +157,7 @@ static void print_stages(FILE *to, const kage_stats *t)
 
 static void print_stats(FILE *to, const kage_stats *t, double output)
 {
-    fprintf(to, "render    %9.2f ms  %8.2f ns a sample  %7.2f Mrays/s (camera and shadow)\n", t->seconds * 1e3,
+    fprintf(to, "render    %9.2f ms  %8.2f ns a sample  %7.2f Mrays/s (camera, shadow)\n", t->seconds * 1e3,
             t->seconds * 1e9 / (double)t->camera_rays, (double)(t->camera_rays + t->shadow_rays) / t->seconds / 1e6);
     print_stages(to, t);
     fprintf(to, "output    %9.2f ms\n", output * 1e3);

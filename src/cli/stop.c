@@ -6,6 +6,7 @@
 #include "cli/command.h"
 
 #include <math.h>
+#include <poll.h>
 #include <signal.h>
 #include <stdarg.h>
 #include <string.h>
@@ -18,6 +19,7 @@ static const int asks[SIGNALS] = {SIGINT, SIGTERM, SIGHUP, SIGXCPU};
 /* What is said at the end, ready to be written by a signal handler: one text is shown, the other one is prepared. */
 static struct {
     volatile sig_atomic_t signal, shown;
+    int ending; /* by end_now, in some thread */
     char text[2][TEXT];
     char name[64], what[32], outcome[TEXT / 2];
     int percent; /* below 0: not known */
@@ -40,12 +42,17 @@ static void end_now(void)
     const int signal = stop.signal;
     const struct sigaction usual = {.sa_handler = SIG_DFL};
     sigset_t open;
+    const struct itimerval never = {.it_value = {.tv_usec = 0}};
+    setitimer(ITIMER_REAL, &never, NULL);
+    const bool second = __atomic_exchange_n(&stop.ending, 1, __ATOMIC_SEQ_CST);
+    if (second) /* the alarm came to this thread while another one ends, and speaks; if it can't, this one ends */
+        poll(NULL, 0, PATIENCE / 1000);
     const char *text = stop.text[stop.shown];
     static const char over[] = "kage: the time of --max-seconds is over\n";
-    if (!stop.quiet && write(STDERR_FILENO, text, strlen(text)) < 0)
+    if (!second && !stop.quiet && write(STDERR_FILENO, text, strlen(text)) < 0)
         stop.quiet = true;   /* nobody listens */
     if (signal == SIGALRM) { /* of stop_after */
-        const ssize_t said = write(STDERR_FILENO, over, sizeof over - 1);
+        const ssize_t said = second ? 0 : write(STDERR_FILENO, over, sizeof over - 1);
         (void)said;
         _exit(EXIT_TIME);
     }

@@ -225,11 +225,26 @@ static bump *read_file(reader *r, node *at, const map_layout *l, map_note *note)
 }
 
 /* Scale, zero and sign have no defaults: without them samples are no heights. */
+static bool has_heights(reader *r, node *at)
+{
+    static const struct {
+        const char *key, *advice;
+    } needed[] = {{"scale", "the height of white above black in scene units, such as scale: 0.1"},
+                  {"zero", "the map's value whose height is 0, such as zero: 0.5"},
+                  {"sign", "up (higher values are higher) or down"}};
+    bool good = true;
+    for (size_t k = 0; k < sizeof needed / sizeof *needed; k++)
+        if (!yaml_get(at, needed[k].key))
+            good =
+                yaml_error(r->y, at, "a bump with a map lacks its '%s', expected %s", needed[k].key, needed[k].advice);
+    return good;
+}
+
 static bump *read_map(reader *r, node *at, const double u[2], const double w[2], map_note *note, bump_spec *spec)
 {
     map_layout l = {.size = {1, 1}};
     bool good = yaml_map(r->y, at, "a bump with a map", "map scale zero sign smooth size repeat offset wrap samples");
-    good = reader_need_all(r, at, "scale zero sign", "a bump with a map") && good;
+    good = has_heights(r, at) && good;
     good = reader_number(r, at, "scale", 0, false, BIG, "scene units for one unit of the map, 0 or more", &l.scale) &&
            good;
     good = reader_number(r, at, "zero", -BIG, false, BIG, "the map's value whose height is 0", &l.zero) && good;

@@ -22,7 +22,7 @@ needs_povray = pytest.mark.skipif(not shutil.which("povray"), reason="no povray"
 # What the programs print --------------------------------------------------------------------------
 
 KAGE_TEXT = """\
-render        88.67 ms     42.76 ns a sample    46.77 Mrays/s (camera and shadow)
+render        88.67 ms     42.76 ns a sample    46.77 Mrays/s (camera, shadow)
   camera       4.67 ms      2.25 ns a sample    5.3 %
   bump        16.53 ms    107.97 ns a sample   18.6 %
 output       122.55 ms

@@ -22,11 +22,11 @@ from bench.speed.rounds import Job, Results, launch, milliseconds, run
 from tests.conftest import PROGRAM, TOP
 
 KAGE_TEXT = """\
-render        88.67 ms     42.76 ns a sample    46.77 Mrays/s (camera and shadow)
+render        88.67 ms     42.76 ns a sample    46.77 Mrays/s (camera, shadow)
   bump        16.53 ms    107.97 ns a sample   18.6 %
 output       122.55 ms
 camera rays 2073600, shadow rays 2073599, height look-ups 1705798
-render        80.00 ms     42.76 ns a sample    46.77 Mrays/s (camera and shadow)
+render        80.00 ms     42.76 ns a sample    46.77 Mrays/s (camera, shadow)
   bump        17.00 ms    107.97 ns a sample   18.6 %
 output       130.00 ms
 """

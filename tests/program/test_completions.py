@@ -56,6 +56,8 @@ def complete(kage: Kage, *words: str) -> list[str]:
     (["render", "--shadow", "m"], ["+march:"]),
     (["render", "--shadow=a"], ["=--shadow=auto"]),
     (["render", "--bump-shadow", ""], ["=none", "+march:", "=horizon", "=exact"]),
+    (["check", "--limit", "expr"], ["+expression=", "+expression-nesting="]),
+    (["view", "--limit=si"], ["+--limit=side="]),
     (["render", "--layers", "color,or"], ["=color,order"]),
     (["render", ""], ["."]),
     (["render", "-o", ""], ["."]),

@@ -408,9 +408,12 @@ REPLACED = [
     ("map-exr-tiles", "file: map.png", "file: tiles.exr",
      "17:24: 'tiles.exr' can't be used: OpenEXR: the file is shorter than its table of chunks"),
     ("map-file-empty", "file: map.png", "file: ''", "17:25: nothing here, expected the file of a height map"),
-    ("map-no-scale", "scale: 0.1, ", "", "17:11: a bump with a map lacks its 'scale'"),
-    ("map-no-zero", "zero: 0.5, ", "", "17:11: a bump with a map lacks its 'zero'"),
-    ("map-no-sign", ", sign: up", "", "17:11: a bump with a map lacks its 'sign'"),
+    ("map-no-scale", "scale: 0.1, ", "", "17:11: a bump with a map lacks its 'scale', expected the "
+     "height of white above black in scene units, such as scale: 0.1"),
+    ("map-no-zero", "zero: 0.5, ", "", "17:11: a bump with a map lacks its 'zero', expected the "
+     "map's value whose height is 0, such as zero: 0.5"),
+    ("map-no-sign", ", sign: up", "", "17:11: a bump with a map lacks its 'sign', expected up (higher "
+     "values are higher) or down"),
     ("map-scale-negative", "scale: 0.1", "scale: -0.1",
      "17:41: -0.1 is less than 0, expected scene units for one unit of the map, 0 or more"),
     ("map-scale-huge", "scale: 0.1, zero: 0.5", "scale: 1e6, zero: 100",

@@ -244,7 +244,7 @@ def test_venv_is_made_once_and_again_when_the_requirements_change(machine: Machi
     script = project / "scripts" / "venv"
     first = machine.run(script, "python", "a b", "c")
     assert (first.returncode, first.stdout) == (0, "ran: a b c\n")
-    assert first.stderr == "venv: making .venv with the packages of requirements.txt\n"
+    assert first.stderr == "venv: making .venv with the packages of requirements.txt, which takes minutes\n"
     again = machine.run(script)
     assert (again.returncode, again.stdout, again.stderr) == (0, "", "")
     assert len(machine.calls("pip")) == 1

@@ -304,7 +304,8 @@ def lower_plane(lab: Lab, scene: Scene, r: Draw) -> str:
     made = one_rough_ground(scene, function, {"shadow": method, "shade": shade, "guard": r.often(0.5), "depth": 1})
     a, b = (lab.picture(other, "double") for other in (lowered(made, r.choice((0.05, -0.04, 0.2))), made))
     near = np.all([np.abs(planes[f"uw.{k}"]) < 2.5 for planes in (a, b) for k in "uw"], axis=0)
-    both = near & (a["height"] != 0) & (b["height"] != 0) & (a["order"] == b["order"])
+    as_asked = ["0", "1", "2", "2+", "iter", "march", "exact"].index(method.partition(":")[0])  # not a lower order
+    both = near & (a["height"] != 0) & (b["height"] != 0) & (a["order"] == as_asked) & (b["order"] == as_asked)
     if shade == "shifted":
         return complaint(a, b, [*COLOURS, "Z", "P", "N"], where=both)
     for planes in (a, b):
