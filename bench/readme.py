@@ -38,8 +38,8 @@ TABLE_METHODS = ("none", "0", "1", "2", "2+", "march:4", "auto", "exact")
 WHOLE_VARIANTS = ("none", "0", "march:8 shifted", "march:8 shifted, own 8", "auto shifted, own 8", "relief")
 AUTO_BESIDE = ("none", "0", "2", "march:8", "auto", "auto:1", "exact")
 PAPER = "https://doi.org/10.1007/BF01900827"
-MEDIANS = ("Medians; the bootstrap 95 % interval is in brackets. The % are of rounds that time both, one after the other: "
-           "on a busy\nmachine they are surer than the ns, and need not be their ratio.")
+MEDIANS = ("Medians; the bootstrap 95 % interval is in brackets. The % are of rounds that time both, one after the "
+           "other: on a busy\nmachine they are surer than the ns, and need not be their ratio.")
 NOT_YET = "Not measured yet: `make readme` measures it."
 DETAILS = tuple(method for method in METHODS if method != "displaced")
 
