@@ -38,6 +38,8 @@ TABLE_METHODS = ("none", "0", "1", "2", "2+", "march:4", "auto", "exact")
 WHOLE_VARIANTS = ("none", "0", "march:8 shifted", "march:8 shifted, own 8", "auto shifted, own 8", "relief")
 AUTO_BESIDE = ("none", "0", "2", "march:8", "auto", "auto:1", "exact")
 PAPER = "https://doi.org/10.1007/BF01900827"
+MEDIANS = ("Medians; the bootstrap 95 % interval is in brackets. The % are of rounds that time both, one after the "
+           "other: on a busy\nmachine they are surer than the ns, and need not be their ratio.")
 NOT_YET = "Not measured yet: `make readme` measures it."
 DETAILS = tuple(method for method in METHODS if method != "displaced")
 
@@ -196,7 +198,7 @@ def cost_table(data: Kept, methods: Sequence[str]) -> str:
     width, height = data["cost"]["size"]
     about = data["circumstances"]
     where = (f"{width} x {height} pixels on one thread of {about['processor'].partition(',')[0]}, {about['date']}, "
-             f"commit {about['commit']}.\nMedians; the bootstrap 95 % interval is in brackets.")
+             f"commit {about['commit']}.\n{MEDIANS}")
     head = ["figure 5's scene", "ns a pixel", f"% over {BUMP_ONLY}", f"instructions, % over {BUMP_ONLY}"]
     rows = cost_rows(data, methods) + peer_rows(data)
     return "\n\n".join([where, table(head, rows), textwrap.fill(FUSED_ABOUT, 120)])
