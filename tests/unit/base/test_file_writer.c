@@ -213,16 +213,17 @@ static void test_stale_files_are_removed(void **state)
     assert_true(unlink(".kage-2-0") == 0 && unlink(".kage-3-0") == 0);
 }
 
-/* What another process does just before a file is locked. The library's calls of flock come here. */
+/* What another process does just before a file is locked. The library's calls of flock come here; the parameters have
+ * the names of sys/file.h. */
 static void (*before_lock)(void);
 
-int flock(int fd, int how)
+int flock(int __fd, int __operation)
 {
     void (*const other)(void) = before_lock;
     before_lock = NULL;
     if (other)
         other();
-    return (int)syscall(SYS_flock, fd, how);
+    return (int)syscall(SYS_flock, __fd, __operation);
 }
 
 static void use_the_name_again(void)
