@@ -43,7 +43,11 @@ static interval multiply_value(const expr_ranges *r)
     return r->same ? interval_square(r->x[0]) : interval_multiply(r->x[0], r->x[1]);
 }
 
-static expr_gradient multiply_k_gradient(const expr_ranges *r) { return (expr_gradient){{interval_at(r->k)}}; }
+static expr_gradient multiply_k_gradient(const expr_ranges *r)
+{
+    return (expr_gradient){{interval_known(interval_at(r->k))}};
+}
+
 static expr_gradient multiply_gradient(const expr_ranges *r) { return (expr_gradient){{r->x[1], r->x[0]}}; }
 static expr_hessian multiply_hessian(const expr_ranges *r)
 {
@@ -57,9 +61,10 @@ const expr_op expr_multiply = OPERATION(multiply, 2, .run = jets_multiply, .curv
 
 /* ---- quotients ---- */
 
+/* a/0 has no value: of an infinite one, atan and tanh would be finite, on one side of the pole only. */
 KM_INLINE rule2 divide_at(double a, double b)
 {
-    double f = a / b, r = 1 / b;
+    double f = b == 0 ? KM_NAN : a / b, r = 1 / b;
     return (rule2){f, r, -f * r, 0, -r * r, 2 * f * r * r};
 }
 

@@ -123,11 +123,10 @@ interval interval_mod(interval a, interval b)
     return (interval){a.lo < 0 ? greater(a.lo, -n.hi) : 0, a.hi > 0 ? lesser(a.hi, n.hi) : 0};
 }
 
-/* a^b for a >= 0: it is monotonic in a and in b, so the extremes are at corners. Of -0 odd powers would be negative. */
+/* a^b for a >= 0: it is monotonic in a and in b, so the extremes are at corners. */
 static interval positive_power(interval a, interval b)
 {
-    const double lo = fabs(a.lo), hi = fabs(a.hi);
-    return not_negative(corners(km_pow(lo, b.lo), km_pow(lo, b.hi), km_pow(hi, b.lo), km_pow(hi, b.hi)));
+    return not_negative(corners(km_pow(a.lo, b.lo), km_pow(a.lo, b.hi), km_pow(a.hi, b.lo), km_pow(a.hi, b.hi)));
 }
 
 static interval power(interval a, interval b)

@@ -17,8 +17,8 @@
  * Beyond 1.6e6 the trigonometric functions lose accuracy gradually, in absolute terms about an ulp of x; from
  * 2^45 on, where neighbouring numbers are 2^-7 apart and more, they answer as for 0. sin and cos stay within
  * [-1, 1] for any finite x and are NaN at infinity. Exceptional arguments of all functions give what annex F
- * of C99 says, up to the sign of a zero; but powers of -infinity that are not whole are NaN, as those of all numbers
- * below 0 are.
+ * of C99 says, up to the sign of a zero, which does not count in a base of km_pow; but powers of -infinity that are
+ * not whole are NaN, as those of all numbers below 0 are.
  *
  * Polynomial and rational coefficients: fdlibm 5.3 (Sun Microsystems, 1993) for sin, cos, asin, exp and
  * log; Cephes 2.8 (S. L. Moshier) for atan.
@@ -404,8 +404,7 @@ KM_INLINE double km_pow(double x, double y)
     r = a < KM_INF ? r : grow;
     r = a == 1 ? 1 : r;
     int integer = km_floor(y) == y, odd = integer && km_floor(0.5 * y) != 0.5 * y;
-    int negative = km_copysign(1, x) < 0;
-    r = negative && odd ? -r : r;
+    r = x < 0 && odd ? -r : r;
     r = x < 0 && !integer ? KM_NAN : r;
     r = x != x || y != y ? KM_NAN : r;
     r = y == 1 ? x : r;

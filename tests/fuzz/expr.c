@@ -32,7 +32,8 @@ static void check_bounds(const expr *e, const double u[2], const double w[2])
     HOLDS(memcmp(&b, &also, sizeof b) == 0, "bounds with and without second partials differ");
     HOLDS(b.v[0] <= b.v[1] && b.u[0] <= b.u[1] && b.w[0] <= b.w[1], "bounds %g..%g, %g..%g, %g..%g", b.v[0], b.v[1],
           b.u[0], b.u[1], b.w[0], b.w[1]);
-    HOLDS(h.uu[0] <= h.uu[1] && h.uw[0] <= h.uw[1] && h.ww[0] <= h.ww[1], "second bounds");
+    HOLDS(h.uu[0] <= h.uu[1] && h.uw[0] <= h.uw[1] && h.ww[0] <= h.ww[1], "second bounds %g..%g, %g..%g, %g..%g",
+          h.uu[0], h.uu[1], h.uw[0], h.uw[1], h.ww[0], h.ww[1]);
     double x[PLACES * PLACES], y[PLACES * PLACES];
     for (int k = 0; k < PLACES * PLACES; k++) {
         x[k] = place_in(u, share[k % PLACES]);
