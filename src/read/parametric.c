@@ -23,6 +23,8 @@ static bool read_end(reader *r, node *at, double *x)
     expr_eval(e, 2, u, w, 0, &z);
     expr_free(e);
     *x = z.v[0];
+    if (isnan(z.v[0]) && isnan(z.v[1]))
+        return yaml_error(r->y, at, "an end of a range without a value, expected -1000000 to 1000000");
     if (z.v[0] != z.v[1])
         return yaml_error(r->y, at, "an end of a range with u or w in it, expected a number or such as 2*pi");
     if (!(fabs(*x) <= BIG))

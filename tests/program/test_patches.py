@@ -34,7 +34,8 @@ WRONG = [
     ("u: [-1, 1]", "u: 3", "a single value, expected the range [from, to]"),
     ("u: [-1, 1]", "u: [1, -1]", "a range from 1 to -1, expected the second end above the first"),
     ("u: [-1, 1]", "u: [w, 1]", "an end of a range with u or w in it, expected a number or such as 2*pi"),
-    ("u: [-1, 1]", "u: [-1, 1/0]", "the range ends at inf, expected -1000000 to 1000000"),
+    ("u: [-1, 1]", "u: [-1, 1/0]", "an end of a range without a value, expected -1000000 to 1000000"),
+    ("u: [-1, 1]", "u: [-1, exp(999)]", "the range ends at inf, expected -1000000 to 1000000"),
     ("u: [-1, 1]", "v: [-1, 1]", "parametric has no 'v', did you mean 'u'?"),
     ('z: "w"', 'z: "1/w"',
      "11:17: the surface has no bounds, or is all in one place; expected x, y and z that are finite, and not all "
