@@ -112,7 +112,7 @@ def renders(process: subprocess.Popen[str]) -> None:
     (["render", CUBE, "--size", "1200x900", "--aa", "8", "-o", "gone/a.png"], renders),
     (["render", CUBE, "--size", "2000x1500", "-o", "gone/a.exr"], writes),
     (["render", CUBE, "--size", "1000x700", "--aa", "6", "--resume", "-o", "gone/a.exr"], renders),
-    (["pov", CUBE, "--set", "render.surface=displaced", "--size", "100x75", "-o", "gone/a.pov"], writes),
+    (["pov", CUBE, "--set", "render.surface=displaced", "--size", "400x300", "-o", "gone/a.pov"], writes),
 ], ids=["png", "exr", "resume", "pov"])
 def test_a_folder_that_goes_away(kage: Kage, command: list[object],
                                  begun: Callable[[subprocess.Popen[str]], None]) -> None:
@@ -165,7 +165,7 @@ def test_two_at_once(kage: Kage, name: str) -> None:
 
 def test_one_that_is_at_it_refuses_the_other(kage: Kage) -> None:
     """Only an unfinished picture has a name that both would write to."""
-    command = ["render", CUBE, "--size", "1000x700", "--resume", "-o", "a.exr"]
+    command = ["render", CUBE, "--size", "1000x700", "--aa", "6", "--resume", "-o", "a.exr"]
     process = start([PROGRAM, *command], cwd=kage.folder, stderr=subprocess.PIPE, text=True)
     wait_until(process, lambda: (kage.folder / "a.exr.part").exists() and cpu_seconds(process.pid) > 0.05)
     done = kage(*command)
