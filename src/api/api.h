@@ -17,10 +17,11 @@ typedef struct c_locale {
 c_locale c_locale_begin(void);
 void c_locale_end(c_locale *l);
 
-/* The memory that a scene's family and their films take, and its limit. */
+/* What a scene and its films may take: memory, which its family shares, and what is read. */
 typedef struct allowance {
     budget *budget; /* owned */
     int64_t most;   /* bytes; 0: no limit */
+    limits limits;
 } allowance;
 
 /* A call: the caller's progress callback and limits. Once the callback has cancelled, or the time is over, all later
@@ -30,11 +31,13 @@ typedef struct watch {
     void *user;
     const c_locale *locale; /* the callback runs in locale->before */
     memory memory;
-    double end; /* the clock's time when the call has to end; 0: never */
+    limits limits; /* the caller's own, where it has no scene */
+    double end;    /* the clock's time when the call has to end; 0: never */
     bool cancelled, late;
 } watch;
 
-/* limits: the caller's, or NULL. from: whose memory is taken; NULL: it is not counted. *w must stay where it is. */
+/* limits: the caller's, or NULL. from: whose memory is taken, and whose limits of input hold; NULL: memory is not
+ * counted, and the caller's hold. *w and *from must stay where they are. */
 progress watch_begin(watch *w, kage_progress *call, void *user, const c_locale *l, const kage_limits *limits,
                      const allowance *from);
 
@@ -73,8 +76,7 @@ struct kage_scene {
     /* what a further reading needs; owned */
     char *folder, *model_reader, **set;
     int sets, threads;
-    allowance memory;
-    limits limits;  /* of what it reads */
+    allowance allowed;
     bool from_file; /* first->path is a file's */
     arrays arrays;
     shelf spare; /* of the scene that it is a change of: what its further readings had made */
@@ -111,7 +113,7 @@ enum { PICTURE_TEXTS = 7, PICTURE_CROP_SIZE = 64 };
 
 struct kage_film {
     film *film;
-    allowance memory;
+    allowance allowed;
     char crop[PICTURE_CROP_SIZE]; /* as a file says it: the part that is on the film */
     char *file, *source, *sets; /* for a picture's metadata: the scene's base name, its text, its changes, one a line */
     char method[METHOD_NAME_SIZE];

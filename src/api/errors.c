@@ -159,7 +159,9 @@ progress watch_begin(watch *w, kage_progress *call, void *user, const c_locale *
     *w = (watch){.call = call, .user = user, .locale = locale};
     if (from)
         w->memory = (memory){.from = from->budget, .limit = own ? limits_memory(l) : from->most};
+    else
+        limits_take(&w->limits, l);
     if (l && l->seconds > 0)
         w->end = clock_seconds() + l->seconds;
-    return (progress){.show = show, .user = w, .memory = &w->memory};
+    return (progress){show, w, &w->memory, from ? &from->limits : &w->limits};
 }

@@ -99,7 +99,7 @@ void kage_film_free(kage_film *f)
     free(f->source);
     free(f->sets);
     free(f->stages);
-    budget_close(f->memory.budget);
+    budget_close(f->allowed.budget);
     free(f);
 }
 

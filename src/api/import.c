@@ -286,10 +286,7 @@ kage_status kage_model_import(const char *model, const char *file, const kage_im
     errors e = {0};
     c_locale l = c_locale_begin();
     watch w;
-    progress p = watch_begin(&w, o.progress, o.user, &l, o.limits, NULL);
-    limits within = {0};
-    limits_take(&within, o.limits);
-    p.limits = &within;
+    const progress p = watch_begin(&w, o.progress, o.user, &l, o.limits, NULL);
     struct import_report *r = calloc(1, sizeof *r);
     const bool good = !limits_are_good(o.limits, &e) ? false
                       : r                            ? make(r, model, file, &o, &p, &e)

@@ -103,7 +103,7 @@ static bool copy(const band *b, int count, const image_form *form, image_writer 
     bool good = true;
     for (int k = 0; good && k < count; k++) {
         progress_part part = {p, NULL, (double)k / count, (k + 1.0) / count};
-        const progress show = {progress_part_show, &part, p->memory, p->limits};
+        const progress show = progress_of_part(&part);
         exr_band *file = exr_band_open(b[k].path, e);
         band now = {b[k].path, {0, 0, 0, 0}};
         good = file && read_part(exr_band_form(file), &now, e) &&

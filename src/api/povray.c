@@ -13,7 +13,7 @@ kage_status kage_scene_write_povray(kage_scene *k, const char *path, const kage_
     kage_status status = KAGE_BAD_INPUT;
     c_locale l = c_locale_begin();
     watch w;
-    const progress show = watch_begin(&w, o.progress, o.user, &l, o.limits, &k->memory);
+    const progress show = watch_begin(&w, o.progress, o.user, &l, o.limits, &k->allowed);
     const scene *s = scene_reading(k, (reading){displaced, k->first->shadow, k->first->bump_shadow}, &show, &e);
     bool good = limits_are_good(o.limits, &e) && s && pov_possible(s, &e);
     if (good) {

@@ -134,7 +134,7 @@ kage_status kage_scene_probe(kage_scene *k, int x, int y, kage_probe **out, kage
     if (x < 0 || y < 0 || x >= s->width || y >= s->height)
         return error_give(KAGE_BAD_OPTION, to, "pixel %d,%d: the picture is %d x %d pixels, expected 0,0 to %d,%d", x,
                           y, s->width, s->height, s->width - 1, s->height - 1);
-    memory m = {.from = k->memory.budget, .limit = k->memory.most};
+    memory m = {.from = k->allowed.budget, .limit = k->allowed.most};
     char words[MEMORY_WORDS];
     block *b = calloc(1, sizeof *b + (size_t)(s->lights * ROWS) * sizeof *b->visible);
     workspace *v = b ? workspace_new(&(tracer){.scene = s}, &m) : NULL;

@@ -168,7 +168,7 @@ static kage_film *new_film(const kage_scene *k, const kage_render_options *o, co
         f->stages = calloc(STAGES, sizeof *f->stages);
         method_name(j->view.shadow, f->method);
         f->guard = j->view.guard;
-        f->memory = (allowance){budget_share(k->memory.budget), k->memory.most};
+        f->allowed = (allowance){.budget = budget_share(k->allowed.budget), .most = k->allowed.most};
     }
     if (!f || !f->file || !f->source || !f->sets || !f->stages)
         errors_add(e, "out of memory");
@@ -200,7 +200,7 @@ static void set_stats(kage_film *f, const stats *t, double seconds)
         .orders = f->orders,
         .undefined = t->undefined,
         .undefined_object = t->undefined_object - 1,
-        .memory = budget_peak(f->memory.budget),
+        .memory = budget_peak(f->allowed.budget),
     };
 }
 
@@ -246,7 +246,7 @@ kage_status kage_render(kage_scene *k, const kage_render_options *given, kage_fi
     double seconds = 0;
     c_locale l = c_locale_begin();
     watch w;
-    const progress p = watch_begin(&w, o.progress, o.user, &l, o.limits, &k->memory);
+    const progress p = watch_begin(&w, o.progress, o.user, &l, o.limits, &k->allowed);
     kage_status status = settle(k, &o, &j, &p, &e);
     if (status == KAGE_OK && !fits_film(j.part, &e))
         status = KAGE_BAD_OPTION;
@@ -292,8 +292,7 @@ static bool fill_bands(kage_film *f, const job *j, const kage_render_options *o,
         next = part.y1 - y < rows ? part.y1 : y + rows;
         const double from = (y - part.y0) / all, end = (next - part.y0) / all, half = (from + end) / 2;
         progress_part first = {p, "rendering", from, half}, second = {p, "rendering", half, end};
-        const progress rendering = {progress_part_show, &first, p->memory, p->limits},
-                       writing = {progress_part_show, &second, p->memory, p->limits};
+        const progress rendering = progress_of_part(&first), writing = progress_of_part(&second);
         film_move(f->film, y, next);
         good = fill(f, j, o, &rendering, &t, &seconds, e) && picture_add(to, f->film, &writing);
     }
@@ -319,7 +318,7 @@ kage_status kage_render_file(kage_scene *k, const kage_render_options *given, co
     picture file;
     c_locale l = c_locale_begin();
     watch w;
-    const progress p = watch_begin(&w, o.progress, o.user, &l, o.limits, &k->memory);
+    const progress p = watch_begin(&w, o.progress, o.user, &l, o.limits, &k->allowed);
     kage_status status = settle(k, &o, &j, &p, &e);
     if (status == KAGE_OK && (write.band < 0 || write.band % IMAGE_ROWS != 0)) {
         errors_add(&e, "a band of %d rows, expected a multiple of %d", write.band, IMAGE_ROWS);

@@ -53,12 +53,12 @@ static kage_scene *new_scene(const kage_scene *before, const kage_limits *l)
         free(k);
         return NULL;
     }
-    k->memory.budget = before ? budget_share(before->memory.budget) : budget_open();
-    k->memory.most = before && !(l && l->memory) ? before->memory.most : limits_memory(l);
+    k->allowed.budget = before ? budget_share(before->allowed.budget) : budget_open();
+    k->allowed.most = before && !(l && l->memory) ? before->allowed.most : limits_memory(l);
     if (before)
-        k->limits = before->limits;
-    limits_take(&k->limits, l);
-    if (k->memory.budget)
+        k->allowed.limits = before->allowed.limits;
+    limits_take(&k->allowed.limits, l);
+    if (k->allowed.budget)
         return k;
     pthread_mutex_destroy(&k->lock);
     free(k);
@@ -142,8 +142,7 @@ static kage_status load(kage_scene *before, scene_source *from, const kage_load_
     c_locale l = c_locale_begin();
     watch w;
     kage_scene *k = new_scene(before, o.limits);
-    progress p = watch_begin(&w, o.progress, o.user, &l, o.limits, k ? &k->memory : NULL);
-    p.limits = k ? &k->limits : NULL;
+    const progress p = watch_begin(&w, o.progress, o.user, &l, o.limits, k ? &k->allowed : NULL);
     from->progress = &p;
     const bool good = k && read_first(k, before, from, &o, &e) && !watch_stopped(&w) && scene_describe(k);
     c_locale_end(&l);
@@ -194,7 +193,7 @@ void kage_scene_free(kage_scene *k)
     free(k->model_reader);
     arrays_free(&k->arrays);
     shelf_free(&k->spare);
-    budget_close(k->memory.budget);
+    budget_close(k->allowed.budget);
     pthread_mutex_destroy(&k->lock);
     free(k);
 }
@@ -217,8 +216,6 @@ static scene *read_again(kage_scene *k, reading r, const progress *p, errors *e)
         set[i] = k->set[i];
     memcpy(set + k->sets, more, sizeof more);
     const shelf *all[SHELVES];
-    progress within = p ? *p : (progress){0};
-    within.limits = &k->limits;
     const scene_source from = {
         .path = k->first->path,
         .text = k->first->source,
@@ -228,7 +225,7 @@ static scene *read_again(kage_scene *k, reading r, const progress *p, errors *e)
         .set = set,
         .threads = k->threads,
         .model_reader = k->model_reader,
-        .progress = &within,
+        .progress = p,
         .arrays = &k->arrays,
         .shelves = shelves_of(k, all),
         .shelf = all,

@@ -214,7 +214,7 @@ static kage_survey *report(const kage_scene *k, seen *all)
 kage_status kage_scene_survey(kage_scene *k, kage_survey **out, kage_errors **to)
 {
     const scene *s = k->first;
-    memory m = {.from = k->memory.budget, .limit = k->memory.most};
+    memory m = {.from = k->allowed.budget, .limit = k->allowed.most};
     char words[MEMORY_WORDS];
     workspace *v = workspace_new(&(tracer){.scene = s}, &m);
     seen *all = calloc((size_t)s->objects + 1, sizeof *all);

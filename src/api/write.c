@@ -143,7 +143,7 @@ kage_status kage_film_write(const kage_film *f, const char *path, const kage_wri
     errors e = {0};
     c_locale l = c_locale_begin();
     watch w;
-    const progress show = watch_begin(&w, o.progress, o.user, &l, o.limits, &f->memory);
+    const progress show = watch_begin(&w, o.progress, o.user, &l, o.limits, &f->allowed);
     picture p;
     kage_status status = picture_begin(&p, f, f->film->part, path, &o, &e);
     if (status == KAGE_OK) {

@@ -22,10 +22,11 @@ typedef struct progress {
 /* For memory_new. w may be NULL. */
 static inline memory *progress_memory(const progress *w) { return w ? w->memory : NULL; }
 
-/* As limit_of; w may be NULL. */
+/* For limit_of; w may be NULL. And the limit that holds. */
+static inline const limits *progress_limits(const progress *w) { return w ? w->limits : NULL; }
 static inline cap progress_limit(const progress *w, limit_kind kind, int64_t built_in)
 {
-    return limit_of(w ? w->limits : NULL, kind, built_in);
+    return limit_of(progress_limits(w), kind, built_in);
 }
 
 /* False: stop. w may be NULL. */
@@ -41,11 +42,17 @@ typedef struct progress_part {
     double from, to;
 } progress_part;
 
-/* For progress.show, with a progress_part as the user. */
+/* progress.show, with a progress_part as the user. */
 static inline bool progress_part_show(void *user, const char *what, double share)
 {
     const progress_part *p = (const progress_part *)user;
     return progress_show(p->whole, p->what ? p->what : what, p->from + (p->to - p->from) * share);
+}
+
+/* What the part gets. *p must stay where it is. */
+static inline progress progress_of_part(progress_part *p)
+{
+    return (progress){progress_part_show, p, progress_memory(p->whole), progress_limits(p->whole)};
 }
 
 #endif

@@ -31,8 +31,8 @@ expr *expr_parse(const char *text, expr_error *error);
 expr *expr_parse_within(const limits *l, const char *text, expr_error *error);
 
 /* Evaluate at n <= EXPR_BATCH points (u[i], w[i]). Order 0 writes out->v, order 1 also u and w, order 2 also uu, uw
- * and ww. Reentrant; allocates nothing. Outside a function's domain (log of a negative number) the result is NaN or
- * infinite, as in C. */
+ * and ww. Reentrant; allocates nothing. Outside a function's domain (log of a negative number, a/0) the result is
+ * NaN or infinite. */
 void expr_eval(const expr *e, int n, const double *u, const double *w, int order, expr_jets *out);
 
 /* Lower and upper bounds of the value and of the first partials. */

@@ -32,9 +32,10 @@ bool mesh_refuse_memory(const progress *w, char why[MESH_WHY])
 bool mesh_count_is_good(int triangles, const progress *w, char why[MESH_WHY])
 {
     const cap most = progress_limit(w, LIMIT_TRIANGLES, MESH_MOST);
-    if (triangles < 1 || triangles > most.most)
-        snprintf(why, MESH_WHY, "%d triangles, expected 1 to %d%s", triangles, (int)most.most, most.by);
-    return triangles >= 1 && triangles <= most.most;
+    if (triangles >= 1 && triangles <= most.most)
+        return true;
+    snprintf(why, MESH_WHY, "%d triangles, expected 1 to %d%s", triangles, (int)most.most, most.by);
+    return false;
 }
 
 bool mesh_array_read(const mesh_array *a, const progress *w, mesh_data *out, char why[MESH_WHY])

@@ -28,9 +28,9 @@ scene *scene_read(const scene_source *from, errors *e)
 {
     reader r = {.e = e, .from = from, .s = calloc(1, sizeof *r.s)};
     int before = e->count;
-    r.y =
-        r.s ? yaml_open(from->path, from->text, from->size, from->sets, from->set, "image render", reader_limits(&r), e)
-            : NULL;
+    r.y = r.s ? yaml_open(from->path, from->text, from->size, from->sets, from->set, "image render",
+                          progress_limits(from->progress), e)
+              : NULL;
     if (r.y) {
         r.s->path = reader_copy(&r, from->path);
         if (!from->text && !files_add_path(&r.s->made_from, from->path))

@@ -214,7 +214,7 @@ expr *reader_expr(reader *r, node *at, const char *what)
 {
     expr_error wrong;
     const char *text = yaml_text(r->y, at, what);
-    expr *e = text ? expr_parse_within(reader_limits(r), text, &wrong) : NULL;
+    expr *e = text ? expr_parse_within(progress_limits(r->from->progress), text, &wrong) : NULL;
     if (text && !e)
         yaml_error_in(r->y, at, wrong.offset, "%s", wrong.message);
     return e;

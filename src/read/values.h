@@ -40,14 +40,10 @@ void *reader_made(reader *r, void *p);
 /* Where this scene's memory is from. */
 static inline memory *reader_memory(const reader *r) { return progress_memory(r->from->progress); }
 
-/* The caller's limits, or NULL; and the one that holds. */
-static inline const limits *reader_limits(const reader *r)
-{
-    return r->from->progress ? r->from->progress->limits : NULL;
-}
+/* The limit that holds. */
 static inline cap reader_limit(const reader *r, limit_kind kind, int64_t built_in)
 {
-    return limit_of(reader_limits(r), kind, built_in);
+    return progress_limit(r->from->progress, kind, built_in);
 }
 
 /* A copy of the text, owned by the caller. NULL: the text is NULL, or there is an error. */
