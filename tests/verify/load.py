@@ -29,9 +29,10 @@ SUITES = (["make", "-j2", "BOOTSTRAP=no", "unit-tests", "REAL=float"],
 
 @contextmanager
 def busy() -> Iterator[None]:
-    """Other work on the machine: as many busy loops as processors, one that fills memory, one that writes files."""
-    stress = subprocess.Popen(["stress-ng", "--quiet", "--cpu", "0", "--vm", "1", "--vm-bytes", "256M", "--hdd", "1",
-                               "--hdd-bytes", "64M", "--temp-path", str(record.KEPT)])
+    """Other work on the machine, in bursts: a loop a processor, one that fills memory, one that writes files."""
+    stress = subprocess.Popen(["stress-ng", "--quiet", "--cpu", "0", "--cpu-load", "50", "--vm", "1", "--vm-bytes",
+                               "256M", "--vm-hang", "1", "--hdd", "1", "--hdd-bytes", "64M", "--temp-path",
+                               str(record.KEPT)])
     try:
         yield
     finally:
