@@ -34,7 +34,8 @@ import signal
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -110,16 +111,38 @@ def own_shots(scene: Checked, scale: int = 1) -> tuple[Shot, ...]:
 # The commands of kage and POV-Ray -------------------------------------------------------------------
 
 
-def run(command: Sequence[str | Path]) -> str:
-    """What the command prints, on both streams."""
+@contextmanager
+def late_signals() -> Iterator[None]:
+    """SIGINT and SIGTERM interrupt at the end of the block, not within."""
+    came: list[int] = []
+    before = {number: signal.signal(number, lambda number, _: came.append(number))
+              for number in (signal.SIGINT, signal.SIGTERM)}
     try:
-        done = subprocess.run(command, cwd=TOP, env=os.environ | {"LC_ALL": "C"}, stdin=subprocess.DEVNULL, check=False,
-                              capture_output=True, text=True, errors="replace")
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+    if came:
+        raise KeyboardInterrupt
+
+
+def run(command: Sequence[str | Path]) -> str:
+    """What the command prints, on both streams. It is killed where this is interrupted."""
+    process = None
+    try:
+        with late_signals():  # one that came while Popen is at work would leave a process that nobody knows
+            process = subprocess.Popen(command, cwd=TOP, env=os.environ | {"LC_ALL": "C"}, stdin=subprocess.DEVNULL,
+                                       stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, errors="replace")
+        text = "".join(process.communicate())
     except OSError as error:
         raise ReferenceError(f"{command[0]}: {error.strerror}") from error
-    text = done.stdout + done.stderr
-    if done.returncode:
-        how = f"killed by signal {-done.returncode}" if done.returncode < 0 else f"status {done.returncode}"
+    finally:
+        if process and process.poll() is None:
+            process.kill()
+            process.wait()
+    status = process.returncode
+    if status:
+        how = f"killed by signal {-status}" if status < 0 else f"status {status}"
         raise ReferenceError(f"{shlex.join(map(str, command))}: {how}\n{text[-1500:].strip()}")
     return text
 

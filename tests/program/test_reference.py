@@ -16,6 +16,7 @@ import sys
 import time
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 import numpy as np
 import pytest
@@ -361,6 +362,24 @@ def test_interrupted(studio: Studio, how: signal.Signals) -> None:
     assert err == "render.py: interrupted; what is not made stays stale\n"
     assert not studio.files()
     assert not runs(int(pid.read_text()))
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_interrupted_while_povray_starts(monkeypatch: pytest.MonkeyPatch, number: signal.Signals) -> None:
+    """The process is there, and Popen has not returned: on a busy machine the signal came then, and POV-Ray went on."""
+    started: list[int] = []
+
+    class Slow(subprocess.Popen):  # type: ignore[type-arg]
+        def __init__(self, *arguments: Any, **options: Any) -> None:
+            super().__init__(*arguments, **options)
+            started.append(self.pid)
+            signal.raise_signal(number)
+
+    monkeypatch.setattr(subprocess, "Popen", Slow)
+    with pytest.raises(KeyboardInterrupt):
+        render.run(["sleep", "60"])
+    monkeypatch.undo()
+    assert len(started) == 1 and not runs(started[0])
 
 
 def test_usage(capsys: pytest.CaptureFixture[str]) -> None:
