@@ -18,6 +18,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
+import dask
 import pytest
 from distributed import Client, LocalCluster
 
@@ -204,6 +205,15 @@ def test_killed_workers_lose_nothing_and_nothing_is_done_twice(client: Client, t
     assert sum(began.values()) - count <= kills  # again only what was being rendered
     for name, record in done.records.items():
         assert records.find(tmp_path / "a", name, record.identity) == record
+
+
+def test_a_worker_may_be_slow_to_come_back() -> None:
+    """On a busy machine its start took more than the 15 s of Dask, which then gave it up: the sweep waited for ever."""
+    with dask.config.set({"distributed.deploy.lost-worker-timeout": "0.1 s"}), cluster(workers=1) as client:
+        pid = client.submit(os.getpid, pure=False).result(timeout=LONG)
+        os.kill(pid, signal.SIGKILL)
+        # One that is given up may come back for a moment, so this takes longer.
+        client.submit(time.sleep, 3).result(timeout=LONG)
 
 
 # The command ----------------------------------------------------------------------------------------

@@ -21,6 +21,7 @@ from tests.verify import record
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+TOO_LONG = 3 * 3600  # seconds: something waits for ever
 FAILED = re.compile(r"^(?:FAILED|ERROR) (\S+)|^  FAILED  (\S+)", re.MULTILINE)
 SUITES = (["make", "-j2", "BOOTSTRAP=no", "unit-tests", "REAL=float"],
           ["make", "-j2", "BOOTSTRAP=no", "unit-tests", "REAL=double"],
@@ -42,7 +43,11 @@ def busy() -> Iterator[None]:
 
 def run(suite: list[str]) -> list[str]:
     """The tests that failed."""
-    done = subprocess.run(suite, cwd=record.TOP, capture_output=True, text=True, env={**os.environ, "CI": "1"})
+    try:
+        done = subprocess.run(suite, cwd=record.TOP, capture_output=True, text=True, env={**os.environ, "CI": "1"},
+                              timeout=TOO_LONG)
+    except subprocess.TimeoutExpired as ended:
+        return [f"{' '.join(suite)} took more than {ended.timeout} s"]
     found = [a or b for a, b in FAILED.findall(done.stdout)]
     if done.returncode and not found:
         print(done.stdout[-4000:], done.stderr[-4000:], sep="\n")

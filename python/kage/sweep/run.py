@@ -32,6 +32,9 @@ AHEAD, LEAST = 20, 200
 #: How many workers may die over a task before Dask gives it up (of a cluster that is started here; else 3 is usual),
 #: and how often that may be. Then it is likely the task that kills them.
 DEATHS, ROUNDS = 10, 3
+#: How long a worker that died may take to be there again (of a cluster that is started here). By default Dask gives it
+#: up for ever after 15 s, which a busy machine may need to start one.
+RETURN = "1 day"
 #: Seconds after which a result is asked for again. Where a worker dies in the middle of giving it, Dask may wait for
 #: ever.
 PATIENCE = 30
@@ -66,7 +69,8 @@ def cluster(scheduler: str | None = None, workers: int | None = None,
             raise SweepError(f"{scheduler}: no scheduler answers: {error}", 1) from error
         return
     count = workers or len(os.sched_getaffinity(0))
-    with dask.config.set({"distributed.scheduler.allowed-failures": DEATHS}), LocalCluster(
+    with dask.config.set({"distributed.scheduler.allowed-failures": DEATHS,
+                          "distributed.deploy.lost-worker-timeout": RETURN}), LocalCluster(
         n_workers=count, threads_per_worker=1, processes=True, dashboard_address=":0", silence_logs=SILENT,
         preload="kage.sweep.quiet",
     ) as local, Client(local, set_as_default=False) as client:
