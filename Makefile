@@ -110,7 +110,7 @@ TIDY      = $(filter-out bench/limits/% $(if $(filter yes,$(VIEW)),,src/view/%),
 
 .PHONY: all render bench speed readme reference accept counts test unit-tests program-tests programs sanitize format
 .PHONY: dist docs manuals lint tidy same python wheel install install-files uninstall clean help bootstrap FORCE
-.PHONY: fuzz fuzz-program fuzz-replay verify
+.PHONY: fuzz fuzz-program fuzz-replay verify tested-programs
 all: bootstrap
 	@$(MAKE) --no-print-directory $(JOBS) programs
 
@@ -387,9 +387,12 @@ unit-tests: $(UNITS:%=$(BUILD)/%)
 $(UNITS:%=run-%): run-%: $(BUILD)/% $(BUILD)/kage-import
 	@KAGE_IMPORT=$(BUILD)/kage-import $< >$<.log 2>&1 && echo '  OK  $<' || { cat $<.log; echo '  FAILED  $<'; exit 1; }
 
-program-tests: programs python $(BUILD)/fuzz/replay
-	@$(MAKE) --no-print-directory $(JOBS) REAL=double build/double/kage python
+program-tests: tested-programs
 	scripts/venv python -m pytest -q -n auto --dist loadfile tests # a file's tests share what they make
+
+# All that the tests in Python need.
+tested-programs: programs python $(BUILD)/fuzz/replay
+	@$(MAKE) --no-print-directory $(JOBS) REAL=double build/double/kage python
 
 # What POV-Ray, valgrind or a Python package would tell is left out where they are missing and can't be installed.
 bench: all

@@ -250,9 +250,11 @@ def trial(r: random.Random) -> tuple[Scene, dict[str, Any], bool]:
         "aa": r.choice((1, 1, 2)),
         "self_shadow": r.random() < 0.8,
     }
-    if any(steep in bump["function"] for steep in ("e6", "e20", "e30")):  # a ray of a displaced patch takes its limit
+    steep = any(power in bump["function"] for power in ("e6", "e20", "e30"))  # a ray of a patch takes its limit
+    truly = options["surface"] == "displaced"
+    if steep or (truly and scene["render"]["depth"] == 8):  # a clear mirror doubles the rays at each depth
         scene["image"]["size"], options["aa"] = [8, 6], 1
-    if options["surface"] == "displaced":  # the two rays of clear mirrors, doubled eight times, take minutes
+    if steep and truly:
         scene["render"]["depth"] = min(scene["render"]["depth"], 3)
     return scene, options, without
 
