@@ -255,7 +255,7 @@ def trial(r: random.Random) -> tuple[Scene, dict[str, Any], bool]:
     if steep or (truly and scene["render"]["depth"] == 8):  # a clear mirror doubles the rays at each depth
         scene["image"]["size"], options["aa"] = [8, 6], 1
     if steep and truly:
-        scene["render"]["depth"] = min(scene["render"]["depth"], 3)
+        scene["render"]["depth"] = min(scene["render"]["depth"], 2)
     return scene, options, without
 
 
