@@ -1,4 +1,7 @@
-"""The table of docs/reliability.md, from what the long checks have recorded: python -m tests.verify.table [--write]."""
+"""The table of docs/reliability.md: python -m tests.verify.table [--write].
+
+A row is what a check has recorded here; of one that has not run here it stays as it is.
+"""
 
 from __future__ import annotations
 
@@ -10,6 +13,7 @@ from tests.verify import record
 
 PAGE = record.TOP / "docs" / "reliability.md"
 MARKED = re.compile(r"(?<=<!-- verify -->\n).*?(?=<!-- /verify -->)", re.DOTALL)
+ROW = re.compile(r"^(?=\| (?!check )(\S+) \|)(.*\|)$", re.MULTILINE)
 
 
 def row(found: dict) -> str:
@@ -17,9 +21,10 @@ def row(found: dict) -> str:
             f"`{found['command']}` | {found['date']} | {found['commit']} |")
 
 
-def table(records: list[dict]) -> str:
+def table(records: list[dict], page: str) -> str:
+    rows = dict(ROW.findall("".join(MARKED.findall(page)))) | {found["name"]: row(found) for found in records}
     head = ["", "| check | what was tried | failed | command | date | commit |", "|---|---|---|---|---|---|"]
-    return "\n".join([*head, *map(row, records)]) + "\n\n"
+    return "\n".join([*head, *(rows[name] for name in sorted(rows))]) + "\n\n"
 
 
 def main() -> int:
@@ -29,10 +34,11 @@ def main() -> int:
     records = record.kept()
     if not records:
         sys.exit("out/verify/ has no records: run make verify")
-    print(table(records), end="")
+    page = PAGE.read_text(encoding="utf-8")
+    written = table(records, page)
+    print(written, end="")
     if options.write:
-        page = PAGE.read_text(encoding="utf-8")
-        PAGE.write_text(MARKED.sub(lambda _: table(records), page), encoding="utf-8")
+        PAGE.write_text(MARKED.sub(lambda _: written, page), encoding="utf-8")
     return 1 if any(found["failures"] for found in records) else 0
 
 
