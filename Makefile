@@ -439,7 +439,7 @@ TSAN      = $(SANE) OPENMP=no BUILD=build/tsan SANITIZE=thread
 sanitize: all
 	@CC='$(CC)' scripts/bootstrap test python
 	@LSAN_OPTIONS=suppressions=tests/support/lsan.supp:print_suppressions=0 $(MAKE) --no-print-directory $(JOBS) \
-	    $(SANE) BUILD=build/asan SANITIZE=address,undefined unit-tests build/asan/kage build/asan/fuzz/replay
+	    $(SANE) BUILD=build/asan SANITIZE=address,undefined unit-tests programs build/asan/fuzz/replay
 	@TSAN_OPTIONS=suppressions=tests/support/tsan.supp \
 	    $(MAKE) --no-print-directory $(JOBS) $(TSAN) run-unit/api/test_threads
 	KAGE=build/asan/kage scripts/venv python -m pytest -q -n auto --dist loadfile $(SANE_TESTS)

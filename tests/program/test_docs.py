@@ -18,7 +18,7 @@ from pathlib import Path
 import pytest
 
 from scripts import docs_pages, tree
-from tests.conftest import PROGRAM, TOP
+from tests.conftest import PROGRAM, TOP, not_sanitized
 
 PAGES = [name for name in tree.names() if name.endswith(".md")]
 TEXTS = {name: (TOP / name).read_text(encoding="utf-8") for name in PAGES}
@@ -232,6 +232,7 @@ def test_each_block_has_a_test() -> None:
         assert Path(page).name in (TOP / test).read_text(encoding="utf-8"), f"{test} does not read {page}"
 
 
+@not_sanitized
 def test_the_readme_in_python(desk: Path) -> None:
     (block,) = re.findall(r"^```python\n(.*?)^```", TEXTS["README.md"], re.DOTALL | re.MULTILINE)
     path = os.pathsep.join([str(PROGRAM.parent / "python"), *sys.path])

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from scripts import rooms
-from tests.conftest import PROGRAM, TOP
+from tests.conftest import PROGRAM, SANITIZED, TOP
 from tests.support import house
 from tests.support.house import House
 
@@ -26,6 +26,8 @@ def tree() -> House:
 def test_holds(tree: House, rule: Rule) -> None:
     if rule is house.exported_names_begin_with_kage and not tree.exported:
         pytest.skip("no libkage.so is built yet")
+    if rule is house.library_has_no_writable_globals and SANITIZED:
+        pytest.skip("AddressSanitizer gives the library globals of its own")
     broken = list(rule(tree))
     assert not broken, "\n".join(broken)
 

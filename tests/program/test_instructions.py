@@ -10,6 +10,7 @@ import pytest
 from bench import callgrind
 from bench.callgrind import Function
 from bench.programs import MeasureError
+from tests.conftest import not_sanitized
 from tests.support import instructions
 
 PROFILE = """\
@@ -60,6 +61,7 @@ def test_both_ways_are_noticed() -> None:
     assert "-6.0 %: faster" in instructions.complaint("a", 940, 1000)
 
 
+@not_sanitized
 @pytest.mark.parametrize("pair", instructions.PAIRS)
 def test_instructions(pair: str) -> None:
     missing = instructions.why_not()

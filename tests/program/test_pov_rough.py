@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from tests.conftest import Kage, needs_povray
+from tests.conftest import Kage, needs_povray, not_sanitized
 from tests.support.parity import GLOBE, HEAD, LIGHTS, PLANE, ROUND_ONES, difference, layers, povray, rgb
 
 MOST = 4_000_000
@@ -64,6 +64,7 @@ def test_noise_on_a_curved_surface(kage: Kage, shape: str) -> None:
     assert 0 < height < 0.01 and 0 < pixels < 0.5
 
 
+@not_sanitized
 def test_more_samples_than_triangles(kage: Kage) -> None:
     text, triangles, words = export(kage, write(kage, noise(2048), GLOBE))
     height, pixels = figures(text)

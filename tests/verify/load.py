@@ -1,6 +1,7 @@
 """Run the whole suite again and again on a busy machine: what fails once is a defect.
 
-`stress-ng` keeps every processor, the memory and the disk busy beside it. The programs must be built.
+`stress-ng` keeps every processor, the memory and the disk busy beside it. The programs must be built. What a run has
+printed is in out/verify/load-N.log.
 
     scripts/venv python -m tests.verify.load --count 10
 """
@@ -14,7 +15,7 @@ import subprocess
 import sys
 from collections import Counter
 from contextlib import contextmanager
-from typing import TYPE_CHECKING
+from typing import IO, TYPE_CHECKING
 
 from tests.verify import record
 
@@ -41,18 +42,16 @@ def busy() -> Iterator[None]:
         stress.wait()
 
 
-def run(suite: list[str]) -> list[str]:
-    """The tests that failed."""
+def run(suite: list[str], log: IO[str]) -> list[str]:
+    """The tests that failed. What they print goes into the log."""
     try:
-        done = subprocess.run(suite, cwd=record.TOP, capture_output=True, text=True, env={**os.environ, "CI": "1"},
-                              timeout=TOO_LONG)
+        done = subprocess.run(suite, cwd=record.TOP, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                              env={**os.environ, "CI": "1"}, timeout=TOO_LONG)
     except subprocess.TimeoutExpired as ended:
         return [f"{' '.join(suite)} took more than {ended.timeout} s"]
+    log.write(done.stdout)
     found = [a or b for a, b in FAILED.findall(done.stdout)]
-    if done.returncode and not found:
-        print(done.stdout[-4000:], done.stderr[-4000:], sep="\n")
-        found = [" ".join(suite)]
-    return found
+    return found or ([" ".join(suite)] if done.returncode else [])
 
 
 def main() -> int:
@@ -64,7 +63,8 @@ def main() -> int:
     status = 0
     with busy():
         for k in range(count):
-            failed.update(name for suite in SUITES for name in run(suite))
+            with (record.KEPT / f"load-{k + 1}.log").open("w", encoding="utf-8") as log:
+                failed.update(name for suite in SUITES for name in run(suite, log))
             # After each run, as ten of them take hours.
             status = record.record("load", {"runs of the whole suite beside stress-ng": k + 1}, failed.total())
             for name, times in failed.most_common():

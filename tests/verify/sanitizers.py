@@ -13,6 +13,9 @@ import os
 import re
 import subprocess
 import sys
+import tempfile
+from concurrent.futures import ThreadPoolExecutor
+from itertools import product
 from pathlib import Path
 
 from tests.verify import record
@@ -40,13 +43,15 @@ def sanitized() -> tuple[int, int]:
     return units + (int(found[2]) if found else 0), len(bad) or (1 if done.returncode else 0)
 
 
-def memcheck(kage: Path, scene: Path, way: list[str], folder: Path) -> bool:
+def memcheck(scene: Path, way: list[str]) -> bool:
     """Whether valgrind finds nothing in a small render."""
+    kage = record.TOP / "build" / "plain" / "kage"
     command = ["valgrind", "--quiet", "--error-exitcode=9", "--leak-check=full", "--show-leak-kinds=definite",
                "--errors-for-leak-kinds=definite",
-               kage, "render", scene, *way, "--size", "12x9", "--threads", "1", "--quiet", "-o", folder / "a.exr"]
-    done = subprocess.run([*map(str, command)], capture_output=True, text=True,
-                          env={**os.environ, "KAGE_IMPORT": str(kage.parent / "kage-import")})
+               kage, "render", scene, *way, "--size", "12x9", "--threads", "1", "--quiet", "-o", "a.exr"]
+    with tempfile.TemporaryDirectory() as folder:
+        done = subprocess.run([*map(str, command)], capture_output=True, text=True, cwd=folder,
+                              env={**os.environ, "KAGE_IMPORT": str(kage.parent / "kage-import")})
     if done.returncode:
         print(scene.name, *way, done.stderr[-3000:], sep="\n  ")
     return done.returncode == 0
@@ -57,10 +62,8 @@ def main() -> int:
     built = make(*PLAIN, "build/plain/kage", "build/plain/kage-import")
     if built.returncode:
         sys.exit(built.stderr)
-    kage, folder = record.TOP / "build" / "plain" / "kage", record.KEPT
-    folder.mkdir(parents=True, exist_ok=True)
-    clean = [memcheck(kage, scene, way, folder) for scene in SCENES for way in WAYS]
-    (folder / "a.exr").unlink(missing_ok=True)
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        clean = list(pool.map(lambda one: memcheck(*one), product(SCENES, WAYS)))
     return record.record("sanitizers", {"tests under ASan, UBSan, LSan and TSan": tried,
                                         "renders under valgrind": len(clean)}, failed + clean.count(False))
 
