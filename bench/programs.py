@@ -223,6 +223,8 @@ def parse_povray(text: str) -> dict[str, float]:
         if not found:
             raise MeasureError(f"POV-Ray: no '{name} Time' in the end of its output: {text[-300:]!r}")
         times[name.lower()] = float(found[1])
+    if not times["trace"]:
+        raise MeasureError("POV-Ray: its trace took less than a millisecond, expected a picture that takes longer")
     return times
 
 

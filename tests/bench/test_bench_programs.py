@@ -104,6 +104,7 @@ def test_callgrind() -> None:
         ("parse_check", CHECK_TEXT.replace("light lamp", "lamp")),
         ("parse_check", CHECK_TEXT + "light sun at 0, 1, 0\n"),
         ("parse_povray", "Trace Time: none"),
+        ("parse_povray", POVRAY_TEXT.replace("64.062", "0.000")),
         ("parse_fused", "Segmentation fault"),
         ("parse_embree", ""),
         ("parse_callgrind", "Collected : 0"),

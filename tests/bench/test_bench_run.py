@@ -164,7 +164,7 @@ if {tiny}:
     from bench import plan
     plan.LEVELS["quick"] = dataclasses.replace(
         plan.LEVELS["quick"], methods=("none", "0", "exact", "displaced"), variants=("none", "relief"), rounds=3,
-        cost_size=(96, 54), povray_size=(48, 27), count_size=(16, 16), slopes=(0.2, 1.0), angles=(30, 60))
+        cost_size=(96, 54), povray_size=(192, 108), count_size=(16, 16), slopes=(0.2, 1.0), angles=(30, 60))
 sys.argv = ["bench", *{arguments}]
 runpy.run_module("bench", run_name="__main__", alter_sys=True)
 """
