@@ -1,7 +1,7 @@
 """Run the whole suite again and again on a busy machine: what fails once is a defect.
 
 `stress-ng` keeps every processor, the memory and the disk busy beside it. The programs must be built. What a run has
-printed is in out/verify/load-N.log.
+printed is in out/verify/load-N-SUITE.log.
 
     scripts/venv python -m tests.verify.load --count 10
 """
@@ -15,18 +15,19 @@ import subprocess
 import sys
 from collections import Counter
 from contextlib import contextmanager
-from typing import IO, TYPE_CHECKING
+from typing import TYPE_CHECKING
 
 from tests.verify import record
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
+    from pathlib import Path
 
 TOO_LONG = 3 * 3600  # seconds: something waits for ever
 FAILED = re.compile(r"^(?:FAILED|ERROR) (\S+)|^  FAILED  (\S+)", re.MULTILINE)
-SUITES = (["make", "-j2", "BOOTSTRAP=no", "unit-tests", "REAL=float"],
-          ["make", "-j2", "BOOTSTRAP=no", "unit-tests", "REAL=double"],
-          [sys.executable, "-m", "pytest", "-q", "-n", "auto", "--dist", "loadfile", "tests"])
+SUITES = {"float": ["make", "-j2", "BOOTSTRAP=no", "unit-tests", "REAL=float"],
+          "double": ["make", "-j2", "BOOTSTRAP=no", "unit-tests", "REAL=double"],
+          "pytest": [sys.executable, "-m", "pytest", "-q", "-n", "auto", "--dist", "loadfile", "tests"]}
 
 
 @contextmanager
@@ -42,16 +43,14 @@ def busy() -> Iterator[None]:
         stress.wait()
 
 
-def run(suite: list[str], log: IO[str]) -> list[str]:
-    """The tests that failed. What they print goes into the log."""
+def run(suite: list[str], log: Path) -> list[str]:
+    """The tests that failed. What they print goes into the log, also where they never end."""
     try:
-        done = subprocess.run(suite, cwd=record.TOP, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
-                              env={**os.environ, "CI": "1"}, timeout=TOO_LONG)
+        status = record.logged(suite, log, env={**os.environ, "CI": "1"}, timeout=TOO_LONG)
     except subprocess.TimeoutExpired as ended:
         return [f"{' '.join(suite)} took more than {ended.timeout} s"]
-    log.write(done.stdout)
-    found = [a or b for a, b in FAILED.findall(done.stdout)]
-    return found or ([" ".join(suite)] if done.returncode else [])
+    found = [a or b for a, b in FAILED.findall(log.read_text(encoding="utf-8"))]
+    return found or ([" ".join(suite)] if status else [])
 
 
 def main() -> int:
@@ -63,8 +62,8 @@ def main() -> int:
     status = 0
     with busy():
         for k in range(count):
-            with (record.KEPT / f"load-{k + 1}.log").open("w", encoding="utf-8") as log:
-                failed.update(name for suite in SUITES for name in run(suite, log))
+            failed.update(name for kind, suite in SUITES.items()
+                          for name in run(suite, record.KEPT / f"load-{k + 1}-{kind}.log"))
             # After each run, as ten of them take hours.
             status = record.record("load", {"runs of the whole suite beside stress-ng": k + 1}, failed.total())
             for name, times in failed.most_common():

@@ -25,22 +25,21 @@ WAYS = (["--shadow", "auto", "--shade", "shifted", "--bump-shadow", "march:8"], 
         ["--surface", "displaced"], ["--bump-shadow", "horizon"])
 #: Valgrind knows no AVX-512, and the plain code has no other accesses than the clones.
 PLAIN = ["CLONES=no", "OPTIMISE=-O1 -g -fno-math-errno -fno-trapping-math -ffp-contract=off", "BUILD=build/plain"]
+MAKE = ["make", "-j2", "BOOTSTRAP=no"]
 SUMMARY = re.compile(r"(?:(\d+) failed, )?(\d+) passed")
-
-
-def make(*words: str) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(["make", "-j2", "BOOTSTRAP=no", *words], cwd=record.TOP, capture_output=True, text=True)
 
 
 def sanitized() -> tuple[int, int]:
     """The whole of `make sanitize`, with all tests of the program: those that ran, those that failed."""
-    done = make("sanitize", "SANE_TESTS=tests/program")
-    units = len(re.findall(r"^  OK  ", done.stdout, re.MULTILINE))
-    bad = re.findall(r"^  FAILED  .*|^FAILED .*", done.stdout, re.MULTILINE)
-    found = SUMMARY.search(done.stdout)
-    if done.returncode:
-        print(*(bad or [done.stdout[-4000:], done.stderr[-4000:]]), sep="\n")
-    return units + (int(found[2]) if found else 0), len(bad) or (1 if done.returncode else 0)
+    log = record.KEPT / "sanitize.log"
+    status = record.logged([*MAKE, "sanitize", "SANE_TESTS=tests/program"], log)
+    text = log.read_text(encoding="utf-8")
+    units = len(re.findall(r"^  OK  ", text, re.MULTILINE))
+    bad = re.findall(r"^  FAILED  .*|^FAILED .*", text, re.MULTILINE)
+    found = SUMMARY.search(text)
+    if status:
+        print(*(bad or [text[-8000:]]), f"all that it printed: {log}", sep="\n")
+    return units + (int(found[2]) if found else 0), len(bad) or (1 if status else 0)
 
 
 def memcheck(scene: Path, way: list[str]) -> bool:
@@ -59,9 +58,9 @@ def memcheck(scene: Path, way: list[str]) -> bool:
 
 def main() -> int:
     tried, failed = sanitized()
-    built = make(*PLAIN, "build/plain/kage", "build/plain/kage-import")
-    if built.returncode:
-        sys.exit(built.stderr)
+    log = record.KEPT / "plain.log"
+    if record.logged([*MAKE, *PLAIN, "build/plain/kage", "build/plain/kage-import"], log):
+        sys.exit(log.read_text(encoding="utf-8"))
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         clean = list(pool.map(lambda one: memcheck(*one), product(SCENES, WAYS)))
     return record.record("sanitizers", {"tests under ASan, UBSan, LSan and TSan": tried,

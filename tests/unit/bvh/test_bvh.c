@@ -7,6 +7,11 @@
 
 #include "bvh/bvh.h"
 #include "support/random_in.h"
+#if KAGE_EMBREE == 4
+#include <embree4/rtcore.h>
+#else
+#include <embree3/rtcore.h>
+#endif
 
 enum { BOXES = 500, TRIES = 400 };
 
@@ -138,8 +143,18 @@ static void random_packet(bvh_packet *x, double wide, bool some)
     }
 }
 
-/* Against brute force. At most a share `shared` of calls is left of those for single rays. Processors take 4, 8 or 16
- * rays at a time, with 0.36, 0.19 and 0.09 of the calls where they are near each other. */
+/* Embree takes 4, 8 or 16 rays at a time, by processor. Where they are near each other, 0.36, 0.19 and 0.09 of the
+ * calls are left of those for single rays. */
+static double shared_calls(void)
+{
+    RTCDevice d = rtcNewDevice("threads=1");
+    const bool by_8 = rtcGetDeviceProperty(d, RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED),
+               by_16 = rtcGetDeviceProperty(d, RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED);
+    rtcReleaseDevice(d);
+    return by_16 ? 0.125 : by_8 ? 0.25 : 0.4;
+}
+
+/* Against brute force. At most a share `shared` of calls is left of those for single rays. */
 static void check_packets(double wide, double shared)
 {
     int met = 0, calls = 0;
@@ -169,7 +184,7 @@ static void check_packets(double wide, double shared)
 static void test_packets_visit_what_their_rays_do(void **state)
 {
     (void)state;
-    check_packets(0.01, 0.4);
+    check_packets(0.01, shared_calls());
     check_packets(1, 1);
 }
 
@@ -228,7 +243,7 @@ static void test_packets_find_the_nearest_boxes(void **state)
         }
         visits += k.visits;
     }
-    CHECK(visits, <, 0.5 * all);
+    CHECK(visits, <, 0.43 * all);
 }
 
 static bool stop_odd(void *user, int32_t i, uint32_t which, float end[BVH_PACKET])
