@@ -178,7 +178,8 @@ typedef struct kage_load_options {
     const kage_image_array *images;
     const kage_mesh_array *meshes;
     int image_count, mesh_count;
-    const kage_limits *limits; /* NULL: the defaults; of kage_scene_change: those of `scene`, as are fields of 0 */
+    const kage_limits *limits; /* NULL: the defaults; of kage_scene_change: those of `scene`, as are fields of 0. Where
+                                * one is tighter than there, all files are read again */
     long survey; /* not 0: only what kage_scene_get_info and kage_scene_survey need is built now, and what displaced
                   * surfaces, `exact` and `horizon` need at the first render: of a map ten times its memory */
     void *reserved[3];

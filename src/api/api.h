@@ -53,6 +53,9 @@ bool limits_are_good(const kage_limits *limits, errors *e);
 /* Those of what a scene and its files have, where they are set; the others stay. l may be NULL. */
 void limits_take(limits *to, const kage_limits *l);
 
+/* Whether something that `before` lets pass may not pass `now`. */
+bool limits_are_tighter(const limits *before, const limits *now);
+
 /* The most bytes by limits; NULL: by default. */
 int64_t limits_memory(const kage_limits *limits);
 

@@ -71,6 +71,16 @@ void limits_take(limits *to, const kage_limits *l)
             to->of[k] = (cap){value_of(l, k), rows[k].by};
 }
 
+bool limits_are_tighter(const limits *before, const limits *now)
+{
+    for (limit_kind k = 0; k < LIMIT_KINDS; k++) {
+        const int64_t most = rows[k].shown.most;
+        if (limit_of(now, k, most).most < limit_of(before, k, most).most)
+            return true;
+    }
+    return false;
+}
+
 int64_t limits_memory(const kage_limits *l)
 {
     const int64_t asked = l ? l->memory : 0;

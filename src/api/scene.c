@@ -104,14 +104,16 @@ static bool good_options(const kage_load_options *o, errors *e)
     return limits_are_good(o->limits, e) && arrays_are_good(o, e);
 }
 
-/* Read from->text or the file. before: the scene that this is a change of, or NULL. False: errors in *e. */
+/* Read from->text or the file. before: the scene that this is a change of, or NULL; with tighter limits all is read
+ * again. False: errors in *e. */
 static bool read_first(kage_scene *k, kage_scene *before, scene_source *from, const kage_load_options *o, errors *e)
 {
     const shelf *all[SHELVES];
-    from->shelves = before ? shelves_of(before, all) : 0;
+    if (before && !limits_are_tighter(&before->allowed.limits, &k->allowed.limits))
+        from->shelves = shelves_of(before, all);
     memory *m = from->progress->memory;
     char words[MEMORY_WORDS];
-    if (!keep(k, before, from->folder, o, m) || (before && !keep_spare(k, before, all, from->shelves)))
+    if (!keep(k, before, from->folder, o, m) || !keep_spare(k, before, all, from->shelves))
         return errors_add(e, "%s", memory_words(m, words));
     from->shelf = all;
     from->again = before;

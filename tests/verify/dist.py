@@ -2,7 +2,8 @@
 
     scripts/venv python -m tests.verify.dist [--tests PATH...]
 
-It is made twice and compared, unpacked, and built; then its own tests run (default: all of tests/, 20 minutes).
+It is made twice and compared, unpacked, and built; then its own tests run (default: all of tests/, 20 minutes). What
+they print is in out/verify/dist.log.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ import tempfile
 from pathlib import Path
 
 from scripts import dist
-from tests.verify.record import TOP, record
+from tests.verify.record import KEPT, TOP, logged, record
 
 
 def build(top: Path) -> None:
@@ -28,11 +29,12 @@ def build(top: Path) -> None:
 def tested(top: Path, paths: list[str]) -> dict[str, int]:
     """How many tests passed, failed, and so on."""
     environment = {name: value for name, value in os.environ.items() if name not in ("KAGE", "PYTHONPATH")}
-    done = subprocess.run([sys.executable, "-m", "pytest", "-q", "-n", "auto", "--dist", "loadfile", *paths], cwd=top,
-                          env=environment, capture_output=True, text=True)
-    counted = {word: int(number) for number, word in re.findall(r"(\d+) (passed|failed|errors?|skipped)", done.stdout)}
-    if done.returncode != 0:
-        print(done.stdout[-5000:])
+    log = KEPT / "dist.log"
+    status = logged([sys.executable, "-m", "pytest", "-q", "-n", "auto", "--dist", "loadfile", *paths], log,
+                    env=environment, top=top)
+    last = log.read_text(encoding="utf-8").splitlines()[-1]
+    counted = {word: int(number) for number, word in re.findall(r"(\d+) (passed|failed|errors?|skipped)", last)}
+    if status != 0:
         counted.setdefault("failed", 1)
     return counted
 

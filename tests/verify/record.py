@@ -47,14 +47,14 @@ def record(name: str, figures: Mapping[str, int | float], failures: int, argumen
 
 
 def logged(command: Sequence[str], log: Path, env: Mapping[str, str] | None = None,
-           timeout: float | None = None) -> int:
-    """Run a command at the top of the tree, with all that it prints in a file. Its exit status.
+           timeout: float | None = None, top: Path = TOP) -> int:
+    """Run a command at the top of a tree, with all that it prints in a file. Its exit status.
 
     Raises subprocess.TimeoutExpired after `timeout` seconds; what was printed until then is kept.
     """
     log.parent.mkdir(parents=True, exist_ok=True)
     with log.open("w", encoding="utf-8") as file:
-        return subprocess.run(command, cwd=TOP, env=env, timeout=timeout, stdout=file,
+        return subprocess.run(command, cwd=top, env=env, timeout=timeout, stdout=file,
                               stderr=subprocess.STDOUT).returncode
 
 

@@ -232,6 +232,27 @@ static void wrong_changes_are_errors(void **state)
     kage_scene_free(s);
 }
 
+/* What was read with other limits is looked at again, and only then. */
+static void tighter_limits_hold_for_what_was_read(void **state)
+{
+    (void)state;
+    const kage_limits enough = {.side = 512}, few = {.side = 511}, more = {.side = 600};
+    kage_scene *s = parse_with(WITH_MAP, DATA, &(kage_load_options){.limits = &enough}), *t = s;
+    kage_errors *e = NULL;
+    assert_int_equal(kage_scene_change(s, &(kage_load_options){.limits = &few}, &t, &e), KAGE_BAD_INPUT);
+    assert_null(t);
+    assert_non_null(strstr(kage_errors_get(e, 0)->text, "expected at most 511 a side"));
+    kage_errors_free(e);
+    t = change(s, &(kage_load_options){.limits = &more});
+    assert_ptr_equal(last(s)->bump, last(t)->bump);
+    kage_scene_free(t);
+    t = change(s, &(kage_load_options){.limits = &(kage_limits){.samples = 512 * 512}});
+    assert_ptr_not_equal(last(s)->bump, last(t)->bump);
+    same_pictures(s, t, "exact");
+    kage_scene_free(t);
+    kage_scene_free(s);
+}
+
 /* One change of each place, and pictures name them. */
 static void changes_do_not_pile_up(void **state)
 {
@@ -326,6 +347,7 @@ int main(void)
         cmocka_unit_test(a_changed_file_is_read_again),
         cmocka_unit_test(arrays_stay_and_can_be_given_again),
         cmocka_unit_test(wrong_changes_are_errors),
+        cmocka_unit_test(tighter_limits_hold_for_what_was_read),
         cmocka_unit_test(changes_do_not_pile_up),
         cmocka_unit_test(a_change_is_quick),
         cmocka_unit_test(the_changed_text_is_written),
