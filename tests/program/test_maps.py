@@ -52,10 +52,11 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.mark.parametrize("method", ["0", "march:4"])
 @pytest.mark.parametrize("name", ["large.png", "large.exr"])
 def test_six_bytes_a_sample(folder: Path, name: str, method: str) -> None:
-    """A sample is 4 bytes, and no second copy is held while the file is read."""
+    """A sample is 4 bytes, and no second copy is held while the file is read. Peaks of the same command were up to
+    600 kB apart: 0.04 bytes a sample."""
     options = "--shadow", method, "-o", folder / "out.png"
     more = peak(folder / f"{name}.yaml", *options) - peak(folder / "small.png.yaml", *options)
-    assert 4 * SIDE**2 <= more <= 6 * SIDE**2, f"{more / SIDE**2:.2f} bytes a sample"
+    assert 3.9 * SIDE**2 <= more <= 6 * SIDE**2, f"{more / SIDE**2:.2f} bytes a sample"
 
 
 def test_formats_give_the_same_picture(folder: Path) -> None:

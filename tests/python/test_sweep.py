@@ -266,6 +266,27 @@ def test_ctrl_c_says_how_to_go_on(tmp_path: Path) -> None:
     assert 2 <= len(json.loads((tmp_path / "index.json").read_text())["pictures"]) == 1000
 
 
+def test_ctrl_c_is_not_dropped(client: Client, tmp_path: Path) -> None:
+    """On a busy machine it came within the __del__ of a future, and the sweep went on to its end."""
+    class Dropped:
+        def __del__(self) -> None:
+            seen.append(0)
+            raise KeyboardInterrupt
+
+    def note(_task: Task, _result: Result) -> None:
+        if not seen:
+            Dropped()
+
+    seen: list[int] = []
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)  # it may be ignored, as nohup has it
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            run(plan_of(tmp_path, f"{SCALE}=0.01:0.3:1000"), client, note=note)
+    finally:
+        signal.signal(signal.SIGINT, before)
+    assert len(seen) == 1 and len(events(tmp_path, "end")) < 1000
+
+
 @pytest.mark.parametrize(("words", "status", "says"), [
     (["--vary", "a"], 2, "--vary a: expected PATH="),
     (["--set", "objects.grund.color=1"], 2, "did you mean 'ground'?"),

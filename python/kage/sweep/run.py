@@ -16,7 +16,7 @@ from distributed import Client, Future, KilledWorker, LocalCluster, as_completed
 
 from kage._kage import ffi, lib
 from kage.calls import Call
-from kage.sweep import index, records
+from kage.sweep import index, interrupts, records
 from kage.sweep.errors import SweepError
 from kage.sweep.inputs import VERSION, Inputs, digest
 from kage.sweep.plan import Picture, Plan, Task
@@ -113,7 +113,7 @@ def run(plan: Plan, client: Source = cluster, *, threads: int = 1, note: Note | 
         left = remaining(plan, done, note or ignore)
         try:
             if left:
-                with client() if callable(client) else nullcontext(client) as chosen:
+                with client() if callable(client) else nullcontext(client) as chosen, interrupts.kept():
                     Sweep(plan, chosen, threads, note or ignore, done).render(left)
         finally:
             index.write(plan, done)
