@@ -33,7 +33,10 @@ def stat_of(process: Path) -> list[str]:
 
 def sleeps(pid: int) -> bool:
     """Whether all threads of the process wait for something."""
-    return all(stat_of(thread)[0] == "S" for thread in Path(f"/proc/{pid}/task").iterdir())
+    try:
+        return all(stat_of(thread)[0] == "S" for thread in Path(f"/proc/{pid}/task").iterdir())
+    except (FileNotFoundError, ProcessLookupError):  # one has just ended
+        return False
 
 
 def listens(pid: int, number: signal.Signals) -> bool:
