@@ -32,6 +32,6 @@ def kept() -> Iterator[None]:
     try:
         yield
     finally:
+        sys.unraisablehook = before
         for timer in timers:
             timer.join()
-        sys.unraisablehook = before
