@@ -32,9 +32,11 @@ def tested(top: Path, paths: list[str]) -> dict[str, int]:
     log = KEPT / "dist.log"
     status = logged([sys.executable, "-m", "pytest", "-q", "-n", "auto", "--dist", "loadfile", *paths], log,
                     env=environment, top=top)
-    last = log.read_text(encoding="utf-8").splitlines()[-1]
+    text = log.read_text(encoding="utf-8")
+    last = text.rstrip().rpartition("\n")[2]
     counted = {word: int(number) for number, word in re.findall(r"(\d+) (passed|failed|errors?|skipped)", last)}
     if status != 0:
+        print(text[-8000:], f"all that it printed: {log}", sep="\n")
         counted.setdefault("failed", 1)
     return counted
 
